@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a finding is about, as data.
+"""The facts of a finding: the data that describes it.
 
-Messages are for people. A fix that needs to know more than the place of a finding reads its facts, never its message.
-A rule with such a fix has a frozen dataclass of facts, named in its `Rule`. The fields are strings, integers, booleans,
-enums, tuples of one of these, or one of these or None.
+Messages are for people. A fix that needs more than the place of a finding reads the facts, never the message.
+A rule with such a fix has a frozen dataclass of facts, which its `Rule` names. The fields are strings, integers,
+booleans, enums, tuples of one of these, or optional values of one of these.
 
-Facts travel through LSP as JSON. What a client sends back may be anything: `facts_from_json` validates it.
+Facts are sent through LSP as JSON. A client may send back any JSON: `facts_from_json` validates it.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ T = TypeVar("T", bound="Facts")
 
 
 class Facts:
-    """The base of the facts of all rules."""
+    """The base class of the facts of all rules."""
 
     __slots__ = ()
 
 
 def facts_to_json(facts: Facts) -> dict[str, Any]:
-    """The fields of facts; an enum is written as its name."""
+    """The fields of facts as JSON; a member of an enum becomes its name."""
     return {name: _to_json(getattr(facts, name)) for name in _hints(type(facts))}
 
 
 def facts_from_json(type_: type[T], value: object) -> T | None:
-    """The facts that `facts_to_json` wrote as `value`; None if it did not write it."""
+    """The facts in JSON that `facts_to_json` returned; `None` if the JSON does not fit."""
     hints = _hints(type_)
     if not isinstance(value, dict) or value.keys() != hints.keys():
         return None
@@ -42,11 +42,11 @@ def facts_from_json(type_: type[T], value: object) -> T | None:
 
 
 class _MismatchError(Exception):
-    """A value is not of the type of its field."""
+    """A value does not fit the type of its field."""
 
 
 def _hints(type_: Any) -> dict[str, Any]:
-    """Name -> type of each field of a dataclass."""
+    """Name -> type, for each field of a dataclass."""
     hints = typing.get_type_hints(type_)
     return {field.name: hints[field.name] for field in fields(type_)}
 

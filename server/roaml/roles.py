@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The closed vocabularies of the roles that the schemas give to elements and attributes (`xs:appinfo`,
+"""The closed vocabularies of the roles that the schemas assign to elements and attributes (`xs:appinfo`,
 urn:roaml:roles).
 
-A value that a schema uses is a member here; `tests/language/test_roles.py` holds the two together.
+Each value that a schema uses is a member here; `tests/language/test_roles.py` checks this.
 """
 
 from __future__ import annotations
@@ -11,18 +11,19 @@ import enum
 
 
 class RoleValue(enum.Enum):
-    """A value of a role, as the schemas write it."""
+    """A value of a role, as written in the schemas."""
 
-    # Members are compared by identity. `Enum` hashes the name, in Python, which is slow in keys of dictionaries.
+    # Members are compared by identity. `Enum` hashes the name in Python, which is slow for keys of dictionaries.
     __hash__ = object.__hash__
 
     def __lt__(self, other: RoleValue) -> bool:
-        """The order of the words, so that tuples with members can be sorted."""
+        """The order of the values as strings, so that tuples that contain members can be sorted."""
         return str(self.value) < str(other.value)
 
 
 class SymbolKind(RoleValue):
-    """What a name names: what the value of an attribute defines or refers to, and what else the editor describes."""
+    """The kind of symbol that the value of an attribute defines or refers to, or that the editor describes
+    otherwise."""
 
     ACTION = "action"
     ACTION_CLIENT = "action-client"
@@ -76,8 +77,8 @@ ELSEWHERE = frozenset(
         SymbolKind.TREE_INSTANCE,
     )
 )
-"""What no schema says: parts of the languages themselves, ROS types, names on the blackboard, nodes of the executed
-tree, variables of the translation."""
+"""The kinds that no schema uses: parts of the languages themselves, ROS types, names on the blackboard, nodes of the
+executed tree, and variables of the translation."""
 
 
 class ProtocolPart(RoleValue):
@@ -108,4 +109,4 @@ class ProtocolPart(RoleValue):
     TICK = "tick"
 
     START = "start"
-    """The start of a machine, before its first event. No schema says this."""
+    """The start of a machine, before its first event. No schema uses it."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which name is meant where an unknown one is written.
+"""Suggestions for unknown names.
 
-Two measures of what names have in common serve two kinds of names:
+There are two measures of similarity, for two kinds of names:
 
-- `close_names` and `are_similar` are generous, for names that people choose: any case, several mistakes.
-- `nearest_name` accepts a few wrong letters only. Names that tools make have long parts in common and come by the
-  thousand; it is fast enough for these.
+- `close_names` and `are_similar` are for names that people choose: they ignore case and accept several differences.
+- `nearest_name` is for names that tools generate: it accepts only a few wrong letters, because such names have long
+  parts in common, and it is fast enough for thousands of candidates.
 """
 
 from __future__ import annotations
@@ -17,32 +17,33 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
 MAX_LENGTH = 80
-"""Only so many characters of an unknown name are compared."""
+"""The maximum number of characters of an unknown name that are compared."""
 _MIN_SIMILARITY = 0.6
-"""Of `difflib`, between 0 and 1."""
+"""The minimum similarity after `difflib`, between 0 and 1."""
 MAX_COMPARED = 40
-"""Candidates that are compared with a name letter by letter. Of more than these, the likely ones are chosen first."""
+"""The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are
+selected first."""
 _NEIGHBOURS = 5
-"""On each side of a name in an order of candidates."""
+"""The number of neighbours on each side of a name in a sorted list of candidates."""
 
 
 def did_you_mean(names: tuple[str, ...], most: int = 1) -> str:
-    """`; did you mean …?` with the first names, or nothing."""
+    """`; did you mean …?` with the first `most` names; "" if there are no names."""
     return f"; did you mean {' or '.join(f'`{name}`' for name in names[:most])}?" if names else ""
 
 
 def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
-    """Those of `candidates` that look like `name`, the nearest first.
+    """The candidates that are similar to `name`, the most similar first.
 
-    Takes time for `MAX_COMPARED` comparisons at most, so that very many mistakes among very many names take linear
-    time. Of more candidates, those are compared that differ in one letter, or that begin or end like `name`.
+    At most `MAX_COMPARED` candidates are compared, so that the time is linear even with many unknown names and many
+    candidates. If there are more, those are compared that differ in one letter, or that begin or end like `name`.
     """
     return _close_names(name[:MAX_LENGTH], tuple(candidates), most)
 
 
 @functools.lru_cache(maxsize=256)
 def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str, ...]:
-    """Remembered, as one mistake is often made many times."""
+    """Cached, because the same unknown name often occurs many times."""
     lower = name.lower()
     if len(candidates) <= MAX_COMPARED:
         by_lower = {candidate.lower(): candidate for candidate in candidates}
@@ -55,10 +56,10 @@ def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str
 
 
 class _Index:
-    """Many names, arranged such that those like a given one are found without looking at all.
+    """An index of many names that finds those similar to a given one without comparing all.
 
     Attributes:
-        by_lower: name in lower case -> name, without those that are too long to be like any `MAX_LENGTH` letters.
+        by_lower: name in lower case -> name, without names that are too long to be similar to `MAX_LENGTH` letters.
     """
 
     def __init__(self, names: Iterable[str]) -> None:
@@ -74,7 +75,7 @@ class _Index:
                     same.append(name)
 
     def likely(self, name: str) -> list[str]:
-        """At most `MAX_COMPARED` names, those that are one letter away first."""
+        """At most `MAX_COMPARED` names that may be similar, those that differ in one letter first."""
         one_letter_away = (match for shorter in _shortened(name) for match in self._shortened.get(shorter, ()))
         matches = dict.fromkeys(itertools.islice(one_letter_away, MAX_COMPARED))
         matches |= dict.fromkeys(_around(name, self._forward))
@@ -88,29 +89,29 @@ def _index(names: tuple[str, ...]) -> _Index:
 
 
 def _shortened(name: str) -> Iterator[str]:
-    """The name itself, and without one letter. Two names share one of these if one letter was added, left out or
-    changed, or two neighbours were exchanged."""
+    """The name itself, and the name without each of its letters. Two names share one of these if one letter was added,
+    removed or changed, or two adjacent letters were swapped."""
     yield name
     for position in range(len(name)):
         yield name[:position] + name[position + 1 :]
 
 
 def _around(name: str, names: Sequence[str]) -> Sequence[str]:
-    """The neighbours of a name in an order."""
+    """The neighbours of a name in a sorted list."""
     position = bisect.bisect_left(names, name)
     return names[max(0, position - _NEIGHBOURS) : position + _NEIGHBOURS]
 
 
 def are_similar(name: str, other: str) -> bool:
-    """Whether `other` may be meant where `name` is written."""
+    """Whether `other` may be intended where `name` is written."""
     return len(other) <= 2 * MAX_LENGTH and bool(close_names(name, (other,)))
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The first of the `known` names that differs from `name` in the shortest part; `None` if all differ a lot.
+    """The first of the `known` names with the shortest part that differs from `name`; `None` if all differ too much.
 
-    The part is what remains without the common beginning and end: one character for a missing, an additional or a wrong
-    letter, and two for two letters in the wrong order.
+    The part is what remains without the common beginning and end: one character for a missing, additional or wrong
+    letter, and two characters for two letters in the wrong order.
     """
     limit = min(len(name) // 3, 1 + len(name) // 5)
     best: str | None = None
@@ -129,7 +130,7 @@ def _stretch(left: str, right: str) -> int:
 
 
 def _shared(left: str, right: str) -> int:
-    """The length of the common beginning."""
+    """The length of the common prefix."""
     for i, (one, other) in enumerate(zip(left, right, strict=False)):
         if one != other:
             return i

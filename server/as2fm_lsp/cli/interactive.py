@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulation on a terminal: what can happen next is listed, one line of input says what does."""
+"""Interactive simulation on a terminal: it lists the possible next steps and reads one command in a line."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ HELP = """\
 
 
 class Terminal:
-    """Shows a session, and moves it as the input says."""
+    """Shows a session, and executes the commands of the input."""
 
     def __init__(self, session: Session, target: VerificationTarget) -> None:
         self._session = session
         self._target = target
 
     def run(self, lines: TextIO) -> None:
-        """Until the input ends or asks to quit."""
+        """Execute commands until the input ends or contains `q`."""
         print_text(HELP)
         self._show_choices()
         while True:
@@ -175,5 +175,5 @@ def _effect(outcome: Outcome) -> str:
 
 
 MAX_STEPS_SHOWN = 40
-"""Steps whose changes are shown after a command."""
+"""The maximum number of steps whose changes are shown after a command."""
 _LETTERS = "abcdefghijklmnoprsuvwxyz"

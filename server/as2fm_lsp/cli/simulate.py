@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp simulate MAIN.xml|MODEL.jani`: one run, as a story or step by step on a terminal."""
+"""`as2fm-lsp simulate MAIN.xml|MODEL.jani`: shows one run, as a whole or interactively on a terminal."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ exit status: 0 success; 1 the model has errors, or the run goes wrong; 2 usage e
 
 
 class UsageError(ValueError):
-    """Wrong arguments; the message contains the reason."""
+    """Invalid arguments; the message contains the reason."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -114,7 +114,7 @@ def _session(options: argparse.Namespace, target: VerificationTarget) -> Session
 
 
 def _advance(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
-    """Go as far as the options say."""
+    """Take steps up to the end that the options set."""
     if options.script is not None and options.until is None and options.for_ is None:
         return
     properties = {property_.name for property_ in target.model.properties}
@@ -172,7 +172,7 @@ def _summary(session: Session) -> str:
 
 
 def _csv(session: Session) -> str:
-    """A row for each step: its number, the time, the action, and all variables after it."""
+    """CSV with a row for each step: its number, the time, the action, and all variables after it."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     for position in range(session.position + 1):
@@ -187,7 +187,7 @@ def _csv(session: Session) -> str:
 
 
 def _values(state: SystemState) -> dict[str, Any]:
-    """The columns of a state: variables of machines, their states, and the statuses of the nodes of the tree."""
+    """The columns of a state: the variables and states of machines, and the statuses of the nodes of the tree."""
     values: dict[str, Any] = {}
     for machine in state.machines:
         values |= {f"{machine.name}.{name}": value for name, value in machine.variables.items()}

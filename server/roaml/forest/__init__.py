@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trees that belong to no system of HL-SCXML: what models and libraries say of their nodes, and what follows from it
-(docs/spec/lone-trees.md).
+"""Behavior trees that belong to no HL-SCXML system, analysed with the declarations of their nodes in models and
+libraries (docs/spec/lone-trees.md).
 
-A `Forest` is the file that is looked at with the files that it is seen with. Nothing is concluded from what is not
-known: a node without a model has unknown ports and may answer anything.
+A `Forest` is a file together with the files that belong to it. Nothing is concluded from missing declarations: a node
+without a model has unknown ports and may give any answer.
 """

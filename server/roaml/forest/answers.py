@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes may answer, and which children are therefore never ticked (docs/spec/lone-trees.md#answers).
+"""The possible answers of nodes, and the children that are therefore never ticked (docs/spec/lone-trees.md#answers).
 
-A node that is not known may answer anything.
+An unknown node may give any answer.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ S, F, R, K = "SUCCESS", "FAILURE", "RUNNING", "SKIPPED"
 ANYTHING = frozenset((S, F, R, K))
 
 MAX_SUBTREES = 100
-"""Subtrees in each other; those in deeper ones may answer anything."""
+"""The maximum nesting depth of subtrees that are analysed; deeper ones may give any answer."""
 
 _SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence", "PipelineSequence")
 _FALLBACKS = ("Fallback", "AsyncFallback", "ReactiveFallback")
@@ -25,7 +25,7 @@ _CHILD_FIRST = (
     *("Sequence", "SequenceWithMemory", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse"),
     *("WhileDoElse", "PipelineSequence", "RecoveryNode"),
 )
-"""Nodes whose first tick ticks their first child and answers RUNNING if that does."""
+"""Nodes whose first tick ticks their first child and answers RUNNING if the child does."""
 _TRANSPARENT = (
     *("Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout"),
     "KeepRunningUntilFailure",
@@ -40,8 +40,8 @@ def _ended(answers: Answers, success: str, failure: str) -> Answers:
 
 
 class Possible:
-    """What the nodes of a forest may answer. Each tree is looked at once, and a tree inside itself may answer
-    anything."""
+    """The possible answers of the nodes of a forest. Each tree is analysed once. A tree inside itself may give any
+    answer."""
 
     def __init__(self, forest: Forest) -> None:
         self.forest = forest
@@ -49,7 +49,7 @@ class Possible:
         self._depth = 0
 
     def answers(self, root: TreeNode) -> dict[TreeNode, Answers]:
-        """The answers of a node and of all nodes below it."""
+        """The possible answers of a node and of all nodes below it."""
         found: dict[TreeNode, Answers] = {}
         order, stack = [], [root]
         while stack:
@@ -69,11 +69,11 @@ class Possible:
 
     def _tree(self, name: str) -> Answers:
         if name not in self._trees:
-            self._trees[name] = ANYTHING  # while it is looked at
+            self._trees[name] = ANYTHING  # during its analysis, for trees that contain themselves
             _, tree = self.forest.trees[name]
             if len(tree.roots) == 1 and self._depth < MAX_SUBTREES:
                 self._depth += 1
-                # What follows from a mistake inside the tree is not told where the tree is used.
+                # An unreached node in this tree is reported there only, not also where the tree is used.
                 if not any(self.unreached(tree.roots[0])):
                     self._trees[name] = self.answers(tree.roots[0])[tree.roots[0]]
                 self._depth -= 1
@@ -125,11 +125,11 @@ class Possible:
         return ANYTHING
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
-        """The children that are never ticked: each with the child that ends the node before, and what that never
-        answers.
+        """The children that are never ticked.
 
-        Of several in a row, the first. Where the answers of a child follow from such a child inside it, only the inner
-        one.
+        Each comes with the earlier child that always ends the node, and with the answer that this one never gives. Of
+        several such children in a row, this is the first. If the answers of a child follow from an unreached child
+        inside it, this is only the inner one.
         """
         answers = self.answers(root)
         has_inner: set[TreeNode] = set()
@@ -157,7 +157,7 @@ class Possible:
         return None
 
     def is_running_at_once(self, node: TreeNode) -> bool:
-        """Whether the first tick of a node surely gives RUNNING."""
+        """Whether the first tick of a node always returns RUNNING."""
         while True:
             name = node.plugin.value if node.plugin else ""
             if any(node.element.get(condition) for condition in ("_failureIf", "_successIf", "_skipIf", "_while")):
@@ -174,7 +174,7 @@ class Possible:
 
 
 def _in_turn(below: list[Answers], goes_on: str, ends: str) -> Answers:
-    """The answers of a node that ticks its children one after the other as long as they answer `goes_on`."""
+    """The possible answers of a node that ticks its children in order as long as they answer `goes_on`."""
     found: set[str] = set()
     all_skip = True
     for child in below:
@@ -192,5 +192,5 @@ def _number(node: TreeNode, port: str) -> str:
 
 
 def _is_zero(node: TreeNode) -> bool:
-    """Whether a time is 0, or in an entry, so that the node may end at once."""
+    """Whether the time of a node is 0 or unknown because an entry contains it, so that the node may end at once."""
     return any(_number(node, port).startswith(("0", "{", "=")) for port in ("msec", "delay_msec", "wait_duration"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ types of ports, as models write them, and the texts that the library converts to them
+"""The C++ types of ports as written in models, and the texts that the library converts to them
 (docs/spec/lone-trees.md#literals)."""
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _SAME = {
     "str": "string", "String": "string", "string_view": "string", "StringView": "string", "char*": "string",
     "Any": "any", "AnyTypeAllowed": "any", "BlackboardEntry": "any", "undefined": "any",
 }  # fmt: skip
-"""Spellings of types, without `std::`, `BT::`, `_t` and spaces, with one name for each type."""
+"""Spelling of a type, without `std::`, `BT::`, `_t` and spaces -> the normal name of the type."""
 
 _RANGES = {
     "int8": (-(2**7), 2**7 - 1),
@@ -39,7 +39,7 @@ _LIST = re.compile(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
 
 
 def normal(written: str) -> str:
-    """One name for the spellings of a type; "" and any template of the library stand for any type."""
+    """The normal name of a type; `any` for "" and for templates of the library."""
     name = re.sub(r"\b(?:std|BT)::|\bconst\b|[\s&]", "", written)
     name = re.sub(r"_t\b", "", name)
     match = _LIST.match(name)
@@ -49,14 +49,14 @@ def normal(written: str) -> str:
 
 
 def element_type(name: str) -> str | None:
-    """The type of the elements of a list; None if the type is not one."""
+    """The type of the elements of a list; `None` if the type is not a list."""
     match = _LIST.match(name)
     return match[1] if match else None
 
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """Why a text is not of a type. `ignored` tells that the library reads its beginning only."""
+    """Why a text does not fit a type. `ignored`: the library reads the beginning of the text and ignores the rest."""
 
     message: str
     ignored: bool = False
@@ -64,7 +64,8 @@ class Mismatch:
 
 
 def mismatch(type_name: str, text: str) -> Mismatch | None:
-    """What is wrong with a text for a port of a type, if the library is known to convert it."""
+    """Why a text does not fit a port of a type; `None` if it fits or if the library does not convert the type
+    itself."""
     name = normal(type_name)
     if text.startswith("json:"):
         return None

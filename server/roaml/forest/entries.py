@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The blackboard of trees: which names mean one entry, who reads and who writes it (docs/spec/lone-trees.md#entries).
+"""The blackboard of trees: which names refer to the same entry, and which places read and write it
+(docs/spec/lone-trees.md#entries).
 
-- Names of different trees are one entry if a `SubTree` remaps one to the other. All uses of a tree are taken together,
-  so an entry is said to be written if it may be.
-- A node whose ports are not known may read and write what its attributes name.
+- Names of different trees refer to one entry if a `SubTree` remaps one to the other. All uses of a tree are combined,
+  so an entry counts as written if one of them writes it.
+- A node with unknown ports may read and write the entries that its attributes name.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.text import Span
 
 ROOT = ""
-"""The tree that stands for the blackboard of the executed tree, which `@name` means."""
+"""The name that represents the blackboard of the executed tree, to which `@name` refers."""
 
 Key: TypeAlias = tuple[str, str]
-"""A tree and a name in it."""
+"""The name of a tree, and the name of an entry in it."""
 
 _NAMING_PORTS = {
     ("SetBlackboard", "output_key"): "write",
@@ -33,24 +34,24 @@ _NAMING_PORTS = {
     ("SkipUnlessUpdated", "entry"): "other",
     ("WaitValueUpdate", "entry"): "other",
 }
-"""The ports whose text is the name of an entry, also without braces."""
+"""The ports whose value is the name of an entry even without braces."""
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A place that names an entry.
+    """A place that refers to an entry.
 
     Attributes:
         path: the file.
         tree: the name of the tree.
-        name: as written, with a leading `@` if there is one.
-        reads, writes: None if it is not known.
-        creates: the entry exists from then on.
-        type: the type of the port, `any` if it is not known.
-        from_library: the type is that of a library, not of a model in a file.
-        script: the use is in a script.
-        span: of the value; for scripts, of the attribute's value.
+        name: as written, including a leading `@`.
+        reads, writes: `None` if not known.
+        creates: whether this use creates the entry.
+        type: the type of the port, `any` if not known.
+        from_library: whether the type comes from a library, not from a model in a file.
+        script: whether the use is in a script.
+        span: the place of the value; in scripts, of the value of the attribute.
     """
 
     path: str
@@ -69,14 +70,14 @@ class Use:
 @dataclass(frozen=True, eq=False)
 class Entries:
     """Attributes:
-    uses: in the order of the files and their texts.
+    uses: all uses, in the order of the files and of the text.
     """
 
     uses: tuple[Use, ...]
     _roots: Mapping[Key, Key]
 
     def entry(self, tree: str, name: str) -> Key:
-        """What stands for the entry that a name in a tree means."""
+        """The key that represents the entry to which a name in a tree refers."""
         key = (ROOT, name[1:]) if name.startswith("@") else (tree, name)
         while key in self._roots:
             key = self._roots[key]
@@ -90,7 +91,7 @@ class Entries:
 
 
 def entry_of(setting: PortSetting) -> str | None:
-    """The entry that a port is bound to; `{=}` means the one of the port's name."""
+    """The name of the entry that a port is bound to; `{=}` refers to the entry with the name of the port."""
     value = setting.value.value.strip()
     if value == "=":
         return setting.attribute.name
@@ -143,7 +144,7 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
 
 
 def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:
-    """What a subtree is given; a text is written to the subtree's entry."""
+    """The uses in the ports of a subtree; a text is written to the entry of the subtree."""
     inner = node.plugin.value if node.plugin else ""
     known = inner in forest.trees
     for setting in ports_of(node):
@@ -156,7 +157,7 @@ def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator
 
 
 def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
-    """A forest of keys (union-find) in which the names of one entry have one root."""
+    """A union-find forest of keys, in which all names of one entry have the same root: key -> parent."""
     roots: dict[Key, Key] = {}
 
     def find(key: Key) -> Key:
@@ -197,7 +198,7 @@ def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
 
 
 def _taken_over(calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str]]) -> Iterator[tuple[str, str, str]]:
-    """The names that automatic remapping makes one: the inner tree, the outer one, the name. Adds them to `names`."""
+    """The names that automatic remapping unifies, as inner tree, outer tree and name. Adds them to `names`."""
     users: dict[str, list[tuple[str, frozenset[str]]]] = {}
     for outer, inner, node in calls:
         if is_autoremapped(node):
@@ -215,7 +216,7 @@ def _taken_over(calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str
 
 
 def _calls(forest: Forest) -> Iterator[tuple[str, str, TreeNode]]:
-    """The uses of trees that are known: the outer tree, the inner one and the node."""
+    """The uses of known trees, as outer tree, inner tree and node."""
     for _, tree, node in forest.all_nodes():
         is_call = node.is_subtree or forest.names_tree(node)
         if is_call and node.plugin is not None and node.plugin.value in forest.trees:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file of trees with the files that it is seen with, and what is known about the nodes in them.
+"""A file of trees with the files that belong to it, and the declarations of their nodes.
 
-- Knowledge about a node comes from BehaviorTree.CPP first, then from `<TreeNodesModel>` elements, then from further
-  libraries.
-- A library is chosen by settings, or by itself if the trees use its nodes (docs/spec/lone-trees.md#models).
+- The declaration of a node comes from BehaviorTree.CPP, else from a `<TreeNodesModel>`, else from another library.
+- A library is used if the settings name it, or if the trees use its nodes (docs/spec/lone-trees.md#models).
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ _COMMON_NAMES = frozenset(
         *("GoalUpdated", "InitialPoseReceived"),
     )
 )
-"""Names that nodes of other programs have, too: one of them alone does not choose a library."""
+"""Names that are also common in other programs: such a name alone does not show that the library is used."""
 
 _OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))
@@ -35,9 +34,9 @@ _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.
 @dataclass(frozen=True, slots=True)
 class TreeSettings:
     """Attributes:
-    models: files with models of nodes, besides those that trees include.
-    libraries: the names of libraries whose nodes there are.
-    version: of BehaviorTree.CPP, as two numbers; None for the newest.
+    models: files with models of nodes, in addition to those that trees include.
+    libraries: the names of the libraries whose nodes are available.
+    version: the version of BehaviorTree.CPP, as two numbers; `None` for the newest one.
     """
 
     models: tuple[str, ...] = ()
@@ -51,10 +50,10 @@ NEWEST = TreeSettings()
 @dataclass(frozen=True, eq=False)
 class Forest:
     """Attributes:
-    path: the file that is looked at.
-    files: that file and those that it is seen with, by path: what it includes, projects, models.
-    beside: the names of the trees in its folder, whose files a program may load together.
-    complete: all includes could be read.
+    path: the file that is analysed.
+    files: (path, file) pairs of that file, the files that it includes, projects, and models.
+    beside: the names of the trees in the same folder, because a program may load these files together.
+    complete: whether all included files could be read.
     """
 
     path: str
@@ -69,14 +68,14 @@ class Forest:
 
     @cached_property
     def is_version_3(self) -> bool:
-        """Whether the file says that it is written for version 3, or, without saying it, uses what only that has."""
+        """Whether the file declares version 3, or declares no version and uses something that only version 3 has."""
         if self.file.format:
             return self.file.format == "3"
         return any(_is_old(node) for tree in self.file.trees for node in nodes(tree))
 
     @cached_property
     def trees(self) -> Mapping[str, tuple[str, Tree]]:
-        """The trees by name, with their files; of equal names the first."""
+        """Name -> path of the file and tree; if names are equal, the first tree."""
         found: dict[str, tuple[str, Tree]] = {}
         for path, file in self.files:
             for tree in file.trees:
@@ -86,7 +85,7 @@ class Forest:
 
     @cached_property
     def models(self) -> Mapping[str, Node]:
-        """The nodes that models of the files describe, subtrees left out; of equal names the first."""
+        """The nodes that models in the files describe, without subtrees; if names are equal, the first one."""
         found: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
@@ -105,7 +104,7 @@ class Forest:
 
     @cached_property
     def libraries(self) -> tuple[Library, ...]:
-        """The libraries beyond BehaviorTree.CPP that are used."""
+        """The libraries that are used in addition to BehaviorTree.CPP."""
         return tuple(
             library(name) for name in LIBRARIES if name in self.settings.libraries or self._uses(library(name))
         )
@@ -126,7 +125,7 @@ class Forest:
         return len(names) > 1
 
     def node(self, name: str) -> Node | None:
-        """What is known about the nodes of a name."""
+        """The declaration of the node type with a name; `None` if there is none."""
         found = CPP.nodes.get(name)
         if found is not None and not found.until and not self.is_newer_than_used(found):
             return found
@@ -136,59 +135,59 @@ class Forest:
         return next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
 
     def is_newer_than_used(self, node: Node) -> bool:
-        """Whether the version of the library that is used does not have a node yet."""
+        """Whether the node is newer than the version of the library that is used."""
         if self.settings.version is None or not node.since:
             return False
         major, _, minor = node.since.partition(".")
         return (int(major), int(minor or 0)) > self.settings.version
 
     def absent(self, name: str) -> Absent | None:
-        """What a name is that is known to be no node."""
+        """Why a name is not a node, if that is known."""
         return None if name in self.models else CPP.absent.get(name)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The names of all nodes that are known."""
+        """The names of all declared nodes."""
         own = (name for name, node in CPP.nodes.items() if not node.until)
         return (*own, *self.models, *(name for known in self.libraries for name in known.nodes))
 
     @cached_property
     def has_own_models(self) -> bool:
-        """Whether models describe nodes that are not those of BehaviorTree.CPP."""
+        """Whether models describe nodes that BehaviorTree.CPP does not have."""
         return any(name not in CPP.nodes for name in self.models)
 
     @property
     def has_all_models(self) -> bool:
-        """Whether the user has said where all models are: in a project of Groot2 or in settings."""
+        """Whether the user has declared all models, in a Groot2 project or in settings."""
         is_project = any(path.endswith(PROJECT_EXTENSION) for path, _ in self.files)
         return self.has_own_models and (is_project or bool(self.settings.models))
 
     @cached_property
     def host_entries(self) -> frozenset[str]:
-        """The blackboard entries that the program which runs the trees sets."""
+        """The blackboard entries set by the program that executes the trees."""
         return frozenset(entry for known in self.libraries for entry in known.entries)
 
     def all_nodes(self) -> Iterator[tuple[str, Tree, TreeNode]]:
-        """The nodes of all files, each with its file and tree."""
+        """The nodes of all files, each with the path of its file and its tree."""
         for path, file in self.files:
             for tree in file.trees:
                 for node in nodes(tree):
                     yield path, tree, node
 
     def own_nodes(self) -> Iterator[tuple[Tree, TreeNode]]:
-        """The nodes of the file that is looked at."""
+        """The nodes of the file that is analysed."""
         for tree in self.file.trees:
             for node in nodes(tree):
                 yield tree, node
 
     def known_node(self, node: TreeNode) -> Node | None:
-        """What is known about a node of a tree; None also for subtrees."""
+        """The declaration of the type of a node; `None` if there is none, and for subtrees."""
         if node.is_subtree or node.plugin is None or self.names_tree(node):
             return None
         return self.node(node.plugin.value)
 
     def names_tree(self, node: TreeNode) -> bool:
-        """Whether a node in compact form is written with the name of a tree, which stands for it."""
+        """Whether a node in compact form has the name of a tree, which is then executed as a subtree."""
         return node.compact and node.plugin is not None and node.plugin.value in self.trees
 
 
@@ -202,7 +201,7 @@ def _is_old(node: TreeNode) -> bool:
 
 
 def node_of(model: NodeModel) -> Node:
-    """A node as a `<TreeNodesModel>` describes it."""
+    """The declaration of a node from its description in a `<TreeNodesModel>`."""
     assert model.id is not None
     kind = NodeKind(model.kind.lower()) if model.kind.lower() in _KINDS else NodeKind.ACTION
     ports = tuple(
@@ -225,10 +224,10 @@ _DIRECTIONS = frozenset(direction.value for direction in Direction)
 
 
 def ports_of(node: TreeNode) -> Iterator[PortSetting]:
-    """The attributes of a node that set ports; those that begin with `_` belong to the library."""
+    """The attributes of a node that set ports, without those that begin with `_`, which belong to the library."""
     return (setting for setting in node.ports if not setting.attribute.name.startswith("_"))
 
 
 def port_type(port: Port | None) -> str:
-    """One name for the spellings of a port's type; `any` if it is not known."""
+    """The normal name of the type of a port; `any` if not known."""
     return normal(port.type) if port else "any"

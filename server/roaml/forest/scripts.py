@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scripts in trees: where they stand (docs/spec/trees.md#scripts) and whether their values are conditions."""
+"""The scripts in trees: their attributes (docs/spec/trees.md#scripts), and whether their values are conditions."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
 CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
-"""Asked before a node is ticked."""
+"""The attributes with conditions that are evaluated before a node is ticked."""
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
-"""Executed after a node has ended."""
+"""The attributes with scripts that are executed after a node has ended."""
 
 _CONDITION_PORTS = ("Precondition", "ScriptCondition")
 _SCRIPT_PORTS = {
@@ -30,7 +30,7 @@ _SCRIPT_PORTS = {
 
 @dataclass(frozen=True, slots=True)
 class ScriptUse:
-    """A script at a node. `is_condition` tells that its value must be true or false."""
+    """A script at a node. `is_condition`: its value must be true or false."""
 
     node: TreeNode
     attribute: Attribute
@@ -50,7 +50,7 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
 
 
 def script_attributes(node: TreeNode) -> Iterator[Attribute]:
-    """The attributes of a node that are scripts, whatever models say of the node."""
+    """The attributes of a node that contain scripts, independently of the declaration of the node."""
     yield from (attribute for attribute in node.scripts if attribute.has_value)
     for port in _SCRIPT_PORTS.get(node.plugin.value if node.plugin else "", ()):
         attribute = node.element.get(port)
@@ -60,13 +60,13 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
 
 @functools.lru_cache(maxsize=2048)
 def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
-    """The script in a text, remembered: many rules ask."""
+    """The script in a text; cached, because many rules read it."""
     return parse(source)
 
 
 @functools.lru_cache(maxsize=2048)
 def names_in(text: str) -> tuple[tuple[str, str], ...]:
-    """The names in a script: each with `read`, or with the operator that assigns to it."""
+    """The names in a script, each with `read` or with the operator that assigns to it."""
     script, _ = parse(Decoded(text, 0))
     found: list[tuple[str, str]] = []
     targets: set[int] = set()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of behavior tree libraries, as data: BehaviorTree.CPP and Nav2.
+"""The nodes of the behavior tree libraries BehaviorTree.CPP and Nav2, as data.
 
 Kinds, ports, types and defaults of nodes are defined only in the XML files of this package. The node elements of
-`schemas/behaviortree.xsd` are written from them.
+`schemas/behaviortree.xsd` are generated from them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ BEHAVIORTREE_CPP = "behaviortree_cpp"
 """The library that is available in all trees."""
 
 LIBRARIES = ("nav2",)
-"""The further libraries, with their names in settings."""
+"""The names of the other libraries, as in settings."""
 
 
 @functools.cache
@@ -95,7 +95,7 @@ def _port(element: Any) -> Port:
 
 
 def _children(text: str | None) -> tuple[int, int] | None:
-    """`2`, `2-3` or `2-` for at least two."""
+    """The minimum and maximum number of children in a text such as `2`, `2-3` or `2-`, which means at least two."""
     if text is None:
         return None
     least, dash, most = text.partition("-")

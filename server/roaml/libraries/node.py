@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The declaration of a node of a behavior tree, from a library or a `<TreeNodesModel>`."""
+"""The declaration of a node type of a behavior tree, from a library or a `<TreeNodesModel>`."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ class Port:
 
     Attributes:
         type: the C++ type as written, such as `unsigned int`; "" if it is not known. `script` is the script language.
-        default: None if there is none.
-        required: the node needs a value; only known of ports of libraries and of subtrees.
-        alias_of: the port of which this is another name in trees of systems, or "".
-        system_type, system_direction, system_constant: what the port is in trees of systems, if that differs.
+        default: `None` if the port has no default.
+        required: whether the node needs a value; known only for ports of libraries and of subtrees.
+        alias_of: the port for which this is another name in trees of systems, or "".
+        system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
     """
 
     name: str
@@ -73,13 +73,13 @@ class Node:
     """A node that trees can use.
 
     Attributes:
-        library: the name of the library that has it, "" for nodes of a `<TreeNodesModel>`.
-        children: how many it has at least and at most.
-        since: the first version of the library that has it, "" if all that are supported have it.
-        until: the first version that does not have it any more, or "".
-        running: whether its first tick gives RUNNING always (True), never (False), or it is not known (None).
-        not_translated: None, or why it cannot be translated into a model of a system (may be "").
-        in_systems: what is special about it in systems, or "".
+        library: the name of its library, "" for nodes of a `<TreeNodesModel>`.
+        children: the minimum and maximum number of children.
+        since: the first version of the library that has it, "" if all supported versions have it.
+        until: the first version that no longer has it, or "".
+        running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
+        not_translated: why it cannot be translated into a model of a system (may be ""); `None` if it can.
+        in_systems: how it differs in trees of systems, or "".
     """
 
     name: str
@@ -104,7 +104,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Renamed:
-    """A name of version 3, and the one that replaces it."""
+    """A name of version 3, and the name that replaces it."""
 
     name: str
     now: str
@@ -115,8 +115,8 @@ class Absent:
     """A name that is not a node of the XML format.
 
     Attributes:
-        reason: what it is, as the end of a sentence.
-        instead: the node that is probably meant, or "".
+        reason: what the name is, as the end of a sentence.
+        instead: the name of the node that is probably intended, or "".
         not_translated: see `Node`.
     """
 
@@ -132,9 +132,9 @@ class Library:
     """The nodes of one library, by name.
 
     Attributes:
-        renamed: names of version 3.
-        absent: names that are known not to be nodes.
-        entries: blackboard entries that the program which runs a tree sets.
+        renamed: the names of version 3 that other names replace.
+        absent: the names that are known not to be nodes.
+        entries: the blackboard entries set by the program that executes a tree.
     """
 
     name: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file of properties in XML as typed data (docs/spec/xml-properties.md#file). Reading never fails."""
+"""A property file in XML as typed data (docs/spec/xml-properties.md#file). Reading never raises."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NAME_ATTRIBUTES = {
     NODE: "node",
     PLAIN: "event",
 }
-"""The kinds of ports, with the attribute that names what they listen to."""
+"""Kind of port -> the attribute with the name of the interface, node or event that it listens to."""
 
 GUARANTEES, ASSUMES = "guarantees", "assumes"
 
@@ -42,7 +42,9 @@ class PortVariable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Port:
-    """`kind` is the name of its element, `name` what it listens to, `event` what of that."""
+    """`kind` is the name of its element, `name` the interface, node or event that it listens to, `event` the part of
+    the
+    interface."""
 
     element: Element
     kind: str
@@ -96,7 +98,7 @@ class WrittenProperty:
 
     @property
     def expressions(self) -> Iterator[Expression]:
-        """All conditions that the property names, in the order of the patterns' inputs."""
+        """All conditions of the property, in the order of the inputs of patterns."""
         yield from self.conditions
         for scope in self.scopes[:1]:
             yield from (condition for condition in (scope.event, scope.until) if condition is not None)
@@ -118,7 +120,7 @@ class PropertyFile:
 
 
 def build_property_file(document: Document) -> PropertyFile | None:
-    """The properties in `document`, or None if its root is another one."""
+    """The properties in `document`; `None` if it has another root element."""
     root = document.root
     if root is None or root.name not in XML_PROPERTIES.roots:
         return None

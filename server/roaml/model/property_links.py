@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property file in its system: what its ports listen to, what its properties observe, and what is wrong
+"""Links a property file to its system: the events of its ports, the conditions of its properties, and its problems
 (docs/spec/xml-properties.md)."""
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class LinkedProperty:
-    """A property that can be observed.
+    """A property without problems, for which an observer can be built.
 
     Attributes:
-        conditions: what the inputs of its observer are.
-        ports: those whose variables it reads: what its letters are.
-        path: of the file that it is written in.
+        conditions: input of its observer -> expression.
+        ports: the ports whose variables it reads; their events are its letters.
+        path: the path of its file.
     """
 
     name: str
@@ -81,7 +81,7 @@ class LinkedProperty:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkedFile:
-    """`properties` are those without problems."""
+    """A linked file; `properties` are those without problems."""
 
     file: PropertyFile
     ports: tuple[LinkedPort, ...]
@@ -90,7 +90,7 @@ class LinkedFile:
 
 
 def clock_step(system: System) -> int | None:
-    """The step of the clock in ns; None without a timer."""
+    """The step of the clock in ns; `None` if the system has no timer."""
     found = [period.nanoseconds for period in periods(system, system.parameters)]
     return math.gcd(*found) if found else None
 
@@ -103,11 +103,12 @@ def link(
     taken: Mapping[str, str],
     path: str,
 ) -> LinkedFile:
-    """
+    """Link the ports and properties of a file to a system.
+
     Args:
-        path: of the file.
+        path: the path of the file.
         variables: the global variables of the translated system.
-        taken: the names of properties in files that the system lists before this one -> a word for the file.
+        taken: name of a property in the files that the system lists before this one -> the file, as named in messages.
     """
     return _Linker(file, system, find, variables, taken, path).linked()
 
@@ -400,7 +401,7 @@ def _text(name: WrittenName | None) -> str:
 
 
 def _number(name: WrittenName | None) -> Fraction | None:
-    """A number that is not negative."""
+    """The value of a non-negative number; `None` if it is not one."""
     try:
         value = Fraction(name.value) if name is not None and "/" not in name.value else None
     except ValueError:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the ports of a property file listen to: events of the translation, and what they carry
+"""Links the ports of a property file to events of the translated system and to their parameters
 (docs/spec/xml-properties.md#ports).
 
-Of the two sendings of a request or an answer, the one at the client's side counts.
+A request or an answer is sent twice in the translated system; ports listen to the event at the side of the client.
 """
 
 from __future__ import annotations
@@ -56,15 +56,15 @@ _PARTS = {
     "result": "result",
 }
 _GIVEN_BY = {GOAL_ID: _EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
-"""The events of an action that carry what these variables hold."""
+"""Kind of variable -> the events of an action that carry its value."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinkedVariable:
     """Attributes:
     kind: the name of its element.
-    type: of the value; `UNKNOWN` if that cannot be told.
-    parameter: of the events, "" if it is not read from one.
+    type: the type of the value; `UNKNOWN` if not known.
+    parameter: the parameter of the events that it reads, "" if it reads none.
     """
 
     id: str
@@ -76,7 +76,7 @@ class LinkedVariable:
 
 @dataclass(frozen=True, slots=True)
 class LinkedPort:
-    """`is_known`: whether it is certain what it listens to."""
+    """`is_known`: whether its events are known."""
 
     written: Port
     events: tuple[PortEvent, ...]
@@ -85,7 +85,7 @@ class LinkedPort:
 
 
 class PortLinker:
-    """Links the ports of one file; what is wrong is collected in `problems`."""
+    """Links the ports of one file and collects their `problems`."""
 
     def __init__(self, system: System, find: FindInterface, variables: Mapping[str, GlobalVariable]) -> None:
         self.system = system
@@ -108,7 +108,7 @@ class PortLinker:
         return self._plain(port, port.name)
 
     def _event_names(self, port: Port) -> str | None:
-        """What counts of the interface; None if that is not one of the words for it (the schema reports that)."""
+        """The value of the attribute `event`; `None` if it is not one of its values, which the schema reports."""
         if port.kind == PLAIN:
             return ""
         return port.event.value if port.event and port.event.value in _EVENTS[port.kind] else None
@@ -295,7 +295,7 @@ class PortLinker:
         return any(each.instance is not None and each.instance.name == text for each in self.system.automata)
 
     def _above(self, automaton: SystemAutomaton) -> list[str]:
-        """The names of the nodes around a node and of the trees that they are in, outermost first."""
+        """The names of the ancestors of a node and of the trees that contain them, outermost first."""
         names: list[str] = []
         instance = automaton.instance
         assert instance is not None
@@ -332,7 +332,7 @@ class PortLinker:
         return LinkedPort(port, (PortEvent(name.value, sender),), variables, is_known=params is not None)
 
     def _parameters(self, event: str) -> dict[str, Type] | None:
-        """The parameters of an event of the translation; None if there is no event of that name."""
+        """The parameters of an event of the translation; `None` if there is no event with this name."""
         if f"{event}.valid" not in self.variables:
             return None
         names = (v for v in self.variables.values() if v.event == event and v.name.startswith(f"{event}__"))
@@ -341,7 +341,7 @@ class PortLinker:
     # ------------------------------------------------------------ variables
 
     def _variables(self, port: Port, data: Struct | None, prefix: str, event: str) -> Iterator[LinkedVariable]:
-        """`data` is what the event carries, None if that is not known."""
+        """Link the variables of a port. `data` is the data of the event, `None` if not known."""
         for variable in port.variables:
             if variable.id is None:
                 continue
@@ -387,7 +387,7 @@ class PortLinker:
         if not prefix and (type_ == UNKNOWN or _same_kind(_declared(variable), type_)):
             return _declared(
                 variable
-            ), parameter  # a parameter has the type of what is sent, which need not be declared
+            ), parameter  # a parameter has the type of the value that is sent, which need not be declared
         if variable.type is not None and type_ != UNKNOWN and variable.type.text != str(type_):
             message = f"the type of `{variable.field.value}` is `{type_}`, not `{variable.type.text}`"
             self.report(ProblemKind.PORT_VARIABLE, variable.type.span, message, (str(type_),))
@@ -395,7 +395,7 @@ class PortLinker:
 
 
 def _declared(variable: PortVariable) -> Type:
-    """The base type that is written, if it is one."""
+    """The type in the attribute `type`, if it is a base type."""
     name = variable.type.name if variable.type else None
     return BASE_TYPES.get(name.base, UNKNOWN) if name and not name.dimensions else UNKNOWN
 
@@ -413,7 +413,7 @@ def _leaf_paths(data: Struct) -> Iterator[str]:
 
 
 def _names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
-    """By which names a port may choose an automaton: that of its machine or node, and its own."""
+    """The names by which a port may choose an automaton: that of its machine or node, and its own."""
     names = [automaton.name]
     if automaton.instance is not None:
         names = [automaton.instance.name, automaton.outline.name, *names]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong in a property file, as data; a rule reports each kind."""
+"""The problems of property files, as data; a rule reports each kind."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ProblemKind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """`close`: names that may be meant at `span`."""
+    """`close`: similar names that may be intended at `span`."""
 
     kind: ProblemKind
     span: Span

@@ -2,7 +2,7 @@
 """Observers: small deterministic programs that read a trace letter by letter and determine whether a property holds on
 it.
 
-- Independent of SCXML, XML and JANI: conditions are named inputs, times are steps of a clock.
+- The package does not depend on SCXML, XML or JANI: conditions are named inputs, times are steps of a clock.
 - An observer is data (`program.Observer`): registers and assignments. It can be interpreted, and translated to any
   language that has booleans and small integers.
 - Memory is bounded: a few registers, and one bit for each clock step of a lower bound on time.

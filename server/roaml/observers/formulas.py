@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A formula of past-time metric temporal logic -> its observer: one window for each `Since`."""
+"""Translates a formula of past-time metric temporal logic to its observer, with one window for each `Since`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def observe_formula(property_: FormulaProperty) -> Observer:
 
 
 def _value(formula: Formula, builder: Builder, known: dict[Formula, Expression]) -> Expression:
-    """Whether the formula is true at this letter, after its memory has been updated."""
+    """An expression that is true if the formula is, after the registers of the formula have been updated."""
     if formula not in known:
         known[formula] = _computed(formula, builder, known)
     return known[formula]

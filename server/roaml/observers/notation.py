@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Formulas as text: `H ({ level < 30 } S[:5] { alarm })` (docs/spec/xml-properties.md#formulas).
 
-- Parsing never fails: what cannot be read is a problem with its place, and there is no formula then.
-- What is in braces is an atom. Its text is not looked into; equal texts are the same atom.
-- From tight to loose: `!`, `H` and `O`; `S`; `&&`; `||`; `->`. `S`, `&&` and `||` group to the left, `->` to the right.
+- Parsing never raises: each syntax error is a problem with its place, and there is no formula then.
+- A text in braces is an atom. It is not parsed here; equal texts are the same atom.
+- Operators by decreasing precedence: `!`, `H` and `O`; `S`; `&&`; `||`; `->`. `S`, `&&` and `||` are left-associative,
+  `->` is right-associative.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class Notation:
 
 
 def read(text: str) -> Notation:
-    """Spans are offsets in `text`."""
+    """The formula in `text`; spans are offsets in it."""
     parser = _Parser(text)
     try:
         formula: Formula | None = parser.whole()

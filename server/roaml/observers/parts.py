@@ -26,11 +26,11 @@ TICK = Tick()
 ONE = Literal(1)
 
 _BITS = 30
-"""The maximum number of bits in one integer: with more, tools with 32-bit integers could not double it."""
+"""The maximum number of bits in one integer: tools with 32-bit integers must be able to double it."""
 
 
 class Builder:
-    """Collects registers and assignments. Registers are named after their content; equal names get a number."""
+    """Collects registers and assignments. Registers are named after their content; a repeated name gets a number."""
 
     def __init__(self) -> None:
         self.registers: list[Register] = []
@@ -45,7 +45,7 @@ class Builder:
         return self._add(Register(self._unique(name), initial, limit))
 
     def temporary(self, name: str, value: Expression) -> Expression:
-        """A value that later assignments of the same letter read."""
+        """A register for a value that only later assignments at the same letter read."""
         if isinstance(value, (Literal, Register, Tick)):
             return value
         register = self.flag(name)
@@ -58,11 +58,11 @@ class Builder:
             self.assignments.append(Assign(register, value))
 
     def raise_if(self, register: Register, condition: Expression) -> None:
-        """Set a flag, which stays set."""
+        """Set a flag if the condition is true; it stays set."""
         self.set(register, disjunction(register, condition))
 
     def finish(self) -> None:
-        """Reset registers that no later letter reads."""
+        """Reset the registers that no later letter reads."""
         for register in self._temporary:
             self.set(register, FALSE)
 
@@ -76,7 +76,7 @@ class Builder:
 
 
 class Age:
-    """Clock steps since something happened, `limit` at most; `limit` at first, too, unless `initial` says otherwise."""
+    """The number of clock steps since an event, at most `limit`. The first value is `initial`, or else `limit`."""
 
     def __init__(self, builder: Builder, name: str, limit: int, initial: int | None = None) -> None:
         self.builder = builder
@@ -91,14 +91,14 @@ class Age:
         self.builder.set(self.register, choice(condition, Literal(value), self.register))
 
     def forget(self, condition: Expression) -> None:
-        """Set it to the state before it ever happened."""
+        """Return to the state before the first event."""
         self.reset(condition, self.limit)
 
 
 class Delay:
-    """For each of the last `length` clock steps, this one included, whether something happened at it.
+    """Whether an event occurred, for each of the last `length` clock steps including this one.
 
-    One flag for this step and one bit for each earlier one, in a row of integers.
+    It is stored as one flag for this step and one bit for each earlier step, in several integers.
     """
 
     def __init__(self, builder: Builder, name: str, length: int) -> None:
@@ -110,10 +110,10 @@ class Delay:
             self.rows.append((builder.counter(name, 2**width - 1), width))
 
     def advance(self, name: str) -> Expression:
-        """Let the clock step pass, if this letter is one.
+        """Advance by one clock step if this letter is one.
 
         Returns:
-            Whether it happened `length` steps ago; `name` says what that means.
+            Whether the event occurred `length` steps ago, in a register with the name `name`.
         """
         leaving = self.builder.temporary(name, conjunction(TICK, self._top(len(self.rows))))
         for i in range(len(self.rows) - 1, -1, -1):
@@ -126,18 +126,18 @@ class Delay:
         return leaving
 
     def _top(self, i: int) -> Expression:
-        """Whether the first `i` rows hand something on to the next one."""
+        """Whether the first `i` integers carry a bit over into the next one."""
         if i == 0:
             return self.now
         row, width = self.rows[i - 1]
         return at_least(row, 2 ** (width - 1))
 
     def add(self, condition: Expression) -> None:
-        """Record that it happens now, if `condition` holds."""
+        """Record an event at this letter, if `condition` is true."""
         self.builder.raise_if(self.now, condition)
 
     def clear(self, condition: Expression) -> None:
-        """Forget all events, if `condition` holds."""
+        """Forget all events, if `condition` is true."""
         self.builder.set(self.now, conjunction(self.now, negation(condition)))
         for row, _ in self.rows:
             self.builder.set(row, choice(condition, Literal(0), row))
@@ -148,7 +148,7 @@ class Delay:
 
 
 class Recent:
-    """Whether something happened at a distance in a window, by the last time at which it did."""
+    """Whether an event occurred at a distance in a window; only its last occurrence is stored."""
 
     def __init__(self, builder: Builder, name: str, window: Window) -> None:
         self.builder = builder
@@ -158,7 +158,7 @@ class Recent:
         self.age = None if window.upper is None else Age(builder, name, window.upper + 1)
 
     def advance(self) -> None:
-        """Let the clock step pass, if this letter is one."""
+        """Advance by one clock step, if this letter is one."""
         if self.age is not None:
             self.age.advance()
         if self.delay is not None:
@@ -171,14 +171,14 @@ class Recent:
             self.builder.raise_if(self.flag, condition)
 
     def add(self, condition: Expression) -> None:
-        """Record that it happens now, if `condition` holds."""
+        """Record an event at this letter, if `condition` is true."""
         if self.delay is not None:
             self.delay.add(condition)
         else:
             self._matured(condition, 0)
 
     def clear(self, condition: Expression) -> None:
-        """Forget all events, if `condition` holds."""
+        """Forget all events, if `condition` is true."""
         if self.delay is not None:
             self.delay.clear(condition)
         if self.age is not None:

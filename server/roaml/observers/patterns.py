@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pattern in a scope -> its observer.
+"""Translates a pattern in a scope to its observer.
 
-A *stretch* is a part of the trace that a scope selects. The scope opens and closes stretches; the pattern judges the
-open one. At most one is open at a time.
+A *stretch* is a part of the trace that a scope selects. The scope opens and closes stretches; the pattern is evaluated
+on the open one. At most one is open at a time.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     bad = builder.flag("bad") if is_deferred else violated
     asked = builder.flag("asked") if is_deferred and exercised is not None else None
 
-    # A stretch that ends before this letter.
+    # Evaluate a stretch that ends before this letter.
     closes = builder.temporary("closes", scope.closes)
     if closes != FALSE:
         builder.raise_if(violated, conjunction(closes, disjunction(bad if is_deferred else FALSE, judge.owes)))
@@ -53,7 +53,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
             if flag is not None:
                 builder.set(flag, conjunction(flag, negation(closes)))
 
-    # The stretch that this letter is in.
+    # Evaluate the stretch that contains this letter.
     opens = builder.temporary("opens", scope.opens)
     scope.update(opens, closes)
     if opens != FALSE:
@@ -80,7 +80,7 @@ def _can_be_vacuous(property_: PatternProperty) -> bool:
 
 
 class _Scope:
-    """Which letters are in a stretch (docs/spec/xml-properties.md#scopes)."""
+    """A scope: determines which letters are in a stretch (docs/spec/xml-properties.md#scopes)."""
 
     def __init__(self, builder: Builder, kind: ScopeKind) -> None:
         self.builder = builder
@@ -105,7 +105,7 @@ class _Scope:
 
     @property
     def opens(self) -> Expression:
-        """Whether a stretch begins with this letter; the first letter of the trace begins one without that."""
+        """Whether a condition opens a stretch at this letter. The start of the trace opens one without a condition."""
         match self.kind:
             case ScopeKind.GLOBALLY | ScopeKind.BEFORE | ScopeKind.UNTIL:
                 return FALSE
@@ -123,14 +123,15 @@ class _Scope:
 
 
 class _Judge(Protocol):
-    """A pattern in a stretch (docs/spec/xml-properties.md#patterns). What it remembers has one value while no stretch
-    is open.
+    """A pattern in a stretch (docs/spec/xml-properties.md#patterns). Its registers have fixed values while no stretch
+    is
+    open.
 
     Attributes:
-        owes: something is still to come, or the stretch violates the pattern.
-        is_due: the same, and its deadline is now, or it has none.
-        is_safe: the stretch holds, whatever is still to come in it.
-        asks: this letter is one that the pattern says something about.
+        owes: whether an obligation is open: the stretch violates the pattern if it ends here.
+        is_due: whether an obligation is open whose deadline is now, or that has none.
+        is_safe: whether the stretch satisfies the pattern, however it continues.
+        asks: whether the pattern requires something at this letter.
     """
 
     @property
@@ -143,16 +144,16 @@ class _Judge(Protocol):
     def asks(self) -> Expression: ...
 
     def advance(self) -> None:
-        """Let the clock step pass, if this letter is one."""
+        """Advance by one clock step, if this letter is one."""
 
     def clear(self, closes: Expression) -> None:
-        """Forget everything, if `closes`."""
+        """Reset all registers, if `closes`."""
 
     def open(self, opens: Expression) -> None:
         """Begin a stretch at this letter, if `opens`."""
 
     def read(self, inside: Expression) -> Expression:
-        """Read this letter, if it is `inside` the stretch.
+        """Evaluate this letter, if it is `inside` the stretch.
 
         Returns:
             Whether the stretch violates the pattern, if it is open.
@@ -177,7 +178,7 @@ def _judge(builder: Builder, property_: PatternProperty, is_open: bool) -> _Judg
 
 
 class _Stretch:
-    """How long the stretch has been open, as far as the window asks for it."""
+    """The number of clock steps since the stretch opened, as far as the window needs it."""
 
     def __init__(self, builder: Builder, window: Window, is_open: bool) -> None:
         self.window = window
@@ -211,14 +212,14 @@ class _Stretch:
 
     @property
     def is_last(self) -> Expression:
-        """Whether the window has no upper bound, or its last clock step has come."""
+        """Whether the window has no upper bound, or its last clock step is reached."""
         if self.age is None or self.window.upper is None:
             return TRUE
         return at_least(self.age.register, self.window.upper)
 
 
 class _Always:
-    """Every letter in the window has `holds`."""
+    """The pattern that requires `holds` at every letter in the window."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE
@@ -249,7 +250,7 @@ class _Always:
 
 
 class _Existence:
-    """Some letter in the window has the condition."""
+    """The pattern that requires the condition at some letter in the window."""
 
     asks: Expression = TRUE
 
@@ -286,8 +287,12 @@ class _Existence:
 
 
 class _Response:
-    """Each request is answered at a distance in the window. Only the oldest open request matters: what answers it
-    answers all others whose window has begun, and it is the first to be late."""
+    """The pattern that requires an answer to each request, at a distance in the window.
+
+    Only the oldest open request matters: what answers it also answers all others whose window has begun, and its
+    deadline
+    is the first one.
+    """
 
     is_safe: Expression = FALSE
 
@@ -330,7 +335,7 @@ class _Response:
             self._begin(self.delay.advance("matured"), self.window.lower)
 
     def _begin(self, condition: Expression, age: int) -> None:
-        """The window of a request begins."""
+        """Record that the window of a request begins."""
         if self.flag is not None:
             self.builder.raise_if(self.flag, condition)
         if self.age is not None:
@@ -342,7 +347,7 @@ class _Response:
         self._end(closes)
 
     def _end(self, condition: Expression) -> None:
-        """All requests whose window has begun are answered or forgotten."""
+        """Remove all requests whose window has begun: they are answered, or the stretch has closed."""
         if self.flag is not None:
             self.builder.set(self.flag, conjunction(self.flag, negation(condition)))
         if self.age is not None:
@@ -362,7 +367,8 @@ class _Response:
 
 
 class _Precedence:
-    """Each letter with the second condition has one with the first before it, at a distance in the window."""
+    """The pattern that requires the first condition before each letter with the second one, at a distance in the
+    window."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE
@@ -393,7 +399,8 @@ class _Precedence:
 
 
 class _Recurrence:
-    """The condition comes back before the time is over, counted from the opening of the stretch at first."""
+    """The pattern that requires the condition again before the time is over; the first time, since the stretch
+    opened."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE

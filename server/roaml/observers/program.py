@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Observers as data: registers, and assignments that are executed in their order at every letter.
+"""Observers as data: registers, and assignments that are executed in order at every letter.
 
 - All values are booleans or integers from 0 to the `limit` of their register.
-- Registers that only carry a value from one assignment to a later one are reset at the end of each letter: the state of
-  an observer holds nothing that does not matter.
+- Registers that only pass a value from one assignment to a later one are reset at the end of each letter, so that
+  states
+  of an observer differ only if its future behaviour differs.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """Whether a condition of the property holds in this letter."""
+    """Whether a condition of the property is true at this letter."""
 
     name: str
 
@@ -35,7 +36,7 @@ class Tick:
 class Register:
     """
     Attributes:
-        limit: the greatest value of an integer; `None` for a boolean.
+        limit: the maximum value of an integer; `None` for a boolean.
     """
 
     name: str
@@ -66,7 +67,7 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """`then` if `test` holds, else `otherwise`."""
+    """`then` if `test` is true, else `otherwise`."""
 
     test: Expression
     then: Expression
@@ -87,14 +88,15 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """Registers and conditions that say what is known of a trace. A register that is true stays so.
+    """Registers and conditions that contain the verdict on a trace. A register that is true stays true.
 
     Attributes:
-        violated: the property does not hold, however the trace goes on.
-        satisfied: the property holds, however the trace goes on; `None` if that is never known.
+        violated: the property does not hold, however the trace continues.
+        satisfied: the property holds, however the trace continues; `None` if that is never known.
         pending: an obligation is open that is violated if the trace ends here.
         due: an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline is now.
-        exercised: the property has asked for something: a request, a scope that opened; `None` if it always does.
+        exercised: whether something triggered the property: a request, or a scope that opened; `None` if it always
+        applies.
     """
 
     violated: Register
@@ -106,7 +108,7 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class Observer:
-    """`inputs` are the conditions whose values it reads at each letter."""
+    """An observer; `inputs` are the conditions whose values it reads at each letter."""
 
     inputs: tuple[str, ...]
     registers: tuple[Register, ...]
@@ -164,7 +166,7 @@ def evaluate(expression: Expression, state: State, inputs: Mapping[str, bool], t
 
 
 def simplified(expression: Expression, known: Mapping[Expression, Expression]) -> Expression:
-    """`expression` with parts replaced by what is known of them, and without what is decided then."""
+    """`expression` with known values in place of its parts, and simplified accordingly."""
     if expression in known:
         return known[expression]
     match expression:

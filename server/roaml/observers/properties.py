@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a property says about a trace: a pattern in a scope, or a formula of past-time metric temporal logic
+"""Properties of traces: a pattern in a scope, or a formula of past-time metric temporal logic
 (docs/spec/xml-properties.md#meaning).
 
-Conditions are names: of `Atom`s in formulas, `LEFT`, `RIGHT`, `OPEN` and `CLOSE` in patterns. Bounds on time are in
-clock steps, both ends included; `None` is no upper bound.
+Conditions have names: those of `Atom`s in formulas; `LEFT`, `RIGHT`, `OPEN` and `CLOSE` in patterns. Bounds on time are
+in clock steps, both ends included; `None` means no upper bound.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 LEFT = "left"
-"""The condition of a pattern with one, the first condition of one with two."""
+"""The only or the first condition of a pattern."""
 RIGHT = "right"
-"""The second condition."""
+"""The second condition of a pattern."""
 OPEN = "open"
-"""The condition that limits a scope; the first of two."""
+"""The only or the first condition of a scope."""
 CLOSE = "close"
-"""The condition that ends a scope `between` and `after-until`."""
+"""The condition that closes a scope `between` or `after-until`."""
 
 
 class Pattern(enum.Enum):
@@ -57,7 +57,7 @@ class ScopeKind(enum.Enum):
 
     @property
     def is_judged_at_close(self) -> bool:
-        """Whether a stretch is judged when it closes, and not at all if it never does."""
+        """Whether a stretch is evaluated only when it closes."""
         return self in (ScopeKind.BEFORE, ScopeKind.BETWEEN)
 
 
@@ -66,7 +66,7 @@ class Window:
     """The distances in time that a bound allows.
 
     Raises:
-        ValueError: there are none.
+        ValueError: no distance is allowed.
     """
 
     lower: int = 0
@@ -99,7 +99,7 @@ class PatternProperty:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """The conditions that are observed."""
+        """The names of the observed conditions."""
         names = [LEFT]
         if self.pattern.is_binary:
             names.append(RIGHT)
@@ -142,7 +142,7 @@ class Or:
 
 @dataclass(frozen=True, slots=True)
 class Since:
-    """`right` held in some letter up to now whose distance is in `window`, and `left` in all letters after that one."""
+    """`right` was true at some letter up to now whose distance is in `window`, and `left` at all letters after it."""
 
     left: Formula
     right: Formula
@@ -157,12 +157,12 @@ def implies(left: Formula, right: Formula) -> Formula:
 
 
 def once(operand: Formula, window: Window = Window()) -> Formula:
-    """`operand` held in some letter up to now whose distance is in `window`."""
+    """`operand` was true at some letter up to now whose distance is in `window`."""
     return Since(Constant(True), operand, window)
 
 
 def historically(operand: Formula, window: Window = Window()) -> Formula:
-    """`operand` held in all letters up to now whose distance is in `window`."""
+    """`operand` was true at all letters up to now whose distance is in `window`."""
     return Not(once(Not(operand), window))
 
 
@@ -177,7 +177,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def walk(formula: Formula) -> Iterator[Formula]:
-    """`formula` and everything in it, outer before inner, left to right."""
+    """`formula` and all its subformulas in preorder."""
     stack = [formula]
     while stack:
         node = stack.pop()
@@ -193,7 +193,7 @@ class FormulaProperty:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """The conditions that are observed, in the order of their first occurrence."""
+        """The names of the observed conditions, in the order of their first occurrence."""
         return tuple(dict.fromkeys(node.name for node in walk(self.formula) if isinstance(node, Atom)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an observer says about a trace at its end (docs/spec/xml-properties.md#end)."""
+"""The verdict of an observer on a trace at its end (docs/spec/xml-properties.md#end)."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from roaml.observers.program import Observer, State, evaluate
 
 
 class End(enum.Enum):
-    """Why there are no more letters."""
+    """Why a trace has no more letters."""
 
     FINISHED = "finished"
-    """Nothing can happen any more, with time left or in a model without time: finished or stuck."""
+    """No step is possible any more, with time left or in a model without time: finished or stuck."""
     TIME = "end of time"
-    """The clock has made its last step, and everything that was possible at this instant has happened."""
+    """The clock has made its last step, and no other step is possible at this instant."""
     CUT = "cut"
-    """The trace was not followed any further."""
+    """The generation of the trace was stopped."""
 
 
 class Verdict(enum.Enum):
@@ -25,7 +25,7 @@ class Verdict(enum.Enum):
     OPEN = "open"
     """The end of time came before a deadline."""
     UNDECIDED = "undecided"
-    """The trace was not followed to an end that decides."""
+    """The trace was stopped before the property was decided."""
 
 
 def verdict(observer: Observer, state: State, end: End) -> Verdict:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of scripts, and operations that always fail (docs/spec/scripts.md#types).
 
-Unknown types are not checked: an entry without a declared type may hold anything.
+Unknown types are not checked: an entry without a declared type may have any value.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ NUMBERS = (Type.INTEGER, Type.REAL)
 
 
 def type_of(expr: Expr, entry: Callable[[str], Type]) -> Type:
-    """The type of an expression; `entry` returns that of a name."""
+    """The type of an expression; `entry` returns the type of a name."""
     match expr:
         case Number(value=value):
             return Type.INTEGER if isinstance(value, int) else Type.REAL
@@ -79,7 +79,7 @@ def _of_binary(operator: str, left: Type, right: Type) -> Type:
 
 
 def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """The operations of a script that always fail. `entry` returns the types of entries before the script."""
+    """The operations of a script that always fail. `entry` returns the type that a name has before the script."""
     known: dict[str, Type] = {}
 
     def lookup(name: str) -> Type:
@@ -96,13 +96,13 @@ def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Script
 
 
 def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Why the value of a script is neither true nor false."""
+    """Why the value of a script cannot be a condition; `None` if it can."""
     if script.statements:
         yield from _truth(script.statements[-1], entry)
 
 
 def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
-    """The statements before the last that assign nothing: an operator is missing, or the statement is superfluous."""
+    """The statements before the last one that assign nothing: an operator is missing, or they are superfluous."""
     for statement in script.statements[:-1]:
         if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
             yield ScriptProblem(statement.span, "this statement has no effect; is an operator missing after it?")
@@ -135,7 +135,7 @@ def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProbl
 
 
 def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Reals are true unless 0, integers are 0 or 1, texts are neither true nor false."""
+    """Reals are true unless 0, integers are true (1) or false (0), strings are neither."""
     if type_of(expr, entry) is Type.TEXT:
         yield ScriptProblem(expr.span, "a string is neither true nor false; compare it")
     elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):

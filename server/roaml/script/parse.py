@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text -> script, by operator precedence (Pratt 1973), whatever the text (docs/spec/scripts.md#grammar).
+"""Parser of scripts, by operator precedence (Pratt 1973), for any text (docs/spec/scripts.md#grammar).
 
-- Never fails: every mistake is a `ScriptProblem` with a place, and the tree holds an `ErrorExpr` there.
-- One problem for each statement: what follows a mistake is skipped up to the next `;`.
-- Takes linear time and recurses no deeper than `MAX_DEPTH`.
+- It never raises: each syntax error is a `ScriptProblem` with a place, and the tree contains an `ErrorExpr` there.
+- It reports at most one problem in each statement: after an error it skips to the next `;`.
+- It takes linear time and recurses at most `MAX_DEPTH` levels deep.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ _WORDS = {"and": "&&", "or": "||", "not": "!"}
 
 @dataclass(frozen=True, slots=True)
 class ScriptProblem:
-    """An error in a script; `replacement` is what was probably meant at the position, or ""."""
+    """A syntax error in a script; `replacement` is the text that was probably intended at the place, or ""."""
 
     span: Span
     message: str
@@ -77,7 +77,7 @@ class ScriptProblem:
 
 
 class _Token(NamedTuple):
-    """`kind` is number, name, string, operator, junk or end; `start` and `end` index the decoded text."""
+    """`kind` is number, name, string, operator, junk or end; `start` and `end` are offsets in the decoded text."""
 
     kind: str
     text: str
@@ -96,7 +96,7 @@ class _MistakeError(Exception):
 
 
 def parse(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
-    """The script in a text, and its syntax errors."""
+    """The script in a text, and its syntax errors, at most `MAX_PROBLEMS`."""
     return _Parser(source).script()
 
 
@@ -127,7 +127,7 @@ class _Parser:
         return self.source.span(start.start, (end or start).end)
 
     def since(self, start: _Token) -> Span:
-        """From a token to the one read last."""
+        """The span from a token to the one that was read last."""
         return self.source.span(start.start, max(start.end, self.tokens[self.at - 1].end))
 
     def next(self) -> _Token:
@@ -172,7 +172,7 @@ class _Parser:
         return expr
 
     def _begins_nothing(self) -> bool:
-        """Whether the next token can neither continue the statement nor begin another one."""
+        """Whether the next token can neither continue this statement nor begin another one."""
         token = self.token
         return token.kind == "operator" and token.text not in (";", "(", *UNARY)
 
@@ -225,7 +225,7 @@ class _Parser:
         return left
 
     def _grow(self, height: int) -> None:
-        """The expression that was read last is one level higher than its highest part."""
+        """Set the height of the expression that was read last: one more than that of its highest part."""
         self.height = height + 1
         if self.height > MAX_DEPTH:
             raise self._too_deep()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The syntax tree of a script.
 
-- Every node has a `span` in the source file, with escapes of the surrounding XML resolved.
+- Every node has a `span` in the source file, in which escapes of the surrounding XML are taken into account.
 - A missing or invalid part is an `ErrorExpr`, so the rest of the tree stays usable.
 - No tree is deeper than `roaml.script.parse.MAX_DEPTH`: functions over trees may recurse.
 """
@@ -17,7 +17,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """An integer, or a real, which is written with a point or an exponent."""
+    """An integer or a real number; a real number is written with a point or an exponent."""
 
     span: Span
     value: int | float
@@ -39,7 +39,7 @@ class String:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """An enumeration constant of the program or an entry; a leading `@` refers to the root blackboard."""
+    """An enumeration constant of the program, or an entry; a leading `@` refers to the root blackboard."""
 
     span: Span
     name: str
@@ -97,7 +97,7 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class ErrorExpr:
-    """Something that is missing or cannot be read."""
+    """An expression that is missing or invalid."""
 
     span: Span
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can happen next, in words.
+"""The possible next steps, described in words.
 
-Each combination of enabled edges of a synchronisation vector is a choice; all choices are equally probable if nobody
-decides, as in `verify`. The destinations of a choice are its outcomes, which chance decides.
+Each combination of enabled edges of a synchronisation vector is a choice. If the seed decides, all choices are equally
+probable, as in `verify`. The outcomes of a choice are the combinations of destinations, drawn by their probabilities.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from roaml.views.events import EventReader
 from roaml.views.values import shown_value
 
 MAX_OUTCOMES = 64
-"""Outcomes of one choice that are listed; chance decides among all of them."""
+"""The maximum number of listed outcomes of a choice; all outcomes can be drawn."""
 MAX_CHOICES = 256
-"""Choices that are listed in one state."""
+"""The maximum number of listed choices in a state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What chance can make of a choice.
+    """A possible outcome of a choice.
 
     Attributes:
-        probability: within the choice.
-        text: what is special about it; "" if the choice has one outcome.
-        decision: takes the choice with this outcome.
+        probability: the probability of the outcome if the choice is taken.
+        text: how it differs from other outcomes; "" if the choice has only one.
+        decision: the decision that takes the choice with this outcome.
     """
 
     probability: float
@@ -47,16 +47,16 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A step that can be taken next.
+    """A possible next step.
 
     Attributes:
-        number: from 1, in the order in which they are listed.
-        text: who does what.
-        automata: who takes part, the one that acts first.
-        probability: with which the seed takes this choice.
-        outcomes: at least one; those without probability are left out.
-        origin: the place in the text of what the first one does.
-        is_internal: whether an automaton only executes its next statement, which nobody else sees.
+        number: the number in the list of choices, from 1.
+        text: which automata do what.
+        automata: the names of the automata that take part, acting ones first.
+        probability: the probability of this choice if the seed decides.
+        outcomes: at least one; outcomes with probability 0 are omitted.
+        origin: the place in the source of what the first automaton does.
+        is_internal: whether one automaton only executes its next statement, which no other automaton observes.
     """
 
     number: int
@@ -70,7 +70,8 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """An automaton that takes part, with the first way of its edge and the probabilities of its destinations."""
+    """An automaton that takes part in a step, with the first way of its edge and the probabilities of its
+    destinations."""
 
     automaton: Automaton
     edge: Edge
@@ -82,7 +83,7 @@ def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader) -> 
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
-        events: has read all steps up to this state.
+        events: the reader of events, after it has read all steps up to this state.
     """
     total = sum(vector.ties * math.prod(len(slot.edges) for slot in vector.slots) for vector in enabled)
     number = 0
@@ -121,7 +122,7 @@ def _outcomes(vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legen
 
 
 def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> Iterator[str]:
-    """What comes of the destinations that chance decides about."""
+    """The consequences of the destinations that were drawn from several."""
     clients = [instance.automaton.name for instance in legend.layout.instances]
     for part, way in zip(parts, taken, strict=True):
         if sum(chance > 0 for chance in part.probabilities) > 1:
@@ -129,7 +130,7 @@ def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> It
 
 
 def _consequences(automaton: Automaton, destination: Destination, clients: Sequence[str]) -> Iterator[str]:
-    """What an automaton does from a destination on, as far as nothing but itself decides."""
+    """What an automaton does from a destination on, as far as this is already determined."""
     rest = resting(automaton)
     name = who(automaton.name)
     visited: set[str] = set()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Follows the steps of a run, and knows what of the state the variables do not show: messages, calls, ticks."""
+"""Reads the steps of a run and keeps the parts of the state that variables do not contain: messages, calls, ticks."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _STATUS_NAMES = {number: NodeStatus(name) for name, number in STATUSES.items() i
 
 class Follower:
     """Attributes:
-    position: the number of steps that were read.
-    events: the events as they were sent last.
-    time: of the clock, in seconds; None if the model has none.
+    position: the number of the steps read so far.
+    events: the reader of events, with the last parameters of each event.
+    time: the time of the clock in s; `None` if the model has no clock.
     """
 
     def __init__(
@@ -52,11 +52,11 @@ class Follower:
         self._handles: dict[int, str] = {}
 
     def is_machine(self, instance: int) -> bool:
-        """Whether an instance is a state machine or a plugin, not an automaton that the translation adds."""
+        """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
         return self._is_machine[instance]
 
     def is_named(self, event: str, name: str) -> bool:
-        """Whether people may call an event so: by its name, or by that of its topic, service or action."""
+        """Whether `name` refers to an event: by the name of the event, or of its topic, service or action."""
         if not event:
             return False
         return name in (event, self.events.name(event)) or f"`{name}`" in said(event, "", self._names)
@@ -105,12 +105,12 @@ class Follower:
         values: Sequence[tuple[RecordedVariable, Plain]],
         resting: Sequence[frozenset[str]],
     ) -> SystemState:
-        """The state after the steps that were read.
+        """The state after the steps read so far.
 
         Args:
-            locations: of each instance.
-            values: of all variables.
-            resting: for each instance, where it waits for events.
+            locations: the location of each instance.
+            values: the values of all variables.
+            resting: for each instance, the locations in which it waits for events.
         """
         own: dict[int, dict[str, Plain]] = {}
         shared: dict[str, Plain] = {}
@@ -172,6 +172,7 @@ class Follower:
 
 
 def _state_before(location: str, resting: frozenset[str]) -> str:
-    """The state whose handler leads through a location: the longest one with which its name begins."""
+    """The state with the handler that contains a location: the longest one with which the name of the location
+    begins."""
     states = [state for state in resting if location.startswith(f"{state}-")]
     return max(states, key=len, default=location)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A run of a model: its steps, decided by the seed or by hand, of which any prefix can be walked again.
+"""A run of a model: a sequence of steps, each decided by the seed or by hand, that can be replayed up to any step.
 
-A step that the seed decides is the step that `verify` takes in the trace of this seed and number. Going back walks the
-run again from its start, which costs as much as a trace of that length.
+A step that the seed decides is the same as in the trace that `verify` generates for this seed and trace number. Going
+back replays the run from its start, which takes as long as generating a trace of that length.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from roaml.smc.standstill import Standstill
 
 
 class RunError(ValueError):
-    """A decision cannot be taken in the state in which it is to be taken."""
+    """A decision is not possible in the state for which it was given."""
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """A step that is decided by hand.
+    """A step decided by hand.
 
     Attributes:
-        vector: the number of the synchronisation vector, as `roaml.smc.compile.Legend` counts them.
-        picks: for each automaton that takes part, the number of its edge among its enabled edges for the action.
-        ways: for each of them, the number of the destination.
+        vector: the number of the synchronisation vector in `roaml.smc.compile.Legend`.
+        picks: for each participating automaton, the number of its edge among its enabled edges for the action.
+        ways: for each participating automaton, the number of the destination.
     """
 
     vector: int
@@ -41,7 +41,7 @@ class Decision:
 
 
 class EnabledEdges(NamedTuple):
-    """The enabled edges of an automaton for an action: the first way of each, and the probabilities of its ways."""
+    """The enabled edges of an automaton for an action: for each, its first way and the probabilities of its ways."""
 
     instance: int
     edges: tuple[tuple[int, tuple[float, ...]], ...]
@@ -49,11 +49,11 @@ class EnabledEdges(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Enabled:
-    """A synchronisation vector that is enabled.
+    """An enabled synchronisation vector.
 
     Attributes:
-        ties: how many choices differ from each combination of edges in nothing that happens.
-        slots: of each automaton that takes part.
+        ties: the number of choices with the same effect as each combination of edges.
+        slots: the enabled edges of each participating automaton.
     """
 
     vector: int
@@ -65,19 +65,19 @@ class Run:
     """A run, and a position in it.
 
     Args:
-        decisions: for the first steps, None where the seed decides. The seed decides all further steps.
+        decisions: the decisions of the first steps, `None` where the seed decides. It decides all later steps.
 
     Attributes:
         start: the variables of the model before the first step.
-        steps: all steps that were taken, those after the position, too.
-        decisions: for each of them.
-        position: the number of steps before the present state.
-        status: what is known of the property in the present state (`roaml.smc.program`).
+        steps: all steps taken, including those after the position.
+        decisions: the decision of each of these steps.
+        position: the number of steps before the current state.
+        status: what is known of the property in the current state (`roaml.smc.program`).
         has_ended: whether no further step changes anything.
 
     Raises:
-        RunError: one of the decisions cannot be taken.
-        FaultError: something that has no meaning happens, such as a division by zero.
+        RunError: one of the decisions is not possible.
+        FaultError: the model executes an undefined operation, such as a division by zero.
     """
 
     def __init__(
@@ -120,14 +120,14 @@ class Run:
     # ------------------------------------------------------------ moving
 
     def advance(self, decision: Decision | None = None) -> TraceStep | None:
-        """Take a step. If it is not the one that was taken here before, the steps after the position are forgotten.
+        """Take a step. If it differs from the step taken here before, the steps after the position are discarded.
 
         Returns:
-            None if no step is possible, or none that changes anything.
+            `None` if no step is possible, or no step changes anything.
 
         Raises:
-            RunError: the decision cannot be taken here.
-            FaultError: something that has no meaning happens in the step, such as a division by zero.
+            RunError: the decision is not possible here.
+            FaultError: the model executes an undefined operation in the step, such as a division by zero.
         """
         if self.has_ended:
             return None
@@ -143,7 +143,7 @@ class Run:
         return self.steps[-1]
 
     def go_to(self, position: int) -> None:
-        """Go to the state after `position` of the steps that were taken."""
+        """Go to the state after the first `position` of the steps taken."""
         if position < self.position:
             self._begin()
         while self.position < position:
@@ -155,7 +155,8 @@ class Run:
         self._reader.start()
 
     def _take(self, decision: Decision | None, until: int = 0) -> None:
-        """Take one step by hand, or those that the seed decides up to position `until`; 0 is the next one."""
+        """Take one step by hand, or the steps that the seed decides up to position `until`; 0 means only the next
+        one."""
         if decision is None:
             until = until or self.position + 1
             while self._kernel.outcome()[0] < until:
@@ -181,7 +182,7 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """What a step has shown of the property; what is decided stays so."""
+        """Store what is known of the property after a step; a decided property stays decided."""
         if self.status == UNKNOWN or status == FAULTY:
             self.status = status
             self._check()
@@ -190,15 +191,15 @@ class Run:
 
     @property
     def end(self) -> End | None:
-        """Why no further step changes anything; None if one does."""
+        """Why no further step changes anything; `None` if one does."""
         return End(self._kernel.standstill()) if self.has_ended else None
 
     def standstill(self) -> Standstill:
-        """The state, for those who ask who waits for whom."""
+        """The current state, as input for the analysis of which automaton waits for which."""
         return self._reader.standstill(self.checker.model.system)
 
     def enabled(self) -> list[Enabled]:
-        """What can happen next."""
+        """The enabled synchronisation vectors."""
         return [Enabled(vector, ties, self._edges(vector, slots)) for vector, ties, slots in self._kernel.choices()]
 
     def _edges(self, vector: int, slots: Sequence[Sequence[Sequence[float]]]) -> tuple[EnabledEdges, ...]:
@@ -212,7 +213,7 @@ class Run:
         )
 
     def _first_ways(self, slot: int) -> list[int]:
-        """The first way of each enabled edge of a slot, in the order in which the kernel counts them."""
+        """The first way of each enabled edge of a slot, in the order in which the kernel numbers them."""
         program = self._program
         instance = program.slot_instance[slot]
         location = self._kernel.location(instance)
@@ -225,13 +226,13 @@ class Run:
         return [way for way in self._kernel.open_ways(instance) if way in own]
 
     def locations(self) -> tuple[str, ...]:
-        """The name of the location of each instance."""
+        """The name of the current location of each instance."""
         return tuple(
             self.legend.locations[self._kernel.location(number)][1]
             for number in range(len(self.legend.layout.instances))
         )
 
     def values(self) -> list[tuple[RecordedVariable, Plain]]:
-        """All variables with their values: those of the model first, then those of each instance."""
+        """The values of all variables: those of the model first, then those of each instance."""
         storages = [storage for _, storage in self._reader.variables]
         return list(zip((v for v, _ in self._reader.variables), self._reader.values(storages), strict=True))

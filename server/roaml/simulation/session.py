@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A position in a run of a system, which moves forwards and backwards."""
+"""A position in a run of a system that can be moved forwards and backwards."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from roaml.smc.story import Story, clock_times
 
 FORMAT_VERSION = 1
 ENGINE_VERSION = 1
-"""Of the random numbers: sessions of another version take other steps."""
+"""The version of the random number generator: with another version, a saved session takes different steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class SavedSession:
-    """What a run is a function of, besides the model.
+    """Everything that determines a run, except for the model.
 
     Attributes:
-        property: the property that the run is watched for.
-        decisions: of all steps; None where the seed decides.
-        position: the number of steps that were taken.
+        property: the name of the property that is evaluated on the run.
+        decisions: the decisions of all steps; `None` where the seed decides.
+        position: the number of steps before the position.
     """
 
     property: str
@@ -44,7 +44,7 @@ class SavedSession:
     decisions: tuple[Decision | None, ...] = ()
 
     def to_json(self) -> str:
-        """As text. Stretches that the seed decides are written as their length."""
+        """The session as JSON text. Consecutive steps that the seed decides are written as their number."""
         rows: list[Any] = []
         for decision in self.decisions:
             if decision is not None:
@@ -66,10 +66,10 @@ class SavedSession:
 
     @staticmethod
     def from_json(text: str) -> SavedSession:
-        """Read what `to_json` wrote.
+        """The session in a text that `to_json` returned.
 
         Raises:
-            ValueError: the text is not a saved session, or one of another version.
+            ValueError: the text is not a saved session, or it has another version.
         """
         try:
             value = json.loads(text)
@@ -93,20 +93,20 @@ class SavedSession:
 
 
 MAX_STEPS = 10_000_000
-"""Steps of a run."""
+"""The maximum number of steps of a run."""
 
 
 class Session:
     """A position in a run.
 
     Args:
-        asked: the property that the run is watched for, one of those of `checker`.
-        clock: the variables that hold the seconds and nanoseconds of the model's time.
-        saved: continue this session; it overrides `seed` and `trace`.
+        asked: the property that is evaluated on the run, one of those of `checker`.
+        clock: the names of the variables with the seconds and nanoseconds of the time of the model.
+        saved: the session to continue; it overrides `seed` and `trace`.
 
     Raises:
         RunError: the saved decisions are not possible in this model.
-        FaultError: something that has no meaning happens in one of the saved steps.
+        FaultError: the model executes an undefined operation in one of the saved steps.
     """
 
     def __init__(
@@ -127,21 +127,21 @@ class Session:
         self._follower = Follower(self._automata, self._run.start, clock)
         self.jump(len(self._run.steps) if saved is None else saved.position)
 
-    # ------------------------------------------------------------ where it is
+    # ------------------------------------------------------------ the position
 
     @property
     def position(self) -> int:
-        """The number of steps before the present state."""
+        """The number of steps before the current state."""
         return self._run.position
 
     @property
     def steps(self) -> Sequence[TraceStep]:
-        """All steps that were taken, those after the position, too."""
+        """All steps taken, including those after the position."""
         return self._run.steps
 
     @property
     def end(self) -> End | None:
-        """Why nothing changes any more; None if something can."""
+        """Why no further step changes anything; `None` if one does."""
         return self._run.end
 
     @property
@@ -151,16 +151,16 @@ class Session:
 
     @property
     def is_decided(self) -> bool:
-        """Whether the trace of `verify` ends here or before."""
+        """Whether the property is decided here or before, so that the trace of `verify` ends."""
         return self._run.status != UNKNOWN
 
     @property
     def is_by_hand(self) -> bool:
-        """Whether a step up to here was decided by hand: then the run is not one that `verify` counts."""
+        """Whether a step up to here was decided by hand, so that the run is not one of the traces of `verify`."""
         return any(decision is not None for decision in self._run.decisions[: self.position])
 
     def choices(self) -> tuple[Choice, ...]:
-        """What can happen next."""
+        """The possible next steps."""
         return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events))
 
     def state(self) -> SystemState:
@@ -173,14 +173,14 @@ class Session:
         return SavedSession(run.asked.question.name, run.seed, run.trace, self.position, tuple(run.decisions))
 
     def fork(self) -> Session:
-        """A session of its own with the same run up to the position."""
+        """An independent session with the same run up to the position."""
         run = self._run
         decisions = tuple(run.decisions[: self.position])
         saved = SavedSession(run.asked.question.name, run.seed, run.trace, self.position, decisions)
         return Session(run.checker, run.asked, clock=self._clock, saved=saved)
 
     def story(self) -> Story:
-        """The run up to the position, as a story of all turns."""
+        """The run up to the position, as a list of all turns."""
         steps = tuple(self._run.steps[: self.position])
         question = self._run.asked.question
         end = End.DECIDED if self.is_decided else self.end or End.CUT
@@ -204,11 +204,11 @@ class Session:
         """Take one step of the network of automata.
 
         Args:
-            choice: what is to happen; the seed decides if not given.
-            outcome: of the choice; a hash of seed and position decides if not given.
+            choice: the step to take; the seed decides if `None`.
+            outcome: the outcome of the choice; a hash of the seed and the position decides if `None`.
 
         Returns:
-            None if nothing changes any more.
+            `None` if no step changes anything.
         """
         decision = None
         if choice is not None:
@@ -226,10 +226,10 @@ class Session:
         return chance.choices(choice.outcomes, weights)[0]
 
     def go_on(self, is_reached: Callable[[TraceStep], bool], limit: int = MAX_STEPS) -> bool:
-        """Take steps until one is that for which `is_reached` is true.
+        """Take steps up to the first one for which `is_reached` is true.
 
         Returns:
-            False if nothing changes any more before, or `limit` steps were taken.
+            Whether such a step was taken; not if no step changes anything before, or after `limit` steps.
         """
         for _ in range(limit):
             step = self.step()
@@ -240,11 +240,11 @@ class Session:
         return False
 
     def has_event(self, name: str) -> bool:
-        """Whether the system sends an event of this name, or one of a topic, service or action of this name."""
+        """Whether the system has an event with this name, or of a topic, service or action with this name."""
         return any(self._follower.is_named(sent_by(action or ""), name) for _, action in self._run.legend.vectors)
 
     def is_machine(self, instance: int) -> bool:
-        """Whether an automaton is a state machine or a plugin, not one that the translation adds."""
+        """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
         return self._follower.is_machine(instance)
 
     def automaton(self, instance: int) -> str:
@@ -252,9 +252,9 @@ class Session:
         return self._automata[instance].name
 
     def turn(self) -> bool:
-        """Go on until a state machine has handled an event to its end; False if nothing changes any more before.
+        """Take steps until a state machine has handled an event completely; returns whether one has.
 
-        The automata that the translation adds, and the nodes of the tree that only tick others, have no turns.
+        Automata added by the translation, and nodes of the tree that only tick others, have no turns.
         """
         return self.go_on(self._ends_turn)
 
@@ -265,7 +265,7 @@ class Session:
         )
 
     def tick(self) -> bool:
-        """Go on until the root of the tree has answered a tick; False if it does not any more."""
+        """Take steps until the root of the tree has answered a tick; returns whether it has."""
         return self.go_on(
             lambda step: (
                 bool(received_by(step.action or ""))
@@ -277,23 +277,25 @@ class Session:
         )
 
     def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
-        """Go on until the clock shows at least `seconds`; False if it never does."""
+        """Take steps until the time of the clock is at least `seconds`; returns whether it is."""
         return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
 
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
-        """Go on until an event is sent; it may be named as in plain SCXML or by its topic, service or action."""
+        """Take steps until an event is sent, named as in plain SCXML or by its topic, service or action; returns
+        whether
+        it was sent."""
         return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
-        """Go on until the property is decided; False if it stays undecided."""
+        """Take steps until the property is decided; returns whether it is."""
         return self.is_decided or self.go_on(lambda _: self.is_decided, limit) or self.is_decided
 
     def back(self, steps: int = 1) -> None:
-        """Take back steps."""
+        """Go back by `steps` steps, at most to the start."""
         self.jump(max(0, self.position - steps))
 
     def jump(self, position: int) -> None:
-        """Go to the state after `position` steps, which may lie ahead."""
+        """Go to the state after `position` steps; takes new steps if there are fewer."""
         self._run.go_to(min(position, len(self._run.steps)))
         if self._follower.position > self.position:
             self._follower = Follower(self._automata, self._run.start, self._clock)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a system as its engineers think of it: machines, nodes of the tree, messages, the clock."""
+"""The state of a system in terms of its model: machines, nodes of the tree, messages, and the clock."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from roaml.jani.node import Origin
 from roaml.smc.record import Plain
 
 NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
-"""The automaton of a tree node: its number and its type."""
+"""Matches the name of the automaton of a tree node, with its number and its type."""
 
 
 class NodeStatus(enum.Enum):
-    """The status of a tree node, as BehaviorTree.CPP has it; `TICKED` while its tick is not answered yet."""
+    """The status of a tree node as in BehaviorTree.CPP; `TICKED` while its tick is not answered yet."""
 
     IDLE = "IDLE"
     TICKED = "TICKED"
@@ -30,11 +30,11 @@ class MachineState:
     """A state machine.
 
     Attributes:
-        name: of the machine in the model; `automaton` is that of its automaton.
-        state: the state that it is in, or that it was in when the event came that it handles.
+        name: the name of the machine in the model; `automaton` is the name of its automaton.
+        state: its current state; while it handles an event, the state in which it received the event.
         variables: its own variables.
-        handles: the name of the event that it handles; "" if it waits for one.
-        origin: where in the text it is: the state, or the statement that it is about to execute.
+        handles: the name of the event that it handles; "" while it waits for one.
+        origin: the place in the source of its state, or of the statement that it executes next.
     """
 
     name: str
@@ -56,13 +56,13 @@ class NodeState:
 
 @dataclass(frozen=True, slots=True)
 class EventState:
-    """An event as it was sent last.
+    """An event with the parameters with which it was sent last.
 
     Attributes:
-        name: of the event, without that of the client whom a service or action serves with it.
-        text: the event in words, such as "a message on the topic `/level`".
-        step: the number of the step in which it was sent.
-        is_waiting: whether it waits for its receivers.
+        name: the name of the event, without the name of the client of a service or action.
+        text: a description such as "a message on the topic `/level`".
+        step: the number of the step that sent it.
+        is_waiting: whether it has not been received yet.
     """
 
     event: str
@@ -79,12 +79,12 @@ class SystemState:
     """The state after step `step`.
 
     Attributes:
-        time: in seconds; None if the model has no clock.
-        machines: the state machines, and the plugins of the tree.
-        nodes: all nodes of the tree, in the order of their numbers.
-        events: the last message of each topic, call of each service and so on, in the order in which they were sent.
+        time: the time in s; `None` if the model has no clock.
+        machines: the state machines and the plugins of the tree.
+        nodes: all nodes of the tree, ordered by their numbers.
+        events: the last message of each topic, the last call of each service and so on, in the order of sending.
         blackboard: the entries of the blackboard.
-        shared: the variables of a JANI model that belong to no event.
+        shared: the global variables of a JANI model that belong to no event.
     """
 
     step: int

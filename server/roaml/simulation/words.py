@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Automata, locations and actions of a translated system in words."""
+"""Descriptions of automata, locations and actions of a translated system."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
 TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
-"""What the nodes of a tree send to each other: the number of the child, and what is said."""
+"""Matches the names of events between nodes of a tree, with the number of the child and the kind of the event."""
 _STATUS_NAMES = {number: name for name, number in STATUSES.items()}
 CLOCK_NAME, TREE_NAME, BLACKBOARD_NAME = "clock", "tree", "blackboard"
 
 
 def who(automaton: str) -> str:
-    """An automaton as people call it."""
+    """The name of an automaton in messages."""
     if automaton == CLOCK:
         return CLOCK_NAME
     if automaton == BLACKBOARD:
@@ -28,8 +28,8 @@ def who(automaton: str) -> str:
 
 
 def resting(automaton: Automaton) -> frozenset[str]:
-    """The locations in which an automaton waits for an event, or that it does not leave. In all other locations it is
-    about to execute the next statement of a handler."""
+    """The locations in which an automaton waits for an event, or that it never leaves. In all other locations it next
+    executes a statement of a handler."""
     leaving: dict[str, list[str]] = {}
     for edge in automaton.edges:
         leaving.setdefault(edge.source, []).append(edge.action or "")
@@ -41,11 +41,11 @@ def resting(automaton: Automaton) -> frozenset[str]:
 
 
 def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[str]) -> str:
-    """What a node does when it sends or receives an event of the tree; "" if the event is not one of the tree.
+    """A description of what a node does when it sends or receives an event of the tree; "" for other events.
 
     Args:
-        actor: the node in words.
-        parameters: of the event; those of one that is yet to be sent are not known.
+        actor: the name of the node in messages.
+        parameters: the parameters of the event; empty if it has not been sent yet.
     """
     match = TREE_EVENT.fullmatch(event)
     if match is None:
