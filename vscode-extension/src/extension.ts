@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Puts the parts together. */
+/** The entry point of the extension: creates its parts and connects them. */
 
 import * as vscode from "vscode";
 import { registerCommands } from "./editor/commands";
@@ -70,7 +70,7 @@ export async function deactivate(): Promise<void> {
     await server?.stop();
 }
 
-/** What decides which server runs has changed: look again. */
+/** Search the server again when a setting or an interpreter changes. */
 function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, log: vscode.LogOutputChannel): void {
     const again = () => void server.start();
     context.subscriptions.push(
@@ -83,7 +83,7 @@ function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, l
             }
         }),
     );
-    // A server that runs from elsewhere does not depend on the interpreter.
+    // A running server from another source does not depend on the interpreter.
     const onChange = () => {
         if (server.state.kind === "failed" || usesPython(server)) void server.look();
     };

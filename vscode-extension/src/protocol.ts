@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What client and server say to each other beyond the language server protocol. */
+/** The requests and notifications between client and server in addition to LSP. */
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
@@ -7,11 +7,11 @@ import type { Picture, PictureKind, Place } from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
-/** What a document is. `systems` are the URIs of the systems that it belongs to, itself if it is one. */
+/** The kind of a document. `systems` are the URIs of the systems that contain it, its own URI if it is a system. */
 export interface About {
     readonly kind: FileKind;
     readonly systems: readonly string[];
-    /** Whether there is a behavior tree: in the file itself or in its system. */
+    /** Whether the file itself or its system contains a behavior tree. */
     readonly hasTree: boolean;
 }
 
@@ -23,21 +23,21 @@ export interface PictureParams extends DocumentParams {
     readonly kind: PictureKind;
 }
 
-/** A line of the plain form and the place in the models that it exists for. */
+/** A line of the plain form, and the place in the models from which it was generated. */
 export interface PlainLine {
     readonly line: number;
     readonly uri: string;
     readonly range: Range;
 }
 
-/** A machine as plain SCXML. `problem` says why there is none. */
+/** A machine as plain SCXML. `problem` is the reason if there is none. */
 export interface PlainScxml {
     readonly text: string;
     readonly lines: readonly PlainLine[];
     readonly problem: string;
 }
 
-/** A JANI file laid out for reading, and the outline of that text. `problem` says why there is none. */
+/** A formatted JANI file, and the outline of that text. `problem` is the reason if there is none. */
 export interface JaniText {
     readonly text: string;
     readonly symbols: DocumentSymbol[];
@@ -46,7 +46,7 @@ export interface JaniText {
 
 export interface Migration {
     readonly edit: WorkspaceEdit | null;
-    /** What changes, one line for each file. */
+    /** The changes, one line for each file. */
     readonly files: readonly string[];
     readonly problem: string;
 }
@@ -57,10 +57,10 @@ export const plainScxml = new RequestType<DocumentParams, PlainScxml, void>("as2
 export const janiView = new RequestType<DocumentParams, JaniText, void>("as2fm/janiView");
 export const migrate = new RequestType<DocumentParams, Migration, void>("as2fm/migrate");
 
-/** The server's own command; the client opens what it answers. */
+/** A command of the server; the client opens the file that it returns. */
 export const TRANSLATE = "as2fm.translateToJani";
 
-/** The server's own command: the URI of a system. */
+/** A command of the server. Argument: the URI of a system. */
 export const SHOW_FIRST_ERROR = "as2fm.showFirstError";
 
 export interface Translated {
@@ -68,15 +68,15 @@ export interface Translated {
     readonly summary: string;
 }
 
-/** The server's own command: the URI of a system, names of properties (all if none), and options. */
+/** A command of the server. Arguments: the URI of a system, names of properties (all if none), and options. */
 export const VERIFY = "as2fm.verify";
 
-/** Something that is wrong, with its place if it has one. */
+/** A problem, with its location if it has one. */
 export interface Wrong extends Partial<Place> {
     readonly message: string;
 }
 
-/** What came of a property: numbers, or an error. JSON has no infinite numbers; those are words. */
+/** The result of a property: numbers, or an error. Infinite numbers are strings, because JSON has none. */
 export interface Verified {
     readonly property: string;
     readonly seconds?: number;
@@ -91,37 +91,37 @@ export interface Verified {
         readonly expected: string;
         readonly met: boolean;
         readonly certain: boolean;
-        /** Whether uniform choices meet it, and it is not known whether all schedulers do. */
+        /** Whether it is met under uniform choices, but not known to be met under all schedulers. */
         readonly under_uniform_choices_only?: boolean;
     }[];
-    /** Why the number is doubtful (traces got stuck), or not the minimum or maximum that the property asks for. */
+    /** Why the number is doubtful (traces got stuck), or is not the minimum or maximum that the property asks for. */
     readonly warning?: string;
-    /** Whether there is a trace that speaks against what is expected. */
+    /** Whether there is a counterexample: a trace that contradicts the expectation. */
     readonly counterexample?: boolean;
     readonly error?: Wrong;
 }
 
-/** What is known of a system getting stuck, that is of traces in which everybody waits for somebody else. */
+/** The result about traces in which the system gets stuck: all automata wait for each other. */
 export interface Stuckness {
-    /** What it is that a trace gets stuck. */
+    /** How severe it is that a trace gets stuck. */
     readonly level: "warning" | "error";
-    /** Who waits for whom in the example, in some lines. */
+    /** Which automaton waits for which in the example, in several lines. */
     readonly text: string;
     /** Null if no trace got stuck. */
     readonly example: { readonly trace: number } | null;
 }
 
-/** `errors` are those of the model; then there are no results. */
+/** `errors` are those of the model; if there are any, there are no results. */
 export interface Verification {
     readonly results: readonly Verified[];
     readonly errors: readonly Wrong[];
     readonly stuck?: Stuckness | null;
 }
 
-/** The property that every system has: that it gets stuck. */
+/** The name of the property that every system has: that it gets stuck. */
 export const STUCK = "stuck";
 
-/** A property; `stale` is missing while nothing is known of it. */
+/** A property; `stale` is missing while it has no result. */
 export interface Property extends Place {
     readonly name: string;
     readonly comment: string;
@@ -143,12 +143,12 @@ export interface Highlight {
 export interface Step extends Partial<Place> {
     readonly step: number;
     readonly time: string;
-    /** The automaton, for people. */
+    /** The name of the automaton in messages. */
     readonly who: string;
     readonly what: string;
-    /** File and line, for people. */
+    /** The file and the line as shown to the user. */
     readonly place: string;
-    /** What has come of it: what has changed, what was sent. */
+    /** The effects of the step: changed variables and sent events. */
     readonly details: readonly string[];
     readonly highlights: readonly Highlight[];
 }

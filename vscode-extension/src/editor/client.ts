@@ -19,8 +19,8 @@ import { isTrusted } from "./trust";
 import { ownsWellFormedness } from "./xmlExtension";
 
 /**
- * Interface definitions keep the language that another extension gives them. JSON is left out: its documents would have
- * two formatters, and struct declarations in it are read from the disk.
+ * Interface definitions keep the language that another extension assigns to them. JSON is excluded: its documents would
+  * have two formatters, and the server reads struct declarations in it from the disk.
  */
 const SELECTOR: DocumentSelector = [
     ...["ascxml", "scxml", "jani", "xml"].flatMap((language) => [
@@ -28,23 +28,23 @@ const SELECTOR: DocumentSelector = [
         { scheme: "untitled", language },
     ]),
     { scheme: "file", pattern: "**/*.{msg,srv,action}" },
-    // Mistakes in the configuration are shown as they are typed.
+    // Errors in the configuration are shown while it is edited.
     { scheme: "file", pattern: "**/{as2fm,pyproject}.toml" },
 ];
 
-/** The command with which the server's lenses show places; its arguments are in terms of the protocol. */
+/** The command with which lenses of the server show locations; its arguments are types of LSP. */
 export const SHOW_REFERENCES = "as2fm.showReferences";
 
-/** The command with which the lenses show why a property fails: the URI of a system and the name of a property. */
+/** The command with which lenses show why a property fails. Arguments: the URI of a system, the name of a property. */
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
 
 const WELL_FORMEDNESS = "xml-syntax";
 const LAST_WORDS = 4000;
 
-/** Who is told of what lenses and commands of the server do. */
+/** Handles the results of lenses and commands of the server. */
 export interface Listener {
     onTranslated(translated: Translated): unknown;
-    /** In place of the server's command: so the Test Explorer shows what comes of it. No names are all. */
+    /** Replaces the command of the server, so that the Test Explorer shows the results. No names means all. */
     onVerify(system: string, names: readonly string[]): unknown;
 }
 
@@ -96,7 +96,7 @@ export async function connect(server: Server, log: vscode.LogOutputChannel, list
     };
 }
 
-/** What goes wrong is told by the state of the server, not by messages of the library. */
+/** Hides the error messages of the library: the state of the server shows failures. */
 class QuietClient extends LanguageClient {
     override error(message: string, data?: unknown): void {
         super.error(message, data, false);
@@ -110,10 +110,10 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
         outputChannel: log,
         traceOutputChannel: log,
         revealOutputChannelOn: RevealOutputChannelOn.Never,
-        // Files that are not open are checked as well, and told of when they change.
+        // The server also checks files that are not open, and is notified when they change.
         initializationOptions: {
             diagnostics: "push",
-            // The server asks once more before it writes. Once trust is granted, it is started anew.
+            // The server checks trust again before it writes. It is restarted when trust is granted.
             trusted: vscode.workspace.isTrusted,
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
@@ -122,7 +122,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
         },
         progressOnInitialization: false,
         initializationFailedHandler: () => false,
-        // What happens when the process ends is the supervisor's business.
+        // The supervisor decides what happens when the process ends.
         errorHandler: {
             error: () => ({ action: ErrorAction.Continue, handled: true }),
             closed: () => ({ action: CloseAction.DoNotRestart, handled: true }),
@@ -150,7 +150,7 @@ function isXml(uri: vscode.Uri): boolean {
     return document ? document.languageId === "xml" : uri.path.endsWith(".xml");
 }
 
-/** Whether only we say this: what is not well-formed the XML extension says as well. */
+/** Whether to show a diagnostic: the XML extension reports errors of well-formedness, too. */
 function isOurs(diagnostic: vscode.Diagnostic): boolean {
     const code = typeof diagnostic.code === "object" ? diagnostic.code.value : diagnostic.code;
     return code !== WELL_FORMEDNESS;

@@ -69,7 +69,7 @@ export function registerCommands(parts: Parts): void {
         }),
     );
     context.subscriptions.push(
-        // From a lens or a message, or from the menu of a test.
+        // Called from a lens or a message, or from the menu of a test.
         vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, (of: string | vscode.TestItem, property: string) => {
             const asked = typeof of === "string" ? { system: of, property } : parts.tests.of(of);
             return asked && parts.counterexamples.show(asked.system, asked.property);
@@ -94,7 +94,7 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     const uri = system && server.client?.code2ProtocolConverter.asUri(system);
     if (uri === undefined) return;
-    // First: what is run may lead to an error, which then keeps the focus.
+    // Focus the view first: the verification may go to an error, which must keep the focus.
     await vscode.commands.executeCommand("workbench.view.testing.focus");
     if (await tests.verify(uri, [])) return;
     const name = vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
@@ -103,7 +103,7 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
 
 async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {
     const found = await parts.documents.about(document);
-    // A tree in no system is shown by itself.
+    // A tree that belongs to no system is shown alone.
     const uri = kind === "tree" && found.systems.length === 0 ? document.uri : await parts.documents.system(document);
     if (uri) await parts.pictures.open(kind, uri);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view that tells why a property fails, step by step. A step opens its source and lights it in the pictures. */
+/** The view that shows step by step why a property fails. A step opens its source and is highlighted in pictures. */
 
 import * as vscode from "vscode";
 import { counterexample, type Counterexample, type Step } from "../protocol";
@@ -9,7 +9,7 @@ import type { LanguageServer } from "./server";
 const VIEW = "as2fm.counterexample";
 const SHOW_STEP = "as2fm.showStep";
 
-/** What has come of a step. An object: the same may come of several, and VS Code tells entries apart by identity. */
+/** An effect of a step. An object, because VS Code compares entries by identity and several effects may be equal. */
 interface Detail {
     readonly of: Step;
     readonly text: string;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What the active document is, as the server sees it: for commands, and for the `when` of menus. */
+/** The kind of the active document according to the server, for commands and for `when` clauses of menus. */
 
 import * as vscode from "vscode";
 import { about, type About } from "../protocol";
@@ -27,7 +27,7 @@ export class Documents implements vscode.Disposable {
         return (await this.server.ask(about, { textDocument: { uri: document.uri.toString() } })) ?? NOTHING;
     }
 
-    /** The system that a document belongs to; the user chooses if there are several. */
+    /** The system that contains a document; if there are several, the user chooses one. */
     async system(document: vscode.TextDocument | undefined): Promise<vscode.Uri | undefined> {
         const { systems } = await this.about(document);
         if (systems.length === 0) {

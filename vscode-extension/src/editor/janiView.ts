@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** A JANI file laid out for reading, with an outline. Read-only: the file itself stays as its translator has written it. */
+/** A read-only view of a JANI file, formatted and with an outline. The file itself is not changed. */
 
 import * as vscode from "vscode";
 import { janiView } from "../protocol";
@@ -45,7 +45,7 @@ export class JaniView implements vscode.TextDocumentContentProvider, vscode.Docu
     }
 
     async provideDocumentSymbols({ uri }: vscode.TextDocument): Promise<vscode.DocumentSymbol[]> {
-        // After a reload of the window the text is there before anything has been asked.
+        // After a reload of the window, the document is open before its content was requested.
         if (!this.outlines.has(uri.toString())) await this.provideTextDocumentContent(uri);
         return this.outlines.get(uri.toString()) ?? [];
     }
@@ -55,7 +55,7 @@ export class JaniView implements vscode.TextDocumentContentProvider, vscode.Docu
         for (const each of this.subscriptions) each.dispose();
     }
 
-    /** A file has been written anew. */
+    /** Update the view of a file that was written again. */
     private refresh(file: vscode.Uri): void {
         const uri = viewOf(file);
         if (vscode.workspace.textDocuments.some((each) => each.uri.toString() === uri.toString()))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The panels in which pictures are drawn: one for each kind, following the document and the caret. */
+/** The panels with pictures: one for each kind, which follows the active document and the caret. */
 
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
@@ -48,7 +48,7 @@ export class PicturePanels implements vscode.Disposable {
         await panel.show(uri);
     }
 
-    /** Light nodes in the pictures that are open, and in those that will be; those of an earlier time go out. */
+    /** Highlight nodes in all open pictures and in those that are opened later, instead of earlier ones. */
     async highlight(highlights: readonly Highlight[]): Promise<void> {
         this.highlights = highlights;
         for (const [kind, panel] of this.panels) await panel.highlight(highlights.find((each) => each.kind === kind));
@@ -77,7 +77,7 @@ class PicturePanel implements vscode.Disposable {
     private uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
-    /** What the last step highlights, in whichever file. */
+    /** The highlighted nodes of the last step, in all files. */
     highlighted: Highlight | undefined;
     private shownUri = "";
     private ready = false;
@@ -140,7 +140,7 @@ class PicturePanel implements vscode.Disposable {
         this.post({ type: "here", here });
     }
 
-    /** Of a machine, the picture changes to the one that has the node. */
+    /** Highlight a node; the picture of a machine changes to the machine that contains the node. */
     async highlight(highlighted: Highlight | undefined): Promise<void> {
         this.highlighted = highlighted;
         if (highlighted && this.kind === "machine" && this.shownUri !== highlighted.uri) {
@@ -149,7 +149,7 @@ class PicturePanel implements vscode.Disposable {
         } else this.post({ type: "highlight", node: this.highlightedNode });
     }
 
-    /** States of two machines may be called alike. */
+    /** The node to highlight. The machine is compared, too, because states of two machines may have the same name. */
     private get highlightedNode(): string {
         return this.highlighted && (this.kind !== "machine" || this.highlighted.uri === this.shownUri)
             ? this.highlighted.node
@@ -165,7 +165,7 @@ class PicturePanel implements vscode.Disposable {
         return partAt(this.picture, this.asServerSays(editor.document.uri), editor.selection.active);
     }
 
-    /** The server names a document by the very URI that the client uses towards it. */
+    /** A URI as the client writes it to the server, because the server returns URIs in this form. */
     private asServerSays(uri: vscode.Uri): string {
         return this.server.client?.code2ProtocolConverter.asUri(uri) ?? uri.toString();
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/** From the plain form of a machine to its source and back. */
+/** Maps places in the plain SCXML of a machine to its source and back. */
 
 import type { PlainLine } from "../protocol";
 import type { Position } from "../pictures/contract";
 
-/** The line of the plain form that stands for what is at a position of the source: that of the narrowest place. */
+/** The line of the plain form for a position in the source: that of the smallest place that contains the position. */
 export function lineOf(lines: readonly PlainLine[], uri: string, position: Position): number | undefined {
     const around = lines.filter((line) => line.uri === uri && contains(line, position));
     if (around.length === 0) {
@@ -14,7 +14,7 @@ export function lineOf(lines: readonly PlainLine[], uri: string, position: Posit
     return around.reduce((best, line) => (height(line) < height(best) ? line : best)).line;
 }
 
-/** The place that a line of the plain form stands for: its own, else that of the nearest line above. */
+/** The place in the source of a line of the plain form: its own, or that of the nearest line above. */
 export function placeOf(lines: readonly PlainLine[], line: number): PlainLine | undefined {
     return lines.filter((each) => each.line <= line).at(-1);
 }

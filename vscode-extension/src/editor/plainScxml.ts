@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The plain SCXML of a machine beside its source: follows edits, and the caret in either of the two. */
+/** Shows the plain SCXML of a machine beside its source; follows edits, and the caret in both documents. */
 
 import * as vscode from "vscode";
 import { plainScxml, type PlainScxml } from "../protocol";
@@ -15,7 +15,7 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
     private readonly shown = new Map<string, PlainScxml>();
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
-    /** Where we have put a caret: that this is told to us is not the user's doing. */
+    /** The place to which this class moved a caret, to ignore the event that results from that. */
     private moved: { readonly editor: vscode.TextEditor; readonly caret: vscode.Position } | undefined;
 
     constructor(private readonly server: LanguageServer) {
@@ -47,7 +47,7 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
         const found = await this.server.ask(plainScxml, { textDocument: { uri: source.toString() } });
         if (!found) return "";
         const before = this.shown.get(uri.toString());
-        // While a mistake is being typed, what was right before it stays to be seen.
+        // While the source has errors, keep the last valid text.
         if (found.problem && before?.text) return before.text;
         this.shown.set(uri.toString(), found);
         return found.problem ? `<!-- ${found.problem.replaceAll("--", "- -")} -->\n` : found.text;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The interpreters that other extensions call active. None of them is needed; whatever one lacks is passed over. */
+/** The active interpreters of the extensions for Python. These extensions and their functions are optional. */
 
 import * as vscode from "vscode";
 
-/** What is used of `ms-python.python`. */
+/** The part of the API of `ms-python.python` that is used. */
 interface PythonApi {
     readonly environments?: {
         getActiveEnvironmentPath(resource?: vscode.Uri): { readonly path: string };
@@ -14,7 +14,7 @@ interface PythonApi {
     };
 }
 
-/** What is used of `ms-python.vscode-python-envs`. */
+/** The part of the API of `ms-python.vscode-python-envs` that is used. */
 interface EnvironmentsApi {
     getEnvironment?(
         scope: vscode.Uri | undefined,
@@ -42,7 +42,7 @@ export async function activeInterpreters(log: vscode.LogOutputChannel): Promise<
     return [...new Set(found.filter((path): path is string => typeof path === "string" && path !== ""))];
 }
 
-/** Be told when another interpreter becomes the active one. */
+/** Call a listener when another interpreter becomes the active one. */
 export async function onInterpreterChange(listener: () => void): Promise<vscode.Disposable[]> {
     const environments = await api<EnvironmentsApi>(ENVIRONMENTS).catch(() => undefined);
     const python = await api<PythonApi>(PYTHON).catch(() => undefined);

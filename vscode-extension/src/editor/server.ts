@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The one server of a window: how the supervisor's wishes are met in VS Code. */
+/** The server of a window: implements the ports of the supervisor in VS Code. */
 
 import { createHash } from "node:crypto";
 import * as fs from "node:fs";
@@ -18,7 +18,7 @@ import { connect, type Connection, type Listener } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
 import { tellStep } from "./wording";
 
-/** In milliseconds. */
+/** In ms. */
 const PATIENCE = 5000;
 
 export class LanguageServer implements vscode.Disposable {
@@ -30,7 +30,7 @@ export class LanguageServer implements vscode.Disposable {
     private compiling: Promise<void> | undefined;
     private connection: Connection | undefined;
 
-    /** Fires with each change of the state. */
+    /** Fires at each change of the state. */
     readonly onState = this.states.event;
 
     constructor(
@@ -75,7 +75,7 @@ export class LanguageServer implements vscode.Disposable {
         return this.connection?.client;
     }
 
-    /** With the window: the server that ran last is started before it is looked for. */
+    /** Start the server of a new window; the server that ran last is started before the search ends. */
     open(): Promise<void> {
         const recalled = this.recall.server(this.wishes());
         const expected = vscode.workspace.isTrusted || recalled?.origin === "private" ? recalled : undefined;
@@ -86,7 +86,7 @@ export class LanguageServer implements vscode.Disposable {
         return this.supervisor.start();
     }
 
-    /** What may be found has changed: the server that runs goes on if it is still the one. */
+    /** Search again after a change of settings or interpreters; a running server continues if it is found again. */
     look(): Promise<void> {
         return this.supervisor.look();
     }
@@ -99,12 +99,12 @@ export class LanguageServer implements vscode.Disposable {
         return this.supervisor.stop();
     }
 
-    /** The server then asks for them. */
+    /** Notify the server, which then requests the settings. */
     settingsChanged(): void {
         void this.client?.sendNotification(DidChangeConfigurationNotification.type, { settings: null });
     }
 
-    /** Ask the server; undefined if none runs or it has no answer. */
+    /** Send a request; undefined if no server runs or it returns no result. */
     async ask<P, R>(type: RequestType<P, R, void>, params: P): Promise<R | undefined> {
         try {
             return await this.client?.sendRequest(type, params);
@@ -119,7 +119,7 @@ export class LanguageServer implements vscode.Disposable {
         void this.supervisor.stop();
     }
 
-    /** All that decides which server is found, but for what other extensions and the machine say. */
+    /** The settings that determine which server is found, without other extensions and the machine. */
     private wishes(): readonly unknown[] {
         return [path("server.path"), path("interpreter"), vscode.workspace.isTrusted, this.wheel];
     }
@@ -134,7 +134,7 @@ export class LanguageServer implements vscode.Disposable {
         return usable;
     }
 
-    /** Nobody waits for it: a server that runs uses the compiled kernel with its next verification. */
+    /** Runs in the background: a running server uses the compiled kernel from its next verification on. */
     private compileKernel(): void {
         const onOutput = (text: string) => {
             this.log.append(text);
@@ -145,7 +145,7 @@ export class LanguageServer implements vscode.Disposable {
     private active(hurry: boolean): Promise<readonly string[]> {
         const asked = activeInterpreters(this.log);
         if (!hurry) return asked;
-        // An extension that does not answer must not keep the server from starting.
+        // An extension that does not answer must not prevent the start of the server.
         const late = new Promise<readonly string[]>((resolve) => {
             setTimeout(() => {
                 resolve([]);
@@ -154,7 +154,7 @@ export class LanguageServer implements vscode.Disposable {
         return Promise.race([asked, late]);
     }
 
-    /** Who has had the server installed before gets the new one without being asked; the old one, if that fails. */
+    /** If an earlier version is installed, install the new one without asking; if that fails, use the old one. */
     private async renewed(failure: Failure): Promise<Server | Failure> {
         const older = await this.environment.older();
         if (older === undefined) return failure;
@@ -193,13 +193,13 @@ export class LanguageServer implements vscode.Disposable {
     }
 }
 
-/** From where nothing is started. */
+/** The folders from which no program is started. */
 export function untrustedFolders(): string[] {
     if (vscode.workspace.isTrusted) return [];
     return (vscode.workspace.workspaceFolders ?? []).map(({ uri }) => uri.fsPath);
 }
 
-/** A setting that names a program; empty if it is not set. */
+/** A setting with the path of a program; empty if not set. */
 function path(setting: string): string {
     const written = vscode.workspace.getConfiguration("as2fm").get<string>(setting, "");
     return expanded(written, os.homedir(), vscode.workspace.workspaceFolders?.[0]?.uri.fsPath);
@@ -213,7 +213,7 @@ async function tellRestarted(): Promise<void> {
     }
 }
 
-/** The wheel in the extension and the packages that it needs, with an id that changes with their content. */
+/** The wheel in the extension, the packages that it needs, and an id that changes with their content. */
 function findWheel(extension: string): { file: string; requirements: string; id: string } {
     const folder = join(extension, "dist", "wheel");
     const name = fs.readdirSync(folder).find((each) => each.endsWith(".whl"));

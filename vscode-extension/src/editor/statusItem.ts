@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import type { State } from "../server/supervisor";
 import { tellState, type Action } from "./wording";
 
-/** The server's state in the status bar and beside the language; a failure is told once as a message, too. */
+/** Shows the state of the server in the status bar and beside the language, and each failure once as a message. */
 export class StatusItem implements vscode.Disposable {
     private readonly item: vscode.StatusBarItem;
     private actions: readonly Action[] = [];
@@ -37,7 +37,7 @@ export class StatusItem implements vscode.Disposable {
         }
     }
 
-    /** What there is to do in the present state. */
+    /** The actions that are available in the current state. */
     async choose(): Promise<void> {
         const picked = await vscode.window.showQuickPick(
             this.actions.map((action) => ({ label: action.title, action })),

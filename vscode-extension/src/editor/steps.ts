@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Steps of the walkthrough that are done once something has come of them, not once a command has been called. */
+/** Completes the steps of the walkthrough that depend on the result of a command, not on its call. */
 
 import * as vscode from "vscode";
 
 export type Step = "mended" | "translated" | "verified";
 
-/** For the `completionEvents` of the walkthrough. */
+/** Set the context key of a step, to which the `completionEvents` of the walkthrough refer. */
 export function done(step: Step): void {
     void vscode.commands.executeCommand("setContext", `as2fm.${step}`, true);
 }
 
-/** Notes when models had errors and have none any more. */
+/** Completes the step `mended` when models had errors and no longer have any. */
 export function watchMending(): vscode.Disposable {
     let broken = false;
     return vscode.languages.onDidChangeDiagnostics(() => {

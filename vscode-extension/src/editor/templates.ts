@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/** New systems, machines and files for CI; the sample of the walkthrough. */
+/** Creates new systems, machines and files for CI, and the sample of the walkthrough. */
 
 import * as vscode from "vscode";
 import { thisMachine } from "../server/machine";
 import type { LanguageServer } from "./server";
 
-/** A small working system, written by the server's own `init`. */
+/** Create a small working system with `as2fm-lsp init`. */
 export async function newSystem(server: LanguageServer): Promise<void> {
     const { state } = server;
     if (state.kind !== "running") return;
@@ -19,7 +19,7 @@ export async function newSystem(server: LanguageServer): Promise<void> {
     await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, "main.xml"));
 }
 
-/** A machine from a template, opened with its name to be filled in further. */
+/** Create a machine from a template, and open it. */
 export async function newMachine(context: vscode.ExtensionContext, kind: "node" | "plugin"): Promise<void> {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri;
     if (!folder) return;
@@ -47,7 +47,7 @@ export async function newMachine(context: vscode.ExtensionContext, kind: "node" 
     await vscode.window.showTextDocument(file);
 }
 
-/** A workflow that runs `as2fm-lsp --check` with each push. */
+/** Create a workflow that runs `as2fm-lsp --check` at each push. */
 export async function addToCi(context: vscode.ExtensionContext): Promise<void> {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri;
     if (!folder) return;
@@ -60,7 +60,7 @@ export async function addToCi(context: vscode.ExtensionContext): Promise<void> {
     const file = vscode.Uri.joinPath(folder, picked.path);
     const template = vscode.Uri.joinPath(context.extensionUri, "dist", "ci", picked.template);
     if (await exists(file)) {
-        // What is there is the user's; ours is shown to be copied from.
+        // Do not overwrite the user's file: show the template, so that its lines can be copied.
         await vscode.window.showTextDocument(template, { preview: true });
         return;
     }
@@ -68,7 +68,7 @@ export async function addToCi(context: vscode.ExtensionContext): Promise<void> {
     await vscode.window.showTextDocument(file);
 }
 
-/** A copy of the sample system, with one mistake in it to be found. */
+/** Create a copy of the sample system, which contains one error. */
 export async function openSample(context: vscode.ExtensionContext): Promise<void> {
     const folder = await newFolder(vscode.l10n.t("Folder for the sample"), "delivery_robot");
     if (!folder) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Properties in the Test Explorer: a system is a suite, a property a test, verifying it is running it. */
+/** Properties in the Test Explorer: a system is a suite, a property is a test, and running a test verifies it. */
 
 import * as vscode from "vscode";
 import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
@@ -61,7 +61,7 @@ export class PropertyTests implements vscode.Disposable {
         ];
     }
 
-    /** Run properties of a system, as from the lenses; all if none are named. Whether there are any. */
+    /** Verify properties of a system, all if `names` is empty; returns whether there are any. */
     async verify(system: string, names: readonly string[]): Promise<boolean> {
         await this.refresh();
         const suite = this.controller.items.get(system);
@@ -73,12 +73,12 @@ export class PropertyTests implements vscode.Disposable {
         const none = new vscode.CancellationTokenSource();
         await this.run(new vscode.TestRunRequest(named.length > 0 ? named : [suite]), none.token);
         none.dispose();
-        // Leads to the first error of a system that has some, wherever it is; else it does nothing.
+        // If the system has errors, this goes to the first one, in whichever file; otherwise it does nothing.
         await vscode.commands.executeCommand(SHOW_FIRST_ERROR, system);
         return true;
     }
 
-    /** The property that a test stands for. */
+    /** The property of a test. */
     of(item: vscode.TestItem): Asked | undefined {
         return this.asked.get(item);
     }
@@ -129,7 +129,7 @@ export class PropertyTests implements vscode.Disposable {
             this.asked.set(item, { system, property: property.name });
         }
         item.range = rangeOf(property.range);
-        // As they stand in the files, not by their names.
+        // In the order of the files, not by name.
         item.sortText = String(index).padStart(6, "0");
         const wasStale = this.stale.has(id);
         if (property.stale && !wasStale) {
@@ -211,7 +211,7 @@ export class PropertyTests implements vscode.Disposable {
         if (stuck !== undefined) this.tellStuck(run, asked.system);
         const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
         if (outcome.kind === "passed") {
-            // The Test Explorer knows no more than passed and failed: how it has passed stands beside its name.
+            // The Test Explorer has only passed and failed: the description beside the name contains the details.
             if (outcome.uniform.length > 0) {
                 const expected = outcome.uniform.join(", ");
                 item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
@@ -230,11 +230,11 @@ export class PropertyTests implements vscode.Disposable {
             text.appendMarkdown(`\n\n[${vscode.l10n.t("Show Counterexample")}](command:${link})`);
             text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE] };
         }
-        // Without a place: the lens and the hint say the same on that line.
+        // Without a location: the lens and the inlay hint show the same on that line.
         run.failed(item, new vscode.TestMessage(text), milliseconds);
     }
 
-    /** Once a run for each system: what its numbers say is chance, and a passed test would hide that. */
+    /** Warn once in each run that a system gets stuck, which makes its numbers doubtful and a passed test hides. */
     private tellStuck(run: vscode.TestRun, system: string): void {
         const told = this.toldStuck.get(run) ?? new Set<string>();
         this.toldStuck.set(run, told);
@@ -263,12 +263,12 @@ function rangeOf({ start, end }: Property["range"]): vscode.Range {
     return new vscode.Range(start.line, start.character, end.line, end.character);
 }
 
-/** Markdown takes the brackets of an interval for a sign. */
+/** Escape the brackets of an interval, which are markup in Markdown. */
 function escaped(text: string): string {
     return text.replaceAll(/[\\`*_{}[\]()#+\-.!<>|]/g, "\\$&");
 }
 
-/** Expand a system in the Test Explorer, so that what comes of its properties is seen. */
+/** Expand a system in the Test Explorer, so that the results of its properties are visible. */
 async function reveal(suite: vscode.TestItem): Promise<void> {
     const [first] = [...suite.children];
     if (first) await vscode.commands.executeCommand("vscode.revealTestInExplorer", first[1]);

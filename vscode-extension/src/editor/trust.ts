@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What Restricted Mode leaves out: whatever writes files, or starts programs, because of what the workspace holds. */
+/** Restricted Mode disables everything that writes files or starts programs depending on files of the workspace. */
 
 import * as vscode from "vscode";
 
-/** Whether the workspace is trusted; if not, the user is told why nothing happens and where trust is granted. */
+/** Whether the workspace is trusted; if not, a message says why nothing happens and how to grant trust. */
 export function isTrusted(): boolean {
     if (!vscode.workspace.isTrusted) void tellRestricted();
     return vscode.workspace.isTrusted;

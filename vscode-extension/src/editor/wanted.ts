@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Whether there is anything for the server to do.
+ * Decides whether the workspace contains models, so that the server is needed.
  *
- * A system file is mostly called `main.xml`. VS Code looks for a file of one name much faster than for all files with an
- * ending, so this name alone activates the extension. Other projects have such a file, too: these are left alone.
+ * A system file is usually called `main.xml`. VS Code finds a file by its name much faster than by its extension, so
+ * only
+  * this name activates the extension. Other projects may have such a file, too: there, the server is not started.
  */
 
 import * as vscode from "vscode";
@@ -12,7 +13,7 @@ const SYSTEM_FILE = "main.xml";
 const SYSTEM = /<(roaml|convince_mc_tc)\b/;
 const LANGUAGES = new Set(["ascxml", "scxml", "jani"]);
 
-/** Resolves as soon as there is something to do: at once if more than the name of a file says so. */
+/** Resolves as soon as a model exists or is opened; immediately if the extension was activated for another reason. */
 export async function wanted(subscriptions: { dispose(): unknown }[]): Promise<void> {
     const { textDocuments, workspaceFolders = [] } = vscode.workspace;
     const found = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What the user reads about the server: each state and each failure with what can be done about it. */
+/** The texts about the server: each state and each failure, with the possible actions. */
 
 import { l10n } from "vscode";
 import { OLDEST } from "../server/python";
@@ -22,9 +22,9 @@ export interface Action {
 
 export interface Told {
     readonly severity: "quiet" | "warning" | "error";
-    /** For the status bar: a few words. */
+    /** A few words for the status bar. */
     readonly short: string;
-    /** A sentence or two: what is the matter and what to do. */
+    /** One or two sentences: what is wrong and what to do. */
     readonly long: string;
     readonly actions: readonly Action[];
 }

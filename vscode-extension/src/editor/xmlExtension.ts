@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Harmony with the XML extension, where that is installed.
+ * Cooperation with the XML extension, if it is installed.
  *
- * - It looks after files of the language `xml`: system files and behavior trees are among them. What is not well-formed
- *   in them it says, so we do not.
- * - Our schemas are offered to it as a catalog. They are used where a document asks for one of them by name; a document
- *   that does not is checked by us alone, so nothing is said twice.
+ * - It checks files of the language `xml`, such as system files and behavior trees. It reports errors of
+ * well-formedness
+  *   in them, so the client hides those of the server.
+  * - The client offers its schemas to it as a catalog. It uses them in documents that refer to one of them by name;
+  * only
+  *   the server checks other documents, so that nothing is reported twice.
  */
 
 import * as vscode from "vscode";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * What the server tells of a picture, and what the extension and the view that draws it say to each other.
+ * The data of a picture from the server, and the messages between the extension and the view that draws it.
  *
- * Places are in the coordinates of the protocol: lines and UTF-16 columns from 0.
+ * Positions are those of LSP: lines and UTF-16 columns from 0.
  */
 
 export type PictureKind = "machine" | "tree" | "ros";
@@ -51,7 +51,7 @@ export const EDGE_KINDS = [
 
 export type EdgeKind = (typeof EDGE_KINDS)[number];
 
-/** `parent` is the id of the node that it is drawn inside of, "" if none. */
+/** `parent` is the id of the node that contains it in the drawing, "" if none. */
 export interface PictureNode {
     readonly id: string;
     readonly kind: NodeKind;
@@ -81,7 +81,7 @@ export interface Picture {
 /** A node or an edge by its index in the picture. */
 export type Part = { readonly node: number } | { readonly edge: number };
 
-/** Words of the view, in the user's language. */
+/** The texts of the view, in the language of the user. */
 export interface Words {
     readonly search: string;
     readonly zoomIn: string;
@@ -99,7 +99,7 @@ export type ToView =
     | { readonly type: "words"; readonly words: Words }
     | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly highlighted: string }
     | { readonly type: "here"; readonly here: Part | null }
-    /** Light a node by its id; "" for none. */
+    /** Highlight a node by its id; "" for none. */
     | { readonly type: "highlight"; readonly node: string }
     | { readonly type: "none"; readonly reason: string };
 
@@ -107,5 +107,5 @@ export type FromView =
     | { readonly type: "ready" }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
     | { readonly type: "save"; readonly format: "svg" | "png"; readonly data: string }
-    /** The picture is drawn: for those who wait for it. */
+    /** Sent when the picture is drawn. */
     | { readonly type: "drawn"; readonly nodes: number; readonly edges: number };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * The Python environment that belongs to the extension, made of the wheel that it carries.
+ * The private Python environment of the extension, with the server from the wheel in the extension.
  *
- * - An environment is named by its wheel, so a new version of the extension makes a new one and the old one goes.
- * - It counts only when its mark has been written, as the last step: one that was interrupted is made anew.
- * - The packages that the server needs come from the index that the user's pip is configured for. Whatever that index
- *   answers, only files whose hashes are known are installed, and none of them has code that runs while it is installed.
+ * - An environment is named after its wheel, so a new version of the extension creates a new one and removes the old
+ * one.
+  * - It is valid only if it has a mark file, which is written as the last step: an interrupted installation is
+  * repeated.
+  * - The packages that the server needs come from the index for which the user's pip is configured. Only files with
+  * known
+  *   hashes are installed, and none of them runs code during its installation.
  */
 
 import * as path from "node:path";
@@ -14,28 +17,28 @@ import { pythons, type Python } from "./python";
 import type { Failure, Server } from "./server";
 
 const MARK = "ready.json";
-/** Written when it is known whether the kernel of the model checker can be compiled here. */
+/** The file that records whether the kernel of the model checker can be compiled here. */
 const KERNEL_MARK = "kernel.json";
 /** The exit status of `build_kernel` if the kernel cannot be compiled here. */
 const CANNOT_COMPILE = 1;
 
-/** What is being done, for the user to see. */
+/** The progress that is shown to the user. */
 export type Step = "python" | "venv" | "packages";
 
 export interface InstallOptions {
     readonly signal?: AbortSignal;
     readonly onStep?: (step: Step) => void;
     readonly onOutput?: (text: string) => void;
-    /** Folders whose programs are not started: those of a workspace that is not trusted. */
+    /** Folders from which no program is started: those of an untrusted workspace. */
     readonly avoid?: readonly string[];
 }
 
 export class PrivateEnvironment {
     /**
-     * @param folder where environments are kept.
-     * @param wheel of the server.
+     * @param folder the folder with environments.
+      * @param wheel the wheel of the server.
      * @param requirements the packages that the server needs, with their hashes.
-     * @param id tells this wheel with these packages from others.
+     * @param id identifies this wheel with these packages.
      */
     constructor(
         private readonly machine: Machine,
@@ -45,12 +48,12 @@ export class PrivateEnvironment {
         private readonly id: string,
     ) {}
 
-    /** The server in the environment, undefined if that has not been made. */
+    /** The server in the environment; undefined if it does not exist yet. */
     server(): Promise<Server | undefined> {
         return this.serverIn(this.id);
     }
 
-    /** The server of an earlier version of the extension: a sign that the user wants one. */
+    /** The server of an earlier version of the extension, which shows that the user has agreed to its installation. */
     async older(): Promise<Server | undefined> {
         for (const name of await this.machine.list(this.folder)) {
             const found = name === this.id ? undefined : await this.serverIn(name);
@@ -60,7 +63,7 @@ export class PrivateEnvironment {
     }
 
     /**
-     * Make the environment.
+     * Create the environment.
      *
      * @param preferred interpreters to try before those on PATH.
      */
@@ -75,7 +78,7 @@ export class PrivateEnvironment {
             const made = await this.machine.run(python.executable, ["-I", "-m", "venv", this.home], limits);
             if (made.status !== 0) {
                 failure = { kind: "no-venv", python: python.version, detail: words(made.err, made.out) };
-                continue; // another Python may have what this one lacks
+                continue; // another Python may have the missing modules
             }
             onStep?.("packages");
             for (const what of this.installed()) {
@@ -92,8 +95,8 @@ export class PrivateEnvironment {
     }
 
     /**
-     * Compile the kernel of the model checker in the environment that has been made, unless an earlier attempt came to
-     * its end. Without a C compiler nothing changes: properties are then verified more slowly.
+     * Compile the kernel of the model checker in the environment, unless an earlier attempt was completed. Without a C
+      * compiler, the plain Python kernel is used, which is slower.
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
         const mark = path.join(this.home, KERNEL_MARK);
@@ -103,7 +106,7 @@ export class PrivateEnvironment {
         await this.machine.write(mark, JSON.stringify({ compiled: ended.status === 0 }));
     }
 
-    /** What pip is told to install, one after the other. */
+    /** The arguments of the consecutive calls of `pip install`. */
     private installed(): string[][] {
         const packages = ["--require-hashes", "--only-binary", ":all:", "-r", this.requirements];
         return [packages, ["--no-index", "--no-deps", this.wheel]];
@@ -156,7 +159,7 @@ function versionIn(mark: string): string | undefined {
     }
 }
 
-/** The end of what a program said; what it said first is seldom the reason. */
+/** The last lines of the output of a program, which usually contain the reason. */
 function words(...texts: readonly string[]): string {
     const said = texts.map((text) => text.trim()).filter((text) => text !== "");
     return (said[0] ?? "").split("\n").slice(-8).join("\n");

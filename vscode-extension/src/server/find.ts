@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Where the server comes from: the user's setting, else the active Python environment, else PATH, else the private
- * environment of the extension.
+ * Finds the server: in the user's setting, else in the active Python environment, else on PATH, else in the private
+  * environment of the extension.
  *
- * - A setting that does not work is a failure: something else in its place would only hide that.
- * - In a workspace that is not trusted nothing is started but the private environment: settings, an interpreter and PATH
- *   may all lead into the workspace.
+ * - A setting that does not work is a failure: using another server instead would hide that.
+  * - In an untrusted workspace, only the server of the private environment is started: settings, interpreters and PATH
+  * may
+  *   refer to files of the workspace.
  */
 
 import * as path from "node:path";
@@ -16,7 +17,7 @@ import type { Failure, Server } from "./server";
 
 const PATIENCE = 20_000;
 
-/** The oldest server that this client can work with. */
+/** The minimum version of the server that this client supports. */
 export const OLDEST_SERVER = "0.1.0";
 
 export interface Wishes {
@@ -24,7 +25,7 @@ export interface Wishes {
     readonly server: string;
     /** `as2fm.interpreter`; empty if not set. */
     readonly interpreter: string;
-    /** The interpreters that extensions for Python call active. */
+    /** The active interpreters of the extensions for Python. */
     readonly active: readonly string[];
     readonly trusted: boolean;
 }
@@ -44,13 +45,13 @@ export async function findServer(
     return (await onPath(machine)) ?? (await environment.server()) ?? { kind: "no-server" };
 }
 
-/** A path as users write it in settings: `~` and `${workspaceFolder}` stand for folders. */
+/** The path in a setting, with `~` and `${workspaceFolder}` replaced by folders. */
 export function expanded(written: string, home: string, workspace: string | undefined): string {
     const path = written.trim().replace(/^~(?=[/\\]|$)/, home);
     return workspace === undefined ? path : path.replaceAll("${workspaceFolder}", workspace);
 }
 
-/** Whether `version` is `oldest` or newer; versions of another form are not known to be. */
+/** Whether `version` is at least `oldest`; false for versions of another form. */
 export function isRecent(version: string, oldest = OLDEST_SERVER): boolean {
     const numbers = (text: string) => text.split(/[^0-9]+/, 3).map(Number);
     const [found, wanted] = [numbers(version), numbers(oldest)];

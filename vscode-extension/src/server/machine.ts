@@ -4,17 +4,17 @@ import * as fs from "node:fs/promises";
 import * as path from "node:path";
 import { run, type Ended, type RunOptions } from "./run";
 
-/** What the search for a server needs of the machine that it runs on. */
+/** The functions of the machine that the search for a server needs. */
 export interface Machine {
     readonly windows: boolean;
     run(command: string, args: readonly string[], options?: RunOptions): Promise<Ended>;
     /** The absolute path of a program on PATH. */
     which(name: string): Promise<string | undefined>;
-    /** The text of a file, undefined if it cannot be read. */
+    /** The text of a file; undefined if it cannot be read. */
     read(file: string): Promise<string | undefined>;
     write(file: string, text: string): Promise<void>;
     remove(folder: string): Promise<void>;
-    /** The names in a folder; none if there is no such folder. */
+    /** The names in a folder; none if the folder does not exist. */
     list(folder: string): Promise<readonly string[]>;
 }
 
@@ -24,7 +24,7 @@ export const thisMachine: Machine = {
     async which(name) {
         const extensions = process.platform === "win32" ? [".exe"] : [""];
         for (const folder of (process.env["PATH"] ?? "").split(path.delimiter)) {
-            // An empty or relative entry means the workspace, from which nothing is started by name.
+            // An empty or relative entry refers to the workspace, from which no program is started by its name.
             if (!path.isAbsolute(folder)) continue;
             for (const extension of extensions) {
                 const file = path.join(folder, name + extension);

@@ -26,9 +26,9 @@ export interface Python {
     readonly server: string | undefined;
 }
 
-/** What a Python interpreter says of itself; undefined if it is none. */
+/** The properties of a Python interpreter, as it reports them; undefined if the program is not one. */
 export async function askPython(machine: Machine, executable: string): Promise<Python | undefined> {
-    // -I: neither the working folder nor variables of the environment decide what is imported.
+    // -I: imports depend neither on the working folder nor on environment variables.
     const ended = await machine.run(executable, ["-I", "-c", ASK], { timeout: PATIENCE });
     const [path, major, minor, server] = ended.out.split(/\r?\n/);
     if (ended.status !== 0 || !path || !major || !minor) return undefined;
@@ -37,10 +37,10 @@ export async function askPython(machine: Machine, executable: string): Promise<P
 }
 
 /**
- * Interpreters on this machine that are recent enough, each once.
+ * The interpreters on this machine that are recent enough, without duplicates.
  *
- * @param first paths to try before the names on PATH.
- * @param avoid folders from which nothing is started.
+ * @param first the paths to try before the names on PATH.
+  * @param avoid the folders from which no program is started.
  */
 export async function* pythons(
     machine: Machine,

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * The server that ran last in a workspace: with the same wishes it is probably found again, and need not be waited for.
- * To ask an extension for Python and an interpreter takes longer than to start the server.
+ * The server that ran last in a workspace. With the same settings, the search will probably return it again, so it is
+  * started before the search ends: querying extensions for Python and an interpreter takes longer than starting the
+  * server.
  */
 
 import { isDeepStrictEqual } from "node:util";
 import { isServer, type Server } from "./server";
 
-/** What is kept from one window to the next, as `vscode.Memento` does. */
+/** Storage that persists between windows, such as `vscode.Memento`. */
 export interface Store {
     get(key: string): unknown;
     update(key: string, value: unknown): PromiseLike<void>;
@@ -18,7 +19,7 @@ const KEY = "server";
 export class Recall {
     constructor(private readonly store: Store) {}
 
-    /** The server that ran last, if it was wished for in the same way. */
+    /** The server that ran last, if it was found with the same settings. */
     server(wishes: readonly unknown[]): Server | undefined {
         const kept = this.store.get(KEY);
         if (typeof kept !== "object" || kept === null || !("wishes" in kept) || !("server" in kept)) return undefined;

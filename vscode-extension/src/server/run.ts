@@ -2,7 +2,7 @@
 import { spawn } from "node:child_process";
 import { safeFolder, safeVariables } from "./surroundings";
 
-/** How a program ended. `status` is null if it could not be started, was killed or took too long. */
+/** The result of a program. `status` is null if it could not be started, was killed or took too long. */
 export interface Ended {
     readonly status: number | null;
     readonly out: string;
@@ -10,13 +10,13 @@ export interface Ended {
 }
 
 export interface RunOptions {
-    /** In milliseconds. */
+    /** In ms. */
     readonly timeout?: number;
     readonly signal?: AbortSignal;
     readonly onOutput?: (text: string) => void;
 }
 
-/** Run a program to its end, outside of the workspace. Never throws. */
+/** Run a program to its end, with a working folder outside of the workspace. Never throws. */
 export function run(command: string, args: readonly string[], options: RunOptions = {}): Promise<Ended> {
     return new Promise((resolve) => {
         const out: string[] = [];

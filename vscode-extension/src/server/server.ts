@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The language server as a program, and why there may be none. Plain data: the wording is the editor's business. */
+/** The language server as a program, and the reasons why there is none. Plain data; the editor defines the texts. */
 
 /** Where a server was found. */
 export type Origin = "setting" | "python" | "path" | "private";
 
-/** A program that speaks the language server protocol on its standard input and output. */
+/** A program that communicates by LSP through its standard input and output. */
 export interface Server {
     readonly origin: Origin;
     readonly command: string;
-    /** What comes before the arguments of `as2fm-lsp`. */
+    /** The arguments before those of `as2fm-lsp`. */
     readonly args: readonly string[];
     readonly version: string;
 }
 
-/** Why there is no server. `detail` is what a program said, in its own words. */
+/** Why there is no server. `detail` is the output of a program. */
 export type Failure =
     | { readonly kind: "no-server" }
     | { readonly kind: "configured-server"; readonly path: string; readonly detail: string }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * The life of the server: searching, installing, starting, running, failed.
+ * The states of the server: searching, installing, starting, running, failed.
  *
- * - There is one state at a time and each change of it is told; nothing else decides what the user sees.
- * - A server that ends by itself is started again, and the user is told; one that keeps ending is left alone.
- * - What has been overtaken by a newer wish changes nothing any more.
+ * - There is one state at a time, and each change is reported; the user sees nothing else.
+  * - A server that crashes is restarted with a message; one that crashes repeatedly is not.
+  * - A newer request makes the results of older ones irrelevant: they change nothing any more.
  */
 
 import { isDeepStrictEqual } from "node:util";
@@ -19,35 +19,35 @@ export type State =
     | { readonly kind: "running"; readonly server: Server }
     | { readonly kind: "failed"; readonly failure: Failure };
 
-/** How a server's process ended. */
+/** How the process of a server ended. */
 export interface Exit {
     readonly status: number | null;
     readonly signal: string | null;
-    /** The last that it said on its standard error. */
+    /** The end of its standard error. */
     readonly detail: string;
 }
 
-/** A server that has answered. */
+/** A running server, after the handshake. */
 export interface Session {
-    /** Settles when the process has ended, whoever ended it. */
+    /** Settles when the process has ended, for whatever reason. */
     readonly ended: Promise<Exit>;
     stop(): Promise<void>;
 }
 
 export interface Ports {
-    /** `hurry`: nothing runs until a server is found, so whoever does not say soon where one is, is passed over. */
+    /** `hurry`: no server runs yet, so sources that do not answer soon are skipped. */
     find(hurry: boolean): Promise<Server | Failure>;
     install(onStep: (step: Step) => void): Promise<Server | Failure>;
-    /** Start a server and wait until it has answered. */
+    /** Start a server and wait for the handshake. */
     launch(server: Server): Promise<Session>;
-    /** In milliseconds. */
+    /** In ms. */
     now(): number;
     changed(state: State): void;
-    /** A server has ended by itself and runs again. */
+    /** Called when a server has crashed and runs again. */
     restarted(exit: Exit): void;
 }
 
-/** A server may end by itself this often within `CRASH_WINDOW` milliseconds and is started again. */
+/** The maximum number of crashes within `CRASH_WINDOW` ms after which a server is restarted. */
 export const MAX_CRASHES = 3;
 export const CRASH_WINDOW = 180_000;
 
@@ -63,32 +63,32 @@ export class Supervisor {
         return this.current;
     }
 
-    /** Look for a server and start it; one that runs is ended first. */
+    /** Search a server and start it; a running one is stopped first. */
     async start(): Promise<void> {
         const wish = await this.begin();
         this.set(wish, { kind: "searching" });
         await this.use(wish, () => this.ports.find(true));
     }
 
-    /** As `start`, but the server that will probably be found is started first: a search may take longer than a start. */
+    /** Like `start`, but starts the server that will probably be found first: a search may take longer than a start. */
     async expect(server: Server): Promise<void> {
         const wish = await this.begin();
         await this.launch(wish, server);
         if (wish === this.wish) await this.look();
     }
 
-    /** Look for a server again: the one that runs goes on, unless it is another that is found. */
+    /** Search a server again; the running one continues, unless the search returns another one. */
     async look(): Promise<void> {
         if (this.current.kind === "running") {
             const [wish, { server }] = [this.wish, this.current];
-            // A search that fails is made again, and what is wrong then told, by `start`.
+            // If the search fails, `start` repeats it and reports what is wrong.
             const found = await this.ports.find(false).catch(() => undefined);
             if (wish !== this.wish || isDeepStrictEqual(found, server)) return;
         }
         await this.start();
     }
 
-    /** Make the private environment and start the server in it. */
+    /** Create the private environment and start the server in it. */
     async install(): Promise<void> {
         const wish = await this.begin();
         this.set(wish, { kind: "installing", step: "python" });
@@ -129,7 +129,7 @@ export class Supervisor {
         }
     }
 
-    /** Start a server; why it has not started, or undefined if it runs or is not wanted any more. */
+    /** Start a server; returns why it has not started, or undefined if it runs or is no longer needed. */
     private async launch(wish: number, server: Server): Promise<string | undefined> {
         this.set(wish, { kind: "starting", server });
         let session: Session;
@@ -158,12 +158,12 @@ export class Supervisor {
                 this.ports.restarted(exit);
                 return;
             }
-            // One that ends before it has answered has ended once more.
+            // A server that ends before the handshake has crashed, too.
             last = { status: null, signal: null, detail: error };
         }
     }
 
-    /** Count that the server has ended by itself; whether it is to be started again. */
+    /** Count a crash of the server; returns whether to restart it. */
     private mayGoOn(wish: number, server: Server, { detail }: Exit): boolean {
         const now = this.ports.now();
         this.crashes = [...this.crashes.filter((time) => now - time < CRASH_WINDOW), now];

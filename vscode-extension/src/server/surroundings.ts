@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * In what surroundings programs are started, so that a workspace cannot have its own code run by lying there.
+ * The working folder and environment variables of started programs, so that they never execute code of the workspace.
  *
- * - Python looks for modules in the working folder unless it is told not to (`-I`), and in what PYTHONPATH names: an empty
- *   or relative entry there means the working folder, too.
- * - Windows looks for programs and libraries in the working folder.
+ * - Python searches modules in the working folder, unless started with `-I`, and in the entries of PYTHONPATH: an empty
+ * or
+  *   relative entry also refers to the working folder.
+  * - Windows searches programs and libraries in the working folder.
  */
 
 import * as path from "node:path";
 
-/** A folder that is always there and that no workspace can put anything into: that of the running editor. */
+/** A folder that always exists and into which no workspace can write: that of the running editor. */
 export function safeFolder(): string {
     return path.dirname(process.execPath);
 }
 
-/** Variables of the environment in place of those in `environment` that could have code of the working folder run. */
+/** Replacements for the variables in `environment` that could cause code of the working folder to be executed. */
 export function safeVariables(environment: NodeJS.ProcessEnv): Record<string, string> {
     const safe: Record<string, string> = { PYTHONSAFEPATH: "1" };
     const named = environment["PYTHONPATH"];
@@ -27,7 +28,7 @@ export function safeVariables(environment: NodeJS.ProcessEnv): Record<string, st
     return safe;
 }
 
-/** Whether a file lies in one of these folders. */
+/** Whether a file is in one of these folders. */
 export function isInside(file: string, folders: readonly string[]): boolean {
     return folders.some((folder) => {
         const relative = path.relative(folder, file);

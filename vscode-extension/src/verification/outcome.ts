@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What an answer of the model checker is as the result of a test. */
+/** Converts a result of the model checker to the result of a test. */
 
 import type { Stuckness, Verified } from "../protocol";
 
@@ -8,18 +8,18 @@ export type Outcome =
           readonly kind: "passed";
           readonly short: string;
           readonly milliseconds: number;
-          /** What is met under uniform choices, and not known to be met under all schedulers. */
+          /** The expectation that is met under uniform choices, but not known to be met under all schedulers. */
           readonly uniform: readonly string[];
-          /** Why the number is doubtful, or not what was asked for. */
+          /** Why the number is doubtful, or differs from what the property asks for. */
           readonly warning?: string;
-          /** Who waits for whom, if the system gets stuck. */
+          /** Which automaton waits for which, if the system gets stuck. */
           readonly stuck?: string;
       }
     | {
           readonly kind: "failed";
           readonly short: string;
           readonly milliseconds: number;
-          /** What was expected and is not so. */
+          /** The expectation that is not met. */
           readonly missed: readonly string[];
           readonly hasCounterexample: boolean;
           readonly warning?: string;
@@ -28,8 +28,9 @@ export type Outcome =
     | { readonly kind: "errored"; readonly message: string };
 
 /**
- * A property of which nothing is expected passes: its probability is what was asked for. That the system gets stuck is
- * told beside it, or fails it if that is an error.
+ * A property without an expectation passes: the result is its probability. If the system gets stuck, the result
+ * contains
+  * this; if that is an error, the test fails.
  */
 export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome {
     if (verified.error) return { kind: "errored", message: verified.error.message };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Which properties of which systems a user has chosen in a tree of tests. */
+/** The properties of systems that a user has selected in a tree of tests. */
 
-/** What is needed of a test: systems have children, properties have none. */
+/** The part of a test that is used: systems have children, properties have none. */
 export interface Test<T> {
     readonly id: string;
     readonly parent?: T | undefined;
     readonly children: Iterable<[string, T]>;
 }
 
-/** The chosen properties in their order, each once; all if nothing is chosen. */
+/** The selected properties in their order, without duplicates; all if nothing is selected. */
 export function chosen<T extends Test<T>>(
     all: Iterable<[string, T]>,
     include: readonly T[] | undefined,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** A drawing as SVG. Colors are the style sheet's; what a kind is, its shape and lines tell as well. */
+/** Draws SVG. Colors come from the style sheet; kinds also differ in shapes and lines. */
 
 import type { NodeKind, Picture, PictureEdge, PictureNode, Words } from "../contract";
 import {
@@ -16,7 +16,7 @@ import {
 const SVG = "http://www.w3.org/2000/svg";
 const LINE = 1.4;
 
-/** The elements of a picture, by the index of what they stand for. */
+/** The SVG elements of a picture, by the index of the node or edge. */
 export interface Scene {
     readonly root: SVGGElement;
     readonly nodes: ReadonlyMap<number, SVGGElement>;
@@ -27,7 +27,7 @@ export function draw(picture: Picture, drawing: Drawing, words: Words): Scene {
     const root = element("g", { class: "scene" });
     const nodes = new Map<number, SVGGElement>();
     const edges = new Map<number, SVGGElement>();
-    // Frames lie below the edges, everything else above.
+    // Frames are below the edges, everything else is above them.
     const isFrame = ({ index }: DrawnNode) => picture.nodes[index]?.kind === "thread";
     const addNode = (drawn: DrawnNode) => {
         const node = picture.nodes[drawn.index];

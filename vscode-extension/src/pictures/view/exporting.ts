@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** A picture as a file that looks the same everywhere: the colors of the theme are written into it. */
+/** Exports a picture as a file that contains the colors of the theme, so that it looks the same everywhere. */
 
 import { element, markers } from "./draw";
 
@@ -62,7 +62,7 @@ export async function pngData(svg: string, size: Size): Promise<string> {
     }
 }
 
-/** `copy` with what the style sheet says of `original`. */
+/** Write the computed style of `original` into `copy`. */
 function styled<T extends Element>(original: Element, copy: T): T {
     const style = getComputedStyle(original);
     for (const property of PROPERTIES) {

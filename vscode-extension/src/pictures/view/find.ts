@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Getting about in a picture: from node to node by arrow keys, and by searching. */
+/** Navigation in a picture: by arrow keys, by search, and by zooming. */
 
 import type { Picture } from "../contract";
 import type { Box, DrawnNode, Point } from "./layout";
@@ -17,7 +17,7 @@ export function isDirection(key: string): key is Direction {
     return key in WAYS;
 }
 
-/** The index of the nearest node in a direction; what lies aside counts as further away. */
+/** The index of the nearest node in a direction; a sideways distance is weighted more. */
 export function neighbour(nodes: readonly DrawnNode[], from: number, direction: Direction): number | undefined {
     const shown = nodes.filter((node) => node.index >= 0);
     const start = shown.find((node) => node.index === from);
@@ -37,7 +37,7 @@ export function neighbour(nodes: readonly DrawnNode[], from: number, direction: 
     return best;
 }
 
-/** The indexes of the nodes in which all words of a text are found, in any case of letters. */
+/** The indexes of the nodes that contain all words of a text, ignoring case. */
 export function search(picture: Picture, text: string): number[] {
     const words = text
         .toLowerCase()
@@ -50,14 +50,14 @@ export function search(picture: Picture, text: string): number[] {
     });
 }
 
-/** What a user sees of a drawing: the point of it that is at the top left, and how much it is enlarged. */
+/** The visible part of a drawing: the point at the top left, and the zoom factor. */
 export interface Sight extends Point {
     readonly scale: number;
 }
 
 const MARGIN = 24;
 
-/** All of a drawing in a window of some size; small ones are not enlarged. */
+/** The view that shows a whole drawing in a window; small drawings are not enlarged. */
 export function fit(drawing: { width: number; height: number }, width: number, height: number): Sight {
     const scale = Math.min(
         1,
@@ -72,7 +72,7 @@ export function fit(drawing: { width: number; height: number }, width: number, h
     };
 }
 
-/** Enlarged by a factor about a point of the window, which stays where it is. */
+/** The view zoomed by a factor around a fixed point of the window. */
 export function zoom(sight: Sight, factor: number, about: Point): Sight {
     const scale = Math.min(4, Math.max(0.05, sight.scale * factor));
     return {
@@ -82,7 +82,7 @@ export function zoom(sight: Sight, factor: number, about: Point): Sight {
     };
 }
 
-/** Moved as little as needed for a box to be seen. */
+/** The view moved by the minimum distance that makes a box visible. */
 export function reveal(sight: Sight, box: Box, width: number, height: number): Sight {
     const [w, h] = [width / sight.scale, height / sight.scale];
     const inside = (at: number, low: number, size: number, whole: number) =>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Where everything goes: a picture becomes a graph for elkjs, and its answer a drawing. Knows no document. */
+/** Layout: converts a picture to a graph for elkjs, and its result to a drawing. Does not depend on the DOM. */
 
 import type { ElkEdgeSection, ElkExtendedEdge, ElkNode, LayoutOptions } from "elkjs/lib/elk-api";
 import type { Picture, PictureEdge, PictureKind, PictureNode } from "../contract";
 
-/** The width of a text in pixels; `size` is that of the font. */
+/** The width of a text in pixels; `size` is the font size. */
 export type Measure = (text: string, size: number) => number;
 
 export const TITLE_SIZE = 13;
@@ -22,7 +22,7 @@ export interface Box extends Point {
     readonly height: number;
 }
 
-/** A node as it is drawn; `index` is its place in the picture, -1 for the dot before an initial state. */
+/** A node of the drawing; `index` is its index in the picture, -1 for the dot before an initial state. */
 export interface DrawnNode extends Box {
     readonly index: number;
 }
@@ -31,7 +31,7 @@ export interface DrawnEdge {
     /** -1 for the arrow from the dot to an initial state. */
     readonly index: number;
     readonly points: readonly Point[];
-    /** Where its labels go, if it has any. */
+    /** The place of its label, if it has one. */
     readonly label: Box | undefined;
 }
 
@@ -54,7 +54,7 @@ const COMMON: LayoutOptions = {
     "elk.layered.spacing.edgeNodeBetweenLayers": "18",
     "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
     "elk.edgeRouting": "ORTHOGONAL",
-    // What everything begins with comes first.
+    // The initial nodes come first.
     "elk.layered.cycleBreaking.strategy": "DEPTH_FIRST",
 };
 
@@ -75,7 +75,7 @@ export function linesOf(node: PictureNode): number {
     return (hasKindLine(node) ? 1 : 0) + 1 + node.details.length;
 }
 
-/** Whether the kind is written above the label; of states it goes without saying. */
+/** Whether the kind is written above the label; it is omitted for states. */
 export function hasKindLine(node: PictureNode): boolean {
     return node.kind !== "state";
 }
@@ -100,12 +100,12 @@ export function graphOf(picture: Picture, measure: Measure, kindWord: (node: Pic
     return { id: "picture", layoutOptions: OPTIONS[picture.kind], children: roots, edges };
 }
 
-/** Edges that elkjs gets the other way round, so that what is read lies below who reads it. */
+/** Whether an edge is reversed for elkjs, so that what is read is drawn below its reader. */
 export function isTurned(edge: PictureEdge): boolean {
     return edge.kind === "reads";
 }
 
-/** Around what lies in a frame: its lines stand at the top. */
+/** The padding of a frame, with space for its lines of text at the top. */
 function paddingOf(picture: Picture, frame: string): string {
     const node = picture.nodes.find((each) => each.id === frame);
     const top = 6 + TITLE_SIZE * LINE + ((node ? linesOf(node) : 1) - 1) * SMALL_SIZE * LINE + 12;
@@ -142,7 +142,7 @@ function addDots(picture: Picture, nodes: Map<string, ElkNode>, roots: ElkNode[]
     }
 }
 
-/** What elkjs has answered, in the coordinates of the whole drawing. */
+/** The result of elkjs, in the coordinates of the whole drawing. */
 export function drawingOf(picture: Picture, laidOut: ElkNode): Drawing {
     const indexes = new Map(picture.nodes.map((node, index) => [node.id, index]));
     const nodes: DrawnNode[] = [];

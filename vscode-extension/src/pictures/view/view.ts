@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view in a panel: draws what the extension sends, and tells it what the user does. */
+/** The view in a panel: draws the pictures that the extension sends, and sends it the actions of the user. */
 
 import ELK from "elkjs/lib/elk.bundled.js";
 import type { FromView, Part, Picture, PictureEdge, PictureNode, ToView, Words } from "../contract";
@@ -133,7 +133,7 @@ class View {
         this.svg.setAttribute("aria-label", chosen.getAttribute("aria-label") ?? "");
     }
 
-    /** What the caret is in. */
+    /** Select the part that contains the caret. */
     private mark(here: Part | null): void {
         this.part(this.here)?.classList.remove("here");
         this.here = here;
@@ -146,7 +146,7 @@ class View {
         }
     }
 
-    /** Where a trace is. */
+    /** Highlight the node of the current step of a trace. */
     private highlight(id: string): void {
         const highlighted = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
         for (const [index, node] of this.scene?.nodes ?? [])
@@ -226,7 +226,7 @@ class View {
         });
     }
 
-    /** Whether the key was for us. */
+    /** Whether the view has handled the key. */
     private key({ key, ctrlKey, metaKey }: KeyboardEvent): boolean {
         const typing = document.activeElement === this.input;
         if (typing) {
