@@ -40,10 +40,10 @@ examples:
   as2fm-lsp simulate main.xml --interactive           choose on the terminal what happens next, and go back
   as2fm-lsp simulate main.xml --script run.json       the run that --save wrote
 
-The run of seed N and trace M is the trace M that `verify --seed N` makes. A run in which a step was chosen by hand is
-not one that `verify` counts.
+The run of seed N and trace M is trace M of `verify --seed N`. A run with a step chosen by hand is not a trace of
+`verify`.
 
-exit status: 0 success; 1 the model has errors, or the run goes wrong; 2 usage error; 3 internal error
+exit status: 0 success; 1 the model has errors, or the run fails; 2 usage error; 3 internal error
 """
 
 
@@ -237,7 +237,7 @@ def parser() -> ArgumentParser:
     )
     add = result.add_argument
     add("main", metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
-    add("--property", metavar="NAME", help="the property that the run is watched for (the first one)")
+    add("--property", metavar="NAME", help="the property that is evaluated on the run (the first one)")
     add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
     add("--trace", type=natural, default=0, metavar="N", help="number of the trace (0)")
     add("--for", dest="for_", type=time_of, metavar="TIME", help='end after this time of the model, such as "10 s"')

@@ -25,7 +25,7 @@ def session(
 
     Args:
         subject: what runs.
-        property: the name of the property that the run is watched for; the first one if not given, and `stuck` if the
+        property: the name of the property that is evaluated on the run; the first one if not given, and `stuck` if the
             model has none.
         seed, trace: the run is the trace of this number that `verify` makes with this seed.
         saved: continue this session; its property, seed and trace override the others.
@@ -33,7 +33,7 @@ def session(
     Raises:
         PropertyError: the model has no property of this name.
         RunError: the decisions that were saved are not possible in this model.
-        FaultError: the model cannot be run, the property cannot be answered, or the run goes wrong.
+        FaultError: the model cannot be run, the property cannot be answered, or the run fails.
     """
     from roaml.simulation.session import Session  # noqa: PLC0415 - checking and translating start faster without it
 

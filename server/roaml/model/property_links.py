@@ -139,7 +139,7 @@ class _Linker:
     def linked(self) -> LinkedFile:
         assumed = next((written for written in self.file.properties if written.section == ASSUMES), None)
         if assumed is not None:
-            message = "assumptions are neither verified nor translated yet; without them, the guarantees ask more"
+            message = "assumptions are neither verified nor translated yet; without them, the guarantees are stronger"
             self.report(ProblemKind.FORM, assumed.element.name_span, message)
         self._check_variables()
         self._check_names()
@@ -322,7 +322,7 @@ class _Linker:
             return None
         elements = [scope.element for scope in written.scopes] + [interval.element for interval in written.intervals]
         for span in (*(c.span for c in written.conditions), *(element.name_span for element in elements)):
-            self.report(ProblemKind.FORM, span, "a formula has neither events nor a scope nor an interval beside it")
+            self.report(ProblemKind.FORM, span, "a property with a formula has no events, scope or interval")
         for span, message in formula.notation.problems:
             self.report(ProblemKind.FORM, formula.source.span(*span), message)
         if formula.notation.formula is None:
@@ -338,7 +338,7 @@ class _Linker:
     def _window(self, written: WrittenProperty, pattern: Pattern) -> Window | None:
         if not written.intervals:
             if pattern is Pattern.RECURRENCE:
-                message = "`recurrence` needs a `<time_interval>`: after which time the condition must have come back"
+                message = "`recurrence` needs a `<time_interval>`: the time within which the condition is true again"
                 self.report(ProblemKind.TIME, written.element.name_span, message)
                 return None
             return Window()
@@ -351,7 +351,7 @@ class _Linker:
             self.report(ProblemKind.TIME, place, "an interval has `time`, `after` or `within`")
             return None
         if interval.time is not None and (interval.after or interval.within):
-            self.report(ProblemKind.TIME, interval.time.span, "`time` means `within`; use `after` and `within` alone")
+            self.report(ProblemKind.TIME, interval.time.span, "`time` means `within`; use only `after` and `within`")
             return None
         if pattern is Pattern.RECURRENCE and interval.after is not None:
             self.report(ProblemKind.TIME, interval.after.span, "`recurrence` has no `after`, only `time`")
@@ -380,7 +380,7 @@ class _Linker:
             return None
         if max(lower, upper or 0) > MAX_STEPS:
             message = (
-                f"the interval has {max(lower, upper or 0):,} steps of the clock; at most {MAX_STEPS:,} are counted"
+                f"the interval has {max(lower, upper or 0):,} steps of the clock; at most {MAX_STEPS:,} are supported"
             )
             self.report(ProblemKind.TIME, interval.element.name_span, message)
             return None
@@ -432,7 +432,7 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
         case UnknownFunction(name=name):
             return f"there is no `{name}`"
         case DivisionByZero():
-            return "this divides by zero"
+            return "division by zero"
         case RandomUsed():
             return "a condition cannot be random"
-    return "this cannot be evaluated"
+    return "the expression cannot be evaluated"

@@ -245,7 +245,8 @@ class PortLinker:
         assert port.name is not None
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
         attribute = "origin" if event in ("request", "goal_request") else "target"
-        message = f"what {len(channel.users)} clients say counts: {names}; AS2FM takes one; set `{attribute}` to choose"
+        number = len(channel.users)
+        message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to choose"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)
 
     # ------------------------------------------------------------- the tree

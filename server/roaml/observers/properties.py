@@ -95,7 +95,7 @@ class PatternProperty:
 
     def __post_init__(self) -> None:
         if self.pattern is Pattern.RECURRENCE and (self.window.upper is None or self.window.lower > 0):
-            raise ValueError("a recurrence has an upper bound on the time and no lower one")
+            raise ValueError("a recurrence needs an upper bound on the time and no lower one")
 
     @property
     def inputs(self) -> tuple[str, ...]:

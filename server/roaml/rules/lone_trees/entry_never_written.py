@@ -41,4 +41,4 @@ def _finding(use: Use, names: list[str]) -> Finding:
     return RULE.at(use.span, message, *replacements(use.span, tuple(f"{{{name}}}" for name in close)))
 
 
-RULE = Rule("entry-never-written", Severity.INFORMATION, "A blackboard entry is read but written nowhere.", tree=check)
+RULE = Rule("entry-never-written", Severity.INFORMATION, "A blackboard entry is read but never written.", tree=check)

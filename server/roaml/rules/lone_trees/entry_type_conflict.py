@@ -26,9 +26,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
-    """The uses of another type than the entry has, each with the one that gives it its type.
+    """The uses with another type than that of the entry, each with the use that determines the type of the entry.
 
-    The first port gives it. An entry that was made as a text takes other types, but no second kind of values.
+    The first port determines it. An entry created as a text accepts other types, but only values of one type.
     """
     first = typed[0]
     for use in typed[1:]:
@@ -44,7 +44,7 @@ def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
 
 
 _CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "NodeStatus", "chrono")
-"""Types that the library reads from a text; others may be registered by the program."""
+"""The types that the library converts from a text; the program may register others."""
 
 
 def _finding(use: Use, first: Use) -> Finding:

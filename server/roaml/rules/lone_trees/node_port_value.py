@@ -45,7 +45,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _is_code(text: str) -> bool:
-    """Whether a default is written as in C++: models describe it for people."""
+    """Whether a default is a C++ expression, which models use as a description for people."""
     return any(mark in text for mark in "(:<") or text.endswith("f")
 
 
@@ -62,7 +62,7 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
     if opens and closes:
         name = inner[1:-1]
         if not name.strip():
-            yield RULE.at(setting.value.span, "the braces hold no name of a blackboard entry")
+            yield RULE.at(setting.value.span, "the braces do not contain the name of a blackboard entry")
         elif name != name.strip() and "{" not in name:
             plain = f"{{{name.strip()}}}"
             message = f"the spaces belong to the name of the entry; write `{plain}`"
@@ -97,8 +97,8 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
 
 
 def _severity(known: Node) -> Severity:
-    """A model in a file may differ from the node."""
+    """The severity of a finding: only a warning for models in files, which may differ from the node."""
     return Severity.ERROR if known.library or known.kind.value == "subtree" else Severity.WARNING
 
 
-RULE = Rule("node-port-value", Severity.ERROR, "A port is given a value that it cannot have.", tree=check)
+RULE = Rule("node-port-value", Severity.ERROR, "The value of a port is invalid.", tree=check)

@@ -13,7 +13,7 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 
 REFUSED_SINCE = (4, 7)
-"""The version from which on two `AsyncSequence` in a `ReactiveSequence` are refused."""
+"""The first version that refuses two `AsyncSequence` in a `ReactiveSequence`."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

@@ -38,7 +38,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _names(script: Script) -> Iterator[tuple[Name, str]]:
-    """The names of a script, each with the operator that assigns to it, or ""."""
+    """The names in a script, each with the operator that assigns to it, or ""."""
     targets: set[int] = set()
     for expr in walk(script):
         if isinstance(expr, Assignment):
@@ -49,7 +49,7 @@ def _names(script: Script) -> Iterator[tuple[Name, str]]:
 
 
 def _is_closed(forest: Forest, tree: Tree) -> bool:
-    """Whether it is known which trees a tree is used in: other files may remap its entries."""
+    """Whether all uses of a tree are known: other files may remap its entries."""
     main = forest.file.main
     if not forest.complete:
         return False

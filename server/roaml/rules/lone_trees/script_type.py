@@ -42,7 +42,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _types(entries: Entries) -> dict[Key, Type]:
-    """The types of the entries whose ports are all of one type."""
+    """The types of the entries whose ports all have the same type."""
     found: Mapping[Key, set[str]] = {
         key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry().items()
     }

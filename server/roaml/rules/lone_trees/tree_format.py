@@ -41,7 +41,7 @@ def _plan(context: TreeContext) -> tuple[TextEdit, ...]:
 
 
 def _edits(context: TreeContext) -> Iterator[Edit]:
-    """The edits that make a file of version 4 of it."""
+    """The edits that convert the file to version 4."""
     root = context.file.element
     version = root.get("BTCPP_format")
     if version is None:
@@ -71,7 +71,8 @@ def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
 
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
-    """In version 3, the values of a `SubTree` name entries without braces; those of a `SubTreePlus` are as now."""
+    """In version 3, values of a `SubTree` are names of entries without braces; in a `SubTreePlus` they are as in
+    version 4."""
     has_current = node.element.get("_autoremap") is not None
     for attribute in node.element.attributes:
         if attribute.name in _SHARING:

@@ -104,4 +104,4 @@ def _port(name: Name) -> Iterator[Finding]:
         yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a port")
 
 
-RULE = Rule("tree-name", Severity.ERROR, "A name is refused by BehaviorTree.CPP or given twice.", tree=check)
+RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP refuses a name, or it is not unique.", tree=check)

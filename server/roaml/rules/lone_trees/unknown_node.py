@@ -22,7 +22,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for _, node in forest.own_nodes():
         if node.plugin is not None and not node.is_subtree and not forest.names_tree(node):
             for finding in _check(forest, node):
-                # What no model describes is told once for each name.
+                # A node that no model describes is reported once for each name.
                 if finding.fixes or node.plugin.value not in undescribed:
                     yield finding
             undescribed.add(node.plugin.value)
@@ -54,7 +54,7 @@ def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
 
 
 def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
-    """A program may register nodes that no model describes; what is nearly the name of a node is told in any case."""
+    """A program may register nodes that no model describes; a name similar to that of a node is always reported."""
     assert node.plugin is not None
     trees = tuple(forest.trees)
     near = probably_meant(name, forest.names) or probably_meant(name, trees, most=1)
@@ -77,4 +77,4 @@ def _renaming(node: TreeNode, name: str) -> Fix:
     return Fix(f"Change to `{name}`", (TextEdit(node.plugin.span, name),), preferred=True)
 
 
-RULE = Rule("unknown-node", Severity.WARNING, "A tree uses a node that is not known.", tree=check)
+RULE = Rule("unknown-node", Severity.WARNING, "A tree uses an unknown node.", tree=check)

@@ -16,7 +16,7 @@ from roaml.rules.support.forest import forest_of, probably_meant
 from roaml.suggest import close_names
 
 MAX_PORTS = 8
-"""So many ports of a node are listed."""
+"""The maximum number of ports that a message lists."""
 
 _OF_LIBRARY = (*CONDITIONS, *AFTERWARDS, "_autoremap", "_description", "_uid", "_fullpath")
 
@@ -45,7 +45,7 @@ def _ports(context: TreeContext, node: TreeNode, known: Node) -> Iterator[Findin
         hint = did_you_mean(close) or _known(names)
         drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),), preferred=False)
         fixes = (*replacements(attribute.name_span, close), *(() if close else (drop,)))
-        # A model in a file may be older than the node.
+        # Only a warning: a model in a file may be older than the node.
         severity = Severity.ERROR if known.library else Severity.WARNING
         message = f"`{known.name}` has no port `{attribute.name}`{hint}"
         yield RULE.at(attribute.name_span, message, *fixes, severity=severity)

@@ -12,7 +12,7 @@ from roaml.rules.rule import Rule, TreeContext, listing
 from roaml.rules.support.forest import forest_of
 
 MAX_TREES = 5
-"""So many trees are listed."""
+"""The maximum number of trees that a message lists."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -20,7 +20,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     if sum(len(file.trees) for _, file in forest.files) > len(forest.trees):
-        return  # names are missing or given twice
+        return  # a name is missing or not unique
     own = [tree.id for tree in context.file.trees if tree.id is not None]
     main = context.file.main
     if main is not None and main.value in forest.trees:
@@ -55,4 +55,4 @@ def _reached(forest: Forest, main: str) -> set[str]:
     return found
 
 
-RULE = Rule("unused-tree", Severity.INFORMATION, "A tree is not part of the one that is executed.", tree=check)
+RULE = Rule("unused-tree", Severity.INFORMATION, "A tree is not part of the executed tree.", tree=check)

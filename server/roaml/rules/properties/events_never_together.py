@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.NEVER_TOGETHER,
     Severity.WARNING,
-    "A condition asks for two events at the same time.",
+    "A condition requires two events at the same time.",
 )

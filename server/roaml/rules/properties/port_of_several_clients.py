@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.SEVERAL_CLIENTS,
     Severity.WARNING,
-    "A port of a service or action does not say which of its clients counts.",
+    "A port of a service or action does not choose one of several clients.",
 )

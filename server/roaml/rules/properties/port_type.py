@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.PORT_TYPE,
     Severity.ERROR,
-    "The type of a port is not that of the interface.",
+    "The type of a port differs from the type of the interface.",
 )

@@ -27,13 +27,13 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
 
 
 def _is_part_of_unknown(name: str, variables: Mapping[str, GlobalVariable]) -> bool:
-    """Whether a variable would be a part of a parameter of unknown type, which another rule reports."""
+    """Whether a variable may be part of a parameter of unknown type, which another rule reports."""
     unknown = (v.name for v in variables.values() if isinstance(unwrap(v.type)[0], Unknown))
     return any(name.startswith((f"{whole}__", f"{whole}.")) for whole in unknown)
 
 
 def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:
-    """Variables of the event with which the name begins."""
+    """The variables of the event with whose name `name` begins."""
     event = name.partition("__")[0].partition(".")[0]
     return tuple(v.name for v in variables.values() if v.event == event)[:3]
 

@@ -15,7 +15,7 @@ from roaml.smc.forms import UNSUPPORTED, faults_in
 def check(context: PropertiesContext) -> Iterator[Finding]:
     for property_ in context.properties:
         if any(isinstance(part, Missing) for part in walk(property_.expression)):
-            continue  # other rules report missing and unreadable parts
+            continue  # other rules report missing and invalid parts
         for fault in faults_in(property_):
             # ignored-bounds reports bounds on time and rewards
             if fault.code == UNSUPPORTED and fault.origin is not None:
