@@ -46,7 +46,7 @@ def test_every_citation_leads_to_a_section() -> None:
     assert not wrong
 
 
-def test_nothing_cites_what_is_not_in_the_repository() -> None:
+def test_citations_refer_only_to_the_repository() -> None:
     assert not [f"{place}: {line.strip()}" for place, line in lines() if _NOTES.search(line)]
 
 

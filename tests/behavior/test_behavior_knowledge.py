@@ -128,7 +128,7 @@ def test_contraries(first: str, second: str) -> None:
 @pytest.mark.parametrize(
     ("first", "second"), [("x < 1", "x > 0"), ("n < 3", "n > 3"), ("b", "c"), ("n == 1", "n == 2")]
 )
-def test_what_is_no_contrary(first: str, second: str) -> None:
+def test_conditions_that_are_not_contrary(first: str, second: str) -> None:
     """`x` may be a real."""
     one, other = tree(first), tree(second)
     neither = [n for known in FACTS.assume(NOTHING, one, False) for n in FACTS.assume(known, other, False)]

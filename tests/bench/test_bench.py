@@ -20,7 +20,7 @@ from roaml.project.workspace import Workspace
 
 
 @pytest.mark.parametrize(("files", "lines"), [(5, 700), (30, 700), (12, 200)])
-def test_a_generated_system_has_nothing_to_complain_about(tmp_path: Path, files: int, lines: int) -> None:
+def test_a_generated_system_has_no_findings(tmp_path: Path, files: int, lines: int) -> None:
     main = write_system(tmp_path, files, lines)
     result = api.check([str(main)], settings=Settings())
     assert [f"{d.path}: {d.code} {d.message}" for d in result.diagnostics] == []
@@ -77,7 +77,7 @@ def test_the_server_answers(tmp_path: Path) -> None:
         assert server.diagnostics(path, 2)[1] == []
 
 
-def test_what_is_asked_is_answered(tmp_path: Path) -> None:
+def test_every_request_is_answered(tmp_path: Path) -> None:
     write_system(tmp_path, 6, lines=350, small_lines=60)
     path = tmp_path / FIRST
     with opened(tmp_path, REST) as (server, text):

@@ -24,7 +24,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch, path: Path, script: str) -> None:
     monkeypatch.setattr(sysconfig, "get_config_var", known.get)
 
 
-def test_the_extension_stands_beside_its_text(
+def test_the_extension_is_beside_its_source(
     source: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     copies = (
@@ -46,7 +46,7 @@ def test_the_extension_stands_beside_its_text(
         ("exit 1", "cc failed"),
     ],
 )
-def test_what_fails_leaves_nothing_behind(
+def test_a_failed_build_leaves_no_files(
     source: Path,
     tmp_path_factory: pytest.TempPathFactory,
     monkeypatch: pytest.MonkeyPatch,

@@ -37,7 +37,7 @@ def test_the_file_is_the_same_each_time(check: Command, tmp_path: Path) -> None:
     assert (tmp_path / "one.json").read_bytes() == (tmp_path / "two.json").read_bytes()
 
 
-def test_moved_lines_stay_known_and_new_findings_are_told(check: Command, tmp_path: Path) -> None:
+def test_moved_lines_stay_known_and_new_findings_are_reported(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     check(".", "--baseline", "known.json")
     clock.write(tmp_path, clock="<!-- a\n\n\ncomment -->\n" + clock.WRONG_CLOCK.replace("    ", "\t"))
@@ -47,7 +47,7 @@ def test_moved_lines_stay_known_and_new_findings_are_told(check: Command, tmp_pa
     assert (done.status, done.found) == (1, [("clock.ascxml", 10, "undeclared-variable")])
 
 
-def test_one_more_of_the_same_is_told(check: Command, tmp_path: Path) -> None:
+def test_one_more_equal_finding_is_reported(check: Command, tmp_path: Path) -> None:
     wrong = '            <assign location="coutn" expr="(count + 1) % 10" />\n'
     assert wrong in clock.WRONG_CLOCK
     clock.write(tmp_path, clock=clock.WRONG_CLOCK.replace(wrong, wrong * 2))

@@ -65,7 +65,7 @@ def test_the_hooks_are_those_that_the_readme_names(hook: str) -> None:
         ("x.ascxml.orig", False),
     ],
 )
-def test_the_hook_runs_when_a_file_of_ours_changes(name: str, concerned: bool) -> None:
+def test_the_hook_runs_when_a_model_changes(name: str, concerned: bool) -> None:
     (pattern,) = values(CHECK, "files")
     assert bool(re.search(pattern, name)) is concerned
 
@@ -112,7 +112,7 @@ def test_the_hook_that_formats(command: Command, tmp_path: Path, more: list[str]
 # ------------------------------------------------------------------- workflows
 
 
-def test_what_is_installed_can_be_had_today() -> None:
+def test_workflows_install_from_the_repository() -> None:
     """The package is on no index."""
     installs = [line for text in (GITHUB, README) for line in values(text, "run") if line.startswith("pip")]
     installs += [line for line in items(GITLAB) if line.startswith("pip")]

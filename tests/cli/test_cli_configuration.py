@@ -228,13 +228,13 @@ def test_other_commands_refuse_it_with_the_place(command: Command, tmp_path: Pat
     assert f"{tmp_path / 'as2fm.toml'}:2:1: there is no setting `ingore`" in done.err
 
 
-def test_all_mistakes_are_told_at_once(check: Command, tmp_path: Path) -> None:
+def test_all_errors_are_reported_at_once(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path)
     (tmp_path / "as2fm.toml").write_text("a = 1\nb = 2\nignore = 3\n")
     assert [row["line"] for row in check(".").rows] == [1, 2, 3]
 
 
-def test_what_is_right_is_used(check: Command, tmp_path: Path) -> None:
+def test_valid_settings_are_used_in_spite_of_errors(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path, clock=BOTH)
     (tmp_path / "as2fm.toml").write_text('ignore = ["undeclared-variable", "no-such-rule"]\n')
     assert check(".").codes == ["invalid-setting", "topic-without-subscriber"]

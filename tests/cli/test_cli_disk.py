@@ -182,7 +182,7 @@ def left(folder: Path) -> list[Path]:
     ],
     ids=lambda value: value[0],
 )
-def test_what_a_killed_process_has_left_is_removed_by_the_next(
+def test_files_of_a_killed_process_are_removed_by_the_next(
     command: Command, tmp_path: Path, arguments: tuple[str, ...]
 ) -> None:
     if arguments[0] != "init":
@@ -198,7 +198,7 @@ def test_what_a_killed_process_has_left_is_removed_by_the_next(
     assert (tmp_path / ".as2fm-baseline.json").exists()
 
 
-def test_what_is_being_written_stays(tmp_path: Path) -> None:
+def test_files_that_are_being_written_stay(tmp_path: Path) -> None:
     with writing(tmp_path / "one") as process:
         write_file(str(tmp_path / "two"), "two")
         assert len(left(tmp_path)) == 1

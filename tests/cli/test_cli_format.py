@@ -51,7 +51,7 @@ OLDER = '<scxml name="A" version="1.0">\n<ros_topic_publisher topic="/a" type="s
     ids=["plain", "plain with more", "foreign", "types", "another root", "page"],
 )
 @pytest.mark.parametrize("name", ["x.scxml", "x.xml"])
-def test_what_is_not_ours_is_left_in_peace(command: Command, tmp_path: Path, text: str, name: str) -> None:
+def test_other_files_are_not_changed(command: Command, tmp_path: Path, text: str, name: str) -> None:
     path = tmp_path / name
     path.write_text(text)
     for arguments in (["."], [".", "--check"], [tmp_path, "--diff"]):
@@ -99,7 +99,7 @@ def test_encoding_and_mark_are_kept(command: Command, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("data", [b'<ascxml name="A>\n<state/></ascxml>', b'<ascxml name="\xff">\n<state/></ascxml>'])
-def test_what_is_not_well_formed_is_left_alone(command: Command, folder: Path, data: bytes) -> None:
+def test_files_that_are_not_well_formed_are_not_changed(command: Command, folder: Path, data: bytes) -> None:
     (folder / "b.ascxml").write_bytes(data)
     done = command("format", "models")
     assert done.status == 1

@@ -380,7 +380,7 @@ def test_fingerprints_stay_when_lines_move(
     assert now(broken.replace("misplaced", "otherwise"))[2] not in before
 
 
-def test_of_a_long_line_only_the_neighbourhood_counts() -> None:
+def test_a_long_line_is_shortened_around_the_finding() -> None:
     """Generated files may be one line of megabytes with thousands of findings."""
 
     def fingerprint(text: str) -> str:

@@ -30,7 +30,7 @@ def test_what_it_writes_is_clean(command: Command, tmp_path: Path, name: str) ->
     assert checked.out.startswith(f"{len(written)} files checked: ")
 
 
-def test_twice(command: Command, tmp_path: Path) -> None:
+def test_a_second_init_is_refused(command: Command, tmp_path: Path) -> None:
     assert command("init", "robot").status == 0
     (tmp_path / "robot" / "main.xml").write_text("mine")
     (tmp_path / "robot" / "tree.xml").unlink()

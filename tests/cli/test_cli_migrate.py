@@ -164,7 +164,7 @@ def test_an_older_system_becomes_a_current_one(command: Command, check: Command,
     assert not DEPRECATED & set(after.codes)
 
 
-def test_again_there_is_nothing_to_do(command: Command, tmp_path: Path) -> None:
+def test_a_second_migration_changes_nothing(command: Command, tmp_path: Path) -> None:
     write(tmp_path)
     command("migrate", ".")
     before = read(tmp_path)
@@ -225,7 +225,7 @@ def test_the_encoding_stays(command: Command, check: Command, tmp_path: Path, en
     assert not DEPRECATED & set(check(".").codes)
 
 
-def test_a_file_that_is_no_text_is_left_alone(command: Command, tmp_path: Path) -> None:
+def test_a_file_with_invalid_utf8_is_not_changed(command: Command, tmp_path: Path) -> None:
     write(tmp_path)
     path = tmp_path / "nodes/base.scxml"
     path.write_bytes(path.read_bytes().replace(b"</scxml>", b"<!-- caf\xe9 --></scxml>"))
@@ -245,7 +245,7 @@ def test_modes_stay(command: Command, tmp_path: Path) -> None:
     assert stat.S_IMODE((tmp_path / "main.xml").stat().st_mode) == 0o600
 
 
-def test_what_is_configured_to_be_quiet_is_moved_all_the_same(command: Command, tmp_path: Path) -> None:
+def test_ignored_findings_are_migrated_too(command: Command, tmp_path: Path) -> None:
     write(tmp_path)
     (tmp_path / "as2fm.toml").write_text('select = ["unknown-element"]\nignore = ["deprecated-spelling"]\n')
     command("migrate", ".")

@@ -32,5 +32,5 @@ def model() -> Model:
         ),
     ],
 )
-def test_only_what_is_mentioned(text: str, said: str) -> None:
+def test_only_mentioned_nodes(text: str, said: str) -> None:
     assert explained(text, model(), lambda origin: f"{origin.path}:{origin.span.start}") == said

@@ -191,7 +191,7 @@ def crash(_: object) -> None:
     raise ZeroDivisionError("a mistake of ours")
 
 
-def test_a_rule_that_crashes_is_a_failure_of_ours_whatever_is_shown(
+def test_a_crashing_rule_is_an_internal_error_whatever_is_shown(
     check: Command, command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The other rules go on, and no option makes it look clean."""

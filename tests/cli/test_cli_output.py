@@ -53,7 +53,7 @@ def test_an_existing_file_survives_failure(tmp_path: Path, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("target", ["missing/report.txt", ".", "clock.ascxml/report.txt", ""])
-def test_what_cannot_be_written_is_wrong_use(command: Command, tmp_path: Path, target: str) -> None:
+def test_an_unwritable_output_is_a_usage_error(command: Command, tmp_path: Path, target: str) -> None:
     clock.write(tmp_path)
     before = sorted(os.listdir(tmp_path))
     done = command("--check", "main.xml", "--output", target)
@@ -62,7 +62,7 @@ def test_what_cannot_be_written_is_wrong_use(command: Command, tmp_path: Path, t
     assert sorted(os.listdir(tmp_path)) == before
 
 
-def test_a_full_disk_is_told(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock.write(tmp_path)
 
     def fail(*_: object, **__: object) -> None:

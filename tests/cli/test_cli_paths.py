@@ -75,7 +75,7 @@ def test_without_a_repository_its_folder_is_looked_into(check: Command, tmp_path
     assert check("a/clock.ascxml").codes == ["topic-without-subscriber"]
 
 
-def test_only_what_is_named_is_reported(check: Command, tmp_path: Path) -> None:
+def test_only_findings_in_named_files_are_reported(check: Command, tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     assert check("properties.jani").rows == []
     assert check("clock.ascxml").codes == ["undeclared-variable"]
@@ -151,7 +151,7 @@ def test_an_empty_folder_is_clean(command: Command, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["missing", "main.xml/x", "x" * 300, "loop"])
-def test_what_is_not_there(check: Command, tmp_path: Path, name: str) -> None:
+def test_missing_files(check: Command, tmp_path: Path, name: str) -> None:
     clock.write(tmp_path)
     (tmp_path / "loop").symlink_to("loop")
     done = check("main.xml", name)
@@ -159,7 +159,7 @@ def test_what_is_not_there(check: Command, tmp_path: Path, name: str) -> None:
     assert done.err.endswith("there is no such file or folder\n")
 
 
-def test_what_cannot_be_read(check: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unreadable_files(check: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock.write(tmp_path)
 
     opened = os.open

@@ -13,7 +13,7 @@ from command import Command
 ROBOT = Path(__file__).resolve().parents[2] / "examples/assembly_robot/main_with_bug.xml"
 
 
-def test_a_run_as_a_story(command: Command) -> None:
+def test_a_run_is_printed_as_a_story(command: Command) -> None:
     done = command("simulate", str(ROBOT), "--seed", "3")
     assert done.status == 0
     lines = done.out.splitlines()
@@ -38,7 +38,7 @@ def test_the_run_is_the_trace_of_verify(command: Command) -> None:
         (("--max-steps", "10"), "  seed 0, trace 0, 10 steps, 1 s"),
     ],
 )
-def test_how_far_it_goes(command: Command, arguments: tuple[str, ...], last: str) -> None:
+def test_options_that_end_the_run(command: Command, arguments: tuple[str, ...], last: str) -> None:
     out = command("simulate", str(ROBOT), *arguments).out
     assert out.splitlines()[-1].rsplit(", ", 1)[1] == last.rsplit(", ", 1)[1]
 
@@ -68,13 +68,13 @@ def test_files(command: Command, tmp_path: Path) -> None:
     assert "<table>" in Path(names["html"]).read_text(encoding="utf-8")
 
 
-def test_a_saved_run_is_made_again(command: Command, tmp_path: Path) -> None:
+def test_a_saved_run_is_repeated(command: Command, tmp_path: Path) -> None:
     saved = str(tmp_path / "run.json")
     first = command("simulate", str(ROBOT), "--seed", "3", "--for", "5 s", "--save", saved)
     assert command("simulate", str(ROBOT), "--script", saved).out == first.out
 
 
-def test_step_by_step(command: Command, tmp_path: Path) -> None:
+def test_interactive_commands(command: Command, tmp_path: Path) -> None:
     saved = tmp_path / "run.json"
     lines = f"g 4 s\ns\nt\nb 10\n1\nnonsense\nu /nowhere\ne\nw {saved}\nq\n"
     out = command("simulate", str(ROBOT), "--seed", "3", "--interactive", stdin=lines.encode()).out

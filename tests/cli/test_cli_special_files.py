@@ -54,7 +54,7 @@ def test_configuration(tmp_path: Path, make, words: str, arguments: tuple[str, .
 
 @pytest.mark.parametrize("make", [pipe, device])
 @pytest.mark.parametrize("name", ["pyproject.toml", "package.xml", "more.xml", "more.ascxml", "more.jani", "msg/A.msg"])
-def test_what_stands_beside_a_system(tmp_path: Path, make, name: str) -> None:  # type: ignore[no-untyped-def]
+def test_special_files_beside_a_system(tmp_path: Path, make, name: str) -> None:  # type: ignore[no-untyped-def]
     clock.write(tmp_path)
     (tmp_path / "msg").mkdir()
     make(tmp_path / name)

@@ -37,7 +37,7 @@ def parsed(text: str) -> dict[str, Any]:
     return found
 
 
-def test_a_stuck_system_is_told_loudly(command: Command, ward: Path) -> None:
+def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml")
     assert done.status == 0
     lines = done.out.splitlines()
@@ -72,7 +72,7 @@ def test_a_stuck_system_whose_properties_are_decided_before(command: Command, wa
     assert out.count("the clock waits") == 1
 
 
-def test_who_waits_for_whom_is_shown_once_for_two_properties(command: Command, ward: Path) -> None:
+def test_waiting_automata_are_shown_once_for_two_properties(command: Command, ward: Path) -> None:
     written = json.loads((ward / "properties.jani").read_text(encoding="utf-8"))
     written["properties"].append({**written["properties"][0], "name": "again"})
     (ward / "properties.jani").write_text(json.dumps(written), encoding="utf-8")
@@ -86,7 +86,7 @@ def test_who_waits_for_whom_is_shown_once_for_two_properties(command: Command, w
     assert explained.count("nodes of the behavior tree:") == 1
 
 
-def test_who_waits_for_whom_is_told_as_the_manual_shows_it(command: Command, ward: Path) -> None:
+def test_waiting_automata_are_shown_as_in_the_manual(command: Command, ward: Path) -> None:
     page = DOCUMENT.read_text(encoding="utf-8")
     (shown,) = re.findall(r"^```text\n(  warning: .*?)^```$", page, re.MULTILINE | re.DOTALL)
     assert shown in command("verify", "main.xml").out
@@ -98,7 +98,7 @@ def test_the_manual_names_every_reason() -> None:
         assert f"| {reason.text} | `{reason.key}` |" in page
 
 
-def test_a_mended_system_is_not_told_to_get_stuck(command: Command, tmp_path: Path) -> None:
+def test_a_fixed_system_is_not_reported_as_stuck(command: Command, tmp_path: Path) -> None:
     write(tmp_path, hospital(mended=True))
     done = command("verify", "main.xml", "--stuck", "error")
     assert done.status == 0
@@ -164,7 +164,7 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
     assert "traces got stuck" in (about.get("value") or "")
 
 
-def test_whether_it_gets_stuck_can_be_asked(command: Command, ward: Path) -> None:
+def test_the_property_stuck_can_be_verified(command: Command, ward: Path) -> None:
     found = parsed(command("verify", "main.xml", "--property", "stuck", "--format", "json").out)
     (result,) = found["results"]
     assert result["property"] == "stuck"
@@ -204,7 +204,7 @@ def test_explained_to_the_end(command: Command, ward: Path) -> None:
     assert "waits in `busy` for its timer `dispense`" in (ward / "why.html").read_text(encoding="utf-8")
 
 
-def test_traces_say_why_they_have_ended(command: Command, ward: Path) -> None:
+def test_traces_contain_the_reason_of_their_end(command: Command, ward: Path) -> None:
     command("verify", "main.xml", "--traces", "out", "--traces-limit", 1)
     (failed,) = sorted((ward / "out").glob("*-failed.csv"))
     with open(failed, encoding="utf-8", newline="") as file:
@@ -219,13 +219,13 @@ def test_traces_say_why_they_have_ended(command: Command, ward: Path) -> None:
     assert (trace["end"], trace.get("waits")) == ("goal_decided", None)
 
 
-def test_traces_that_were_cut_are_told(command: Command, ward: Path) -> None:
+def test_traces_that_were_cut_are_reported(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--max-steps", 30, "--method", "fixed", "--max-traces", 50)
     assert "  ends: too many steps 50\n" in done.out
     assert "from 100 traces; 100 of them were cut after 30 steps" in done.out
 
 
-def test_counts_are_kept_for_later(command: Command, ward: Path) -> None:
+def test_counts_are_saved(command: Command, ward: Path) -> None:
     options = ("verify", "main.xml", "--resume", "state.json", "--format", "json", "--method", "fixed", "--max-traces")
     command(*options, 100)
     more = parsed(command(*options, 300).out)
@@ -234,13 +234,13 @@ def test_counts_are_kept_for_later(command: Command, ward: Path) -> None:
     assert more["stuck"] == fresh["stuck"]
 
 
-def test_sampled_schedulers_that_get_stuck_are_told(command: Command, ward: Path) -> None:
+def test_sampled_schedulers_that_get_stuck_are_reported(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--scheduler", "lss", "--epsilon", 0.1)
     assert re.search(r"\n  by sampled scheduler .*\n  warning: .* traces got stuck and say nothing", done.out)
     assert "warning: the system gets stuck" in done.out
 
 
-def test_a_trace_that_goes_wrong_after_its_goal_is_told(command: Command, tmp_path: Path) -> None:
+def test_a_trace_with_a_fault_after_its_goal_is_reported(command: Command, tmp_path: Path) -> None:
     """The property is answered, since its traces do not go so far."""
     write(tmp_path, hospital(mended=True))
     text = (tmp_path / "nurse.ascxml").read_text(encoding="utf-8")

@@ -82,7 +82,7 @@ def test_in_system_files_and_trees(check: Command, tmp_path: Path) -> None:
     ("written", "meant"),
     [("undeclared-varible", "undeclared-variable"), ("xml-syntax, undeclared-varible", "undeclared-variable")],
 )
-def test_a_misspelt_code_is_told_with_the_nearest(check: Command, tmp_path: Path, written: str, meant: str) -> None:
+def test_a_misspelt_code_is_reported_with_the_nearest(check: Command, tmp_path: Path, written: str, meant: str) -> None:
     comment = f"<!-- as2fm: ignore[{written}] -->"
     clock.write(tmp_path, clock=clock.WRONG_CLOCK.replace(LINE, LINE.replace("/>\n", f"/> {comment}\n")))
     messages = [row["message"] for row in check(".", "--select", "unused-suppression").rows]

@@ -47,7 +47,7 @@ def test_line_ends_are_not_shown(end: str) -> None:
     assert excerpt(f"one{end}two{end}", f"two{end}") == ["    2 | two", "      | ^^^"]
 
 
-def test_tabs_are_kept_so_that_carets_stand_below() -> None:
+def test_tabs_are_kept_so_that_carets_are_aligned() -> None:
     assert excerpt("\t\tx = \tfoo", "foo") == ["    1 | \t\tx = \tfoo", "      | \t\t    \t^^^"]
 
 
@@ -81,7 +81,7 @@ def test_an_empty_place_has_one_caret() -> None:
         ("ｆ = foo", "foo", "     ^^^"),
     ],
 )
-def test_carets_stand_below_characters_of_any_width(text: str, place: str, carets: str) -> None:
+def test_carets_are_aligned_below_characters_of_any_width(text: str, place: str, carets: str) -> None:
     assert excerpt(text, place) == [f"    1 | {text}", f"      | {carets}"]
 
 

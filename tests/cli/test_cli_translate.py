@@ -80,7 +80,7 @@ def test_errors_are_those_of_the_check(command: Command, robot: Path, form: str)
     assert not (robot / "map.json").exists()
 
 
-def test_what_is_kept_quiet_is_an_error_still(command: Command, robot: Path) -> None:
+def test_an_ignored_error_prevents_the_translation(command: Command, robot: Path) -> None:
     battery = robot / "nodes" / "battery.ascxml"
     battery.write_text(battery.read_text().replace('location="level"', 'location="lewel"'))
     (robot / "as2fm.toml").write_text('ignore = ["undeclared-variable"]')

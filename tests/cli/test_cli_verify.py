@@ -363,7 +363,7 @@ def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_
     assert "seed 0" in out
 
 
-def test_what_the_bar_shows_of_a_search() -> None:
+def test_progress_bar_of_a_search() -> None:
     question, state = Question("p", "Pmin", False, None, ()), Search(rounds=9)
     assert search_line(question, state, Options()) == "p, least probability …"
     state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
@@ -376,7 +376,7 @@ def test_what_the_bar_shows_of_a_search() -> None:
     assert search_line(question, state, Options()).startswith("p, greatest probability: round 2 of 9")
 
 
-def test_what_the_bar_shows() -> None:
+def test_progress_bar() -> None:
     question = Question("p", "Pmin", False, None, ())
     text = line(question, Options(method=FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0)
     assert text.startswith("p ━━━━━───────────────  25%  250 traces  0.4 [0.29")
@@ -433,7 +433,7 @@ def place(folder: Path, text: str, name: str = "model.jani") -> int:
     return next(number for number, line in enumerate(lines, 1) if text in line)
 
 
-def test_what_cannot_be_read(command: Command, tmp_path: Path) -> None:
+def test_unreadable_files(command: Command, tmp_path: Path) -> None:
     (tmp_path / "nonsense.jani").write_text("this is no JSON")
     (tmp_path / "bytes.jani").write_bytes(b"\xff\xfe\x00\xd8")
     (tmp_path / "other.jani").write_text('{"some": "thing"}')
@@ -458,7 +458,7 @@ def test_what_cannot_be_read(command: Command, tmp_path: Path) -> None:
         ({"ref": "x", "value": op("floor", op("log", "x", 2))}, "no value", '"op": "log"'),
     ],
 )
-def test_what_a_model_does_wrong(command: Command, tmp_path: Path, change: Json, message: str, at_text: str) -> None:
+def test_faults_of_a_model(command: Command, tmp_path: Path, change: Json, message: str, at_text: str) -> None:
     written = coin()
     bounded = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 3}
     array = {"op": "av", "elements": [1, 2]}
@@ -487,7 +487,7 @@ def test_what_a_model_does_wrong(command: Command, tmp_path: Path, change: Json,
     assert f"{name}:{row['line']}:{row['column']}: error: " in text.err
 
 
-def test_what_is_wrong_in_a_system_is_told_at_its_line(command: Command, tmp_path: Path) -> None:
+def test_faults_of_a_system_are_reported_at_their_line(command: Command, tmp_path: Path) -> None:
     (tmp_path / "a.ascxml").write_text(
         """<ascxml name="a" version="1.0" initial="s">
 <datamodel><data id="n" type="int32" expr="2" /><data id="m" type="int32" expr="0" /></datamodel>

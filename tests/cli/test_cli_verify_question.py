@@ -152,7 +152,7 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     assert lines[2].endswith("schedulers are not sampled for expected rewards")
 
 
-def test_what_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
+def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
     name = write(tmp_path, starving(length=6000))
     done = command("verify", name, "--expect", "p >= 0.9")
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler 1, which lets `" in done.out
@@ -221,7 +221,7 @@ def test_states_that_are_not_the_initial_ones_are_named(command: Command, tmp_pa
     assert row["error"]["message"].startswith(expected)
 
 
-def test_too_many_combinations_are_told(command: Command, tmp_path: Path) -> None:
+def test_too_many_combinations_are_reported(command: Command, tmp_path: Path) -> None:
     """2^64 of them; Storm would enumerate them, too."""
     parts = [automaton(f"m{n}", "s t", [edge("s", way("t", x=k), action="a") for k in (0, 1)]) for n in range(64)]
     goals = {"p": probability(op("F", op("=", "x", 1)))}
@@ -235,7 +235,7 @@ def test_too_many_combinations_are_told(command: Command, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("way_of_saying", ["configuration", "option"])
-def test_uniform_choices_that_are_wanted(command: Command, tmp_path: Path, way_of_saying: str) -> None:
+def test_uniform_choices_that_are_requested(command: Command, tmp_path: Path, way_of_saying: str) -> None:
     name = write(tmp_path, starving())
     options: tuple[str, ...] = ("--scheduler", "uniform")
     if way_of_saying == "configuration":

@@ -86,7 +86,7 @@ FIXED = [
 
 
 @pytest.mark.parametrize(("written", "quote", "fixed"), FIXED)
-def test_fixes_mend_the_file(written: str, quote: str, fixed: str) -> None:
+def test_fixes_are_valid(written: str, quote: str, fixed: str) -> None:
     text, source = expression(written, quote)
     finding = parse(source)[1][0]
     after = apply_edits(text, finding.fixes[0].edits)

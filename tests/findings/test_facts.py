@@ -76,7 +76,7 @@ def test_messages_are_reworded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize("path", sorted(SERVER.rglob("*.py")), ids=lambda path: path.relative_to(SERVER).as_posix())
-def test_no_code_looks_into_a_message(path: Path) -> None:
+def test_no_code_reads_a_message(path: Path) -> None:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     assert [node.lineno for node in ast.walk(tree) if _looks_into_a_message(node)] == []
 
@@ -101,7 +101,7 @@ def _is_message(node: ast.AST) -> bool:
     "code",
     ['d.message.startswith("a")', '"a" in d.message', 'd.message == "a"', "FORM.search(d.message)", "x[d.message < y]"],
 )
-def test_looks_into_a_message(code: str) -> None:
+def test_code_that_reads_a_message_is_noticed(code: str) -> None:
     assert any(_looks_into_a_message(node) for node in ast.walk(ast.parse(code)))
 
 
@@ -177,10 +177,10 @@ SOUND = {"text": "a", "number": 1, "flag": True, "color": "RED", "names": ["a"],
         {**SOUND, "other": "GREEN"},
     ],
 )
-def test_what_is_not_ours_is_not_taken(sent: object) -> None:
+def test_foreign_json_is_refused(sent: object) -> None:
     assert facts_from_json(Sample, SOUND) == Sample("a", 1, True, Color.RED, ("a",), None)
     assert facts_from_json(Sample, sent) is None
 
 
-def test_rules_that_give_facts_say_so() -> None:
+def test_rules_with_facts_declare_them() -> None:
     assert {"missing-file", "input-count", "invalid-name"} <= {code for code, rule in BY_CODE.items() if rule.facts}

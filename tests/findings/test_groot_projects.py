@@ -75,7 +75,7 @@ def test_a_broken_project_and_a_missing_file_do_no_harm(tmp_path: Path) -> None:
     assert "missing-include" in codes
 
 
-def test_a_project_can_be_what_a_system_lists(tmp_path: Path) -> None:
+def test_a_system_may_list_a_project(tmp_path: Path) -> None:
     listed = (SYSTEM + PROJECT).replace('src="trees/tree.xml"', 'src="trees/robot.btproj"')
     listed = listed.replace('<include path="unrelated.xml" />', "").replace(
         '<BehaviorTree ID="Main"><AlwaysFailure /></BehaviorTree>', ""

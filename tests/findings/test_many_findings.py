@@ -31,6 +31,6 @@ def test_more_than_are_shown() -> None:
     assert found[-1] == ("unknown-attribute", "the first 1,000 findings of this kind are shown; there are more")
 
 
-def test_comments_that_keep_nothing_quiet() -> None:
+def test_comments_that_suppress_nothing() -> None:
     found = messages("comments", MAX_FINDINGS + 500)
     assert [code for code, _ in found] == ["unused-suppression"] * MAX_FINDINGS

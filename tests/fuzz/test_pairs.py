@@ -45,7 +45,7 @@ def test_a_declaration_that_cannot_be_read_hides_what_it_could_be() -> None:
     assert outcome(unnamed, TYPO) == (Outcome.HELD_BACK, "topic-without-publisher in dashboard.ascxml")
 
 
-def test_a_lost_mistake_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_finding_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if rules asked again whether all of the system can be read."""
     both = choose(0)
     assert outcome(*both)[0] is Outcome.BOTH

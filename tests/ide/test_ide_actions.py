@@ -319,7 +319,7 @@ def test_all_safe_fixes() -> None:
     assert not list(offered(WITHOUT_LOGS.replace("<asign", "‸<asign"), FIX_ALL))
 
 
-def test_only_the_kinds_that_are_wanted() -> None:
+def test_only_the_requested_kinds() -> None:
     assert {each.kind for each in offered(LOGS, QUICK_FIX)} == {QUICK_FIX}
     assert {each.kind for each in offered(LOGS, FIX_ALL)} == {FIX_ALL}
     assert offered(LOGS, "refactor") == []

@@ -278,7 +278,7 @@ def test_line_ends_are_kept(name: str, end: str) -> None:
         '{ "properties": [], }',
     ],
 )
-def test_what_is_not_sound_is_left_alone(text: str) -> None:
+def test_files_that_are_not_well_formed_are_not_formatted(text: str) -> None:
     analysis, path = one_file(text)
     assert format_edits(analysis, path) == ()
     assert not can_format(analysis, path)

@@ -78,7 +78,7 @@ def test_hints_of_properties(tmp_path: Path) -> None:
     assert '"bt_1001_response__status"« Walk»,' in shown(analysis, str(tmp_path / "properties.jani"))
 
 
-def test_hints_that_are_wanted(tmp_path: Path) -> None:
+def test_only_the_requested_hints(tmp_path: Path) -> None:
     analysis, path = load(tmp_path, MODELS["robot"]), str(tmp_path / "a.ascxml")
     whole = Span(0, 10**6)
     for kind in HintKind:

@@ -92,7 +92,7 @@ def test_the_file_itself_has_the_outline() -> None:
 @pytest.mark.parametrize(
     "text", ["", "{", "[]", '{"automata": [{"edges": [{}, 1]}, 2], "variables": {}}', '{"automata": [']
 )
-def test_what_is_no_model(text: str) -> None:
+def test_files_that_are_not_models(text: str) -> None:
     assert "".join(jani_view(text).text.split()) == "".join(text.split())
 
 

@@ -92,7 +92,7 @@ def test_documentation_of_an_item() -> None:
     assert "How hard, in N." in document(snapshot.analysis, item.about)
 
 
-def test_hover_tells_ports_and_defaults() -> None:
+def test_hover_shows_ports_and_defaults() -> None:
     assert "How hard, in N." in told(MODELS, 'for|ce="3"')
     assert "`5` if not set" in told(MODELS, 'for|ce="3"')
     assert "in force : int = 5" in told(MODELS, '<Gra|sp force="3"')

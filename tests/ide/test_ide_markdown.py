@@ -137,7 +137,7 @@ def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
 @pytest.mark.parametrize("suffix", ["<img src=x onerror=alert(1)>", "`<b>` ![p](x) [l](x)", "\\`<i>` <script>"])
 @pytest.mark.parametrize("pattern", ["id|target|name|ID|event|key", "topic|service_name|expr|cond|location|src|type"])
 @pytest.mark.parametrize("model", [ROBOT, CORNERS], ids=["robot", "corners"])
-def test_what_is_told_of_hostile_models(model: str, pattern: str, suffix: str) -> None:
+def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: str) -> None:
     texts = {path: hostile(text, suffix, pattern) for path, text in split_files(model).items()}
     told = set(filter(None, shown(texts)))
     assert len(told) > 20

@@ -97,7 +97,7 @@ def titles(files: dict[str, str], name: str) -> list[str]:
     return [counted(analysis, lens.symbol, path).title for lens in lenses(analysis, path)]
 
 
-def test_what_is_the_same_is_said_once() -> None:
+def test_equal_texts_are_shown_once() -> None:
     assert hints(SAME, "driver.ascxml") == [" → /command", "(speed : int)"]
     assert hints(SAME, "move.ascxml") == [" : string", " = /command", " → /command", " : int32"]
     assert hints(SAME, "properties.jani") == [" Move"]
@@ -105,7 +105,7 @@ def test_what_is_the_same_is_said_once() -> None:
     assert titles(SAME, "move.ascxml") == ["1 use in trees", "set once in trees", "2 publishers · 1 subscriber"]
 
 
-def test_what_differs_is_said_of_each_system() -> None:
+def test_different_texts_are_shown_for_each_system() -> None:
     both = "/command in arm/main.xml; /command, /wheels in base/main.xml"
     assert hints(DIFFERENT, "driver.ascxml") == [
         " → /command",

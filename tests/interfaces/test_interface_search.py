@@ -147,7 +147,7 @@ def test_other_files_are_no_definitions(tmp_path: Path, write: Write) -> None:
     assert "n" not in packages
 
 
-def test_what_cannot_be_read_is_not_there(tmp_path: Path, write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unreadable_folders_are_ignored(tmp_path: Path, write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     write("locked/a_msgs/msg/A.msg", "open/b_msgs/msg/B.msg", "open/b_msgs/package.xml", "file")
     scandir = os.scandir
 

@@ -133,7 +133,7 @@ def test_messages_are_those_of_later_distributions() -> None:
     assert {name for name, shape in ours.items() if latest.get(name) != shape} == set()
 
 
-def test_messages_are_those_of_humble_but_for_what_came_since() -> None:
+def test_messages_are_those_of_humble_and_later_additions() -> None:
     ours, humble = known_to_us(), known_to_rosbags(Stores.ROS2_HUMBLE)
     assert ours.keys() - humble.keys() == NOT_IN_HUMBLE
     assert {name for name in ours.keys() & humble.keys() if ours[name] != humble[name]} == DIFFERENT_IN_HUMBLE

@@ -132,7 +132,7 @@ def test_long_texts_take_little_time(text: str) -> None:
     assert len(findings) <= MAX_FINDINGS + 10
 
 
-def test_too_long_a_text_is_said_so() -> None:
+def test_too_long_a_text_is_reported() -> None:
     text = "int32 x\n" + " \n" * MAX_LENGTH
     definition, findings = parse(text, "p", "N", "msg")
     assert [field.name for field in definition.sections[0].fields] == ["x"]

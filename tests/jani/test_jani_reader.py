@@ -400,13 +400,13 @@ def test_mistakes(code: str, place: str, example: str, message: str | None) -> N
         ("assignments", "[{'ref': 'n', 'value': 1, 'indx': 0}]", "[{'ref': 'n', 'value': 1, 'index': 0}]"),
     ],
 )
-def test_suggestions_mend_the_text(place: str, example: str, mended: str) -> None:
+def test_suggestions_fix_the_text(place: str, example: str, mended: str) -> None:
     text = model_with(place, example)
     _, (finding,) = read(text)
     assert apply_edits(text, finding.fixes[0].edits) == model_with(place, mended)
 
 
-def test_only_what_is_without_effect_is_a_warning() -> None:
+def test_only_parts_without_effect_are_warnings() -> None:
     _, findings = read(model_with("metadata", "{'autor': 'me'}"))
     assert [finding.severity for finding in findings] == [Severity.WARNING]
     _, findings = read(model_with("initial", "['idel']"))
@@ -469,7 +469,7 @@ def everything() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("what", "part"), UNKNOWN_MEMBERS, ids=[what for what, _ in UNKNOWN_MEMBERS])
-def test_what_may_have_a_meaning_that_is_not_known_is_an_error(what: str, part: Any) -> None:
+def test_unknown_parts_that_may_have_a_meaning_are_errors(what: str, part: Any) -> None:
     for key, is_harmless in (("plugins", False), ("comment", True), ("metadata", True)):
         written = everything()
         part(written)[key] = {} if key == "metadata" else [] if key == "plugins" else "for people"
@@ -564,7 +564,7 @@ def test_deep_types() -> None:
     assert type_.replace("'", '"').replace(" ", "") in "".join(write(model))
 
 
-def test_integers_and_reals_are_told_apart() -> None:
+def test_integers_and_reals_are_distinguished() -> None:
     model, _ = read(model_with("assignments", "[{'ref': 'r', 'value': 2}, {'ref': 'r', 'value': 2.0}]"))
     assignments = model.automata[0].edges[0].destinations[0].assignments
     assert [assignment.value for assignment in assignments] == [Integer(2), Real(2.0)]

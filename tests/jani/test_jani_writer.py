@@ -161,7 +161,7 @@ def test_features_of_operators() -> None:
 
 
 @pytest.mark.parametrize("expression", [Missing(), Real(float("inf")), Real(float("nan"))])
-def test_what_json_cannot_say_is_refused(expression: Expression) -> None:
+def test_expressions_without_a_json_form_are_refused(expression: Expression) -> None:
     with pytest.raises(ValueError, match="cannot"):
         FormulaWriter().text(expression)
 

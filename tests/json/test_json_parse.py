@@ -358,7 +358,7 @@ def test_values_know_their_place() -> None:
     assert value.get("c") is None
 
 
-def test_of_two_members_with_one_name_the_last_counts() -> None:
+def test_the_last_of_two_members_with_equal_names_is_used() -> None:
     value, findings = parse('{"a": 1, "a": 2}')
     assert isinstance(value, JsonObject)
     assert value.get("a") == JsonNumber(14, 15, 2, "2")

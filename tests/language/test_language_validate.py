@@ -159,7 +159,7 @@ def test_no_violations(grammar: Grammar, text: str) -> None:
     assert [describe(v) for v in validate(parse(text), grammar)] == []
 
 
-def test_what_only_the_schema_knows_is_told_too() -> None:
+def test_violations_of_the_schema_alone_are_reported() -> None:
     """The tables know nothing of the order of elements; libxml2 does, and xmlschema says what is wrong."""
     document = parse(STATE.format("<onentry><if cond='a'><else/><elseif cond='b'/></if></onentry>"))
     (violation,) = validate(document, HL_SCXML)

@@ -145,7 +145,7 @@ async def test_migrate(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["clock.scxml", "main.xml"]
 
 
-async def test_what_cannot_be_migrated(tmp_path: Path) -> None:
+async def test_files_that_cannot_be_migrated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
     assert current == {"edit": None, "files": [], "problem": ""}

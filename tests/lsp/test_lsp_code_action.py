@@ -112,7 +112,7 @@ async def test_edits_are_made_when_an_action_is_resolved(tmp_path: Path) -> None
         assert gone.edit is None
 
 
-async def test_only_what_is_asked_for(tmp_path: Path) -> None:
+async def test_only_requested_kinds(tmp_path: Path) -> None:
     path = tmp_path / "a.ascxml"
     async with connect(tmp_path, capabilities=LAZY) as client:
         client.open(path, WARNED)

@@ -86,7 +86,7 @@ async def test_the_rest_of_the_tag_stays(tmp_path: Path) -> None:
     assert edit.new_text == "ros_topic_publish"
 
 
-async def test_nothing_where_nothing_is_known(tmp_path: Path) -> None:
+async def test_no_completions_without_candidates(tmp_path: Path) -> None:
     async with connect(tmp_path) as client:
         path = tmp_path / "a.ascxml"
         client.open(path, "<!-- here -->" + TEXT)

@@ -38,7 +38,7 @@ async def test_mistakes_are_diagnostics_of_the_file(tmp_path: Path, name: str) -
         assert client.messages == []
 
 
-async def test_a_file_that_is_no_toml_and_goes(tmp_path: Path) -> None:
+async def test_an_invalid_toml_file_that_is_removed(tmp_path: Path) -> None:
     clock.write(tmp_path)
     configuration = tmp_path / "as2fm.toml"
     configuration.write_text("ignore = [")
@@ -73,7 +73,7 @@ async def test_saving_puts_settings_in_force(tmp_path: Path) -> None:
         await client.until_codes(tmp_path / "clock.ascxml")
 
 
-async def test_the_editors_own_settings_are_told(tmp_path: Path) -> None:
+async def test_errors_in_settings_of_the_editor_are_reported(tmp_path: Path) -> None:
     """They lie in no file that the server knows."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     async with connect(tmp_path, options={"settings": {"ignore": ["no-such-rule"]}}) as client:

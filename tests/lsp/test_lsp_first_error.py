@@ -74,7 +74,7 @@ async def test_the_commands_themselves_lead_there(tmp_path: Path, command: str) 
         assert len(client.messages) == 1
 
 
-async def test_several_systems_are_told_apart(tmp_path: Path) -> None:
+async def test_several_systems_are_distinguished(tmp_path: Path) -> None:
     """Of two systems that share the properties, one has an error."""
     clock.write(tmp_path)
     (tmp_path / "other.xml").write_text((tmp_path / "main.xml").read_text().replace("clock.ascxml", "wrong.ascxml"))

@@ -91,7 +91,7 @@ GARBAGE = [
 ]
 
 
-async def test_what_is_no_message_does_not_end_it() -> None:
+async def test_invalid_messages_do_not_end_the_server() -> None:
     """After each piece of it the server still answers as before."""
     server = await start_raw()
     server.tell("initialize", INITIALIZE, 1)
@@ -128,7 +128,7 @@ async def test_odd_initialization_options(options: object) -> None:
     assert "error" not in messages[0]
 
 
-async def test_what_it_can_do() -> None:
+async def test_capabilities() -> None:
     server = await start_raw()
     server.tell("initialize", {**INITIALIZE, "capabilities": {"textDocument": {"diagnostic": {}}}}, 1)
     server.tell("shutdown", id_=2)

@@ -134,7 +134,7 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
 
 
 @pytest.mark.parametrize(("data", "id_", "expected"), BROKEN, ids=[str(data[:60]) for data, *_ in BROKEN])
-def test_what_is_not_understood(data: bytes, id_: object, expected: int | None) -> None:
+def test_invalid_messages(data: bytes, id_: object, expected: int | None) -> None:
     """It is answered as JSON-RPC says, and the message behind it as always."""
     answers = said(data + frame({"jsonrpc": "2.0", "id": 99, "method": "as2fm/properties", "params": {}}))
     assert answers.pop() == {"jsonrpc": "2.0", "id": 99, "result": []}
@@ -159,7 +159,7 @@ class _Kept(BytesIO):
         pass
 
 
-def test_memory_is_taken_for_what_is_there() -> None:
+def test_memory_is_allocated_only_for_received_bytes() -> None:
     """An announced length costs nothing."""
 
     class Announced(BytesIO):

@@ -99,7 +99,7 @@ async def test_a_cancelled_translation_writes_nothing(tmp_path: Path) -> None:
     assert not main.with_suffix(".jani").exists()
 
 
-async def test_what_cannot_be_understood_is_answered() -> None:
+async def test_invalid_requests_are_answered() -> None:
     server = await start_raw()
     server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
     server.tell("textDocument/hover", {"textDocument": 5}, 10)
@@ -111,7 +111,7 @@ async def test_what_cannot_be_understood_is_answered() -> None:
     assert [code(found[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
 
 
-async def test_a_refusal_is_no_failure_of_ours(tmp_path: Path) -> None:
+async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:
     """The log stays empty."""
     main = clock.write(tmp_path)
     server = await start_raw()
@@ -164,7 +164,7 @@ def test_checkpoints() -> None:
         guarded(inbox, Requests.checkpoint, frozenset(["textDocument/hover"]))
 
 
-def test_checkpoints_of_work_that_nobody_asked_for() -> None:
+def test_checkpoints_without_a_request() -> None:
     inbox = Inbox()
     sends(inbox, "$/cancelRequest", {"id": 7})
     Requests(inbox, lambda: None).checkpoint()

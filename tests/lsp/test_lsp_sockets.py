@@ -155,7 +155,7 @@ DISCONNECTED = [
 ]
 
 
-async def test_who_is_not_served(tmp_path: Path) -> None:
+async def test_refused_clients(tmp_path: Path) -> None:
     """Each is told or disconnected, and the client that comes then is served as if they had not been there."""
     main = clock.write(tmp_path)
     async with listening("--tcp", "127.0.0.1:0", AS2FM_TOKEN=TOKEN) as server:
@@ -204,7 +204,7 @@ async def test_a_token_that_can_be_guessed(monkeypatch: pytest.MonkeyPatch) -> N
     assert (status, "AS2FM_TOKEN is too short" in log) == (2, True)
 
 
-async def test_other_machines_if_that_is_wanted() -> None:
+async def test_other_machines_are_served_if_requested() -> None:
     async with listening("--tcp", "0.0.0.0:0", "--allow-remote", AS2FM_TOKEN=TOKEN) as server:
         assert await end_of(server, server.port, TOKEN) == 0
 

@@ -36,7 +36,7 @@ async def test_same_as_the_command_line(tmp_path: Path) -> None:
         assert told(client) == [(types.MessageType.Info, f"Wrote main.jani: {size}.")]
 
 
-async def test_a_property_that_is_left_out_is_told(tmp_path: Path) -> None:
+async def test_an_omitted_property_is_reported(tmp_path: Path) -> None:
     clock.write(tmp_path)
     written = json.loads((tmp_path / "properties.jani").read_text())
     written["properties"][0]["expression"]["values"]["exp"]["time-bounds"] = {"upper": 3}
@@ -51,7 +51,7 @@ async def test_a_property_that_is_left_out_is_told(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "main.jani").read_text())["properties"] == []
 
 
-async def test_what_stands_in_the_editor_is_translated(tmp_path: Path) -> None:
+async def test_the_text_of_the_editor_is_translated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     main, output = (tmp_path / "main.xml").as_uri(), tmp_path / "elsewhere.jani"
     async with connect(tmp_path) as client:
@@ -67,7 +67,7 @@ async def test_what_stands_in_the_editor_is_translated(tmp_path: Path) -> None:
         assert not (tmp_path / "main.jani").exists()
 
 
-async def test_errors_are_told_and_nothing_is_written(tmp_path: Path) -> None:
+async def test_errors_are_reported_and_nothing_is_written(tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     main = tmp_path / "main.xml"
     async with connect(tmp_path) as client:

@@ -68,7 +68,7 @@ async def hints(client: Client, path: Path) -> list[tuple[str, types.Position]]:
     return [(str(hint.label), hint.position) for hint in found if hint.tooltip is not None]
 
 
-async def test_says_what_the_command_line_says(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+async def test_results_are_those_of_the_command_line(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main = robot / "main_with_bug.xml"
     run(["verify", str(main), "--epsilon", "0.05", "--format", "json", "--property", PLACED])
     (expected,) = json.loads(capsys.readouterr().out)["results"]
@@ -102,7 +102,7 @@ async def test_all_properties_and_messages(robot: Path) -> None:
     assert [text.split(":")[0] for kind, text in told[1:] if kind is types.MessageType.Info] == names
 
 
-async def test_lens_and_hint_tell_the_result_until_it_is_stale(robot: Path) -> None:
+async def test_lens_and_hint_show_the_result_until_it_is_stale(robot: Path) -> None:
     main, properties = robot / "main_with_bug.xml", robot / "properties.jani"
     (robot / "main.xml").unlink()
     arm = robot / "arm.ascxml"
@@ -128,7 +128,7 @@ async def test_lens_and_hint_tell_the_result_until_it_is_stale(robot: Path) -> N
         assert known in await lenses(client, properties)
 
 
-async def test_a_result_is_said_once_on_its_line(tmp_path: Path) -> None:
+async def test_a_result_is_shown_once_on_its_line(tmp_path: Path) -> None:
     """In the hint where the client shows hints, else in the lens."""
     clock.write(tmp_path)
     main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"
@@ -168,7 +168,7 @@ async def test_the_client_is_asked_to_look_again(tmp_path: Path) -> None:
         await client.until(lambda: client.refreshed)
 
 
-async def test_what_there_is_to_verify(tmp_path: Path) -> None:
+async def test_properties_that_can_be_verified(tmp_path: Path) -> None:
     clock.write(tmp_path)
     main = tmp_path / "main.xml"
     async with connect(tmp_path) as client:
@@ -228,7 +228,7 @@ async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
     assert nodes <= {node["id"] for node in tree["nodes"]}
 
 
-async def test_progress_tells_the_estimate(robot: Path) -> None:
+async def test_progress_contains_the_estimate(robot: Path) -> None:
     async with connect(robot, capabilities=types.ClientCapabilities(window=WINDOW)) as client:
         working = asyncio.ensure_future(verify(client, robot / "main_with_bug.xml", [PLACED], ENDLESS))
         token, said = await until_estimate(client, working)
@@ -260,7 +260,7 @@ def estimates(client: Client) -> Iterator[tuple[str | int, str]]:
                 yield token, str(each.message)
 
 
-async def test_the_server_answers_meanwhile_and_can_be_told_to_stop(robot: Path) -> None:
+async def test_the_server_answers_during_verification_and_can_cancel_it(robot: Path) -> None:
     main, properties = robot / "main_with_bug.xml", robot / "properties.jani"
     async with connect(robot, capabilities=types.ClientCapabilities(window=WINDOW)) as client:
         working = asyncio.ensure_future(verify(client, main, [PLACED], ENDLESS))
@@ -309,7 +309,7 @@ async def test_a_property_that_is_not_there_does_not_keep_others_from_being_veri
         assert [message.type for message in client.messages] == [types.MessageType.Error]
 
 
-async def test_a_stuck_system_is_told_with_who_waits_for_whom(tmp_path: Path) -> None:
+async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Path) -> None:
     for name, text in hospital().items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"

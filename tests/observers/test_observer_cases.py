@@ -241,7 +241,7 @@ recurrence after-until 0 1  : . u #                  : vacuous
 
 
 @pytest.mark.parametrize(("property_", "trace", "expected"), _cases(VACUOUS))
-def test_what_was_never_asked(property_: str, trace: str, expected: str) -> None:
+def test_exercised_properties(property_: str, trace: str, expected: str) -> None:
     letters, _ = read(trace)
     exercised = observer_of(property_of(property_)).outputs.exercised
     assert exercised is not None
@@ -249,12 +249,12 @@ def test_what_was_never_asked(property_: str, trace: str, expected: str) -> None
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(3, 2), (-1, None), (0, -1)])
-def test_windows_without_any_time(lower: int, upper: int | None) -> None:
+def test_empty_windows_are_refused(lower: int, upper: int | None) -> None:
     with pytest.raises(ValueError, match="no time is from"):
         Window(lower, upper)
 
 
 @pytest.mark.parametrize("window", ["0 -", "1 2"])
-def test_a_recurrence_needs_an_upper_bound_alone(window: str) -> None:
+def test_a_recurrence_needs_only_an_upper_bound(window: str) -> None:
     with pytest.raises(ValueError, match="recurrence"):
         property_of(f"recurrence globally {window}")

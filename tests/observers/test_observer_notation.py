@@ -48,7 +48,7 @@ def test_formula(text: str, formula: Formula) -> None:
     assert notation.formula == formula
 
 
-def test_atoms_keep_their_places_and_braces_in_strings_close_none() -> None:
+def test_spans_of_atoms_and_braces_in_strings() -> None:
     text = "{ name == '}' } -> { a }"
     notation = read(text)
     assert notation.formula == implies(Atom("name == '}'"), A)
@@ -93,7 +93,7 @@ def test_length_is_bounded() -> None:
 
 
 @given(st.text(alphabet="{}()[]:ab12 SHO!&|->\"'", max_size=30))
-def test_reading_never_fails(text: str) -> None:
+def test_parsing_never_raises(text: str) -> None:
     notation = read(text)
     assert (notation.formula is None) == bool(notation.problems)
     assert all(0 <= span.start <= span.end <= len(text) for span, _ in notation.problems)

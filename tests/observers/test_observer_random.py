@@ -127,7 +127,7 @@ def test_windows_that_need_several_integers(pattern: Pattern, events: list[tuple
 
 
 @given(patterns(), traces(), traces())
-def test_what_is_remembered_is_only_what_matters(
+def test_closed_stretches_leave_no_trace_in_the_state(
     property_: PatternProperty, trace: tuple[naive.Letter, ...], other: tuple[naive.Letter, ...]
 ) -> None:
     """Outside of stretches every observer of a repeated scope is in the same state, but for its verdict."""

@@ -308,7 +308,7 @@ def test_each_pattern_in_each_scope(pattern: Pattern, scope: ScopeKind) -> None:
     check(property_, kept, as_xml(property_, kept), 2000)
 
 
-def test_the_traces_tell_properties_apart() -> None:
+def test_the_traces_distinguish_properties() -> None:
     """The cases above have verdicts of all kinds, so a wrong one would show."""
     property_ = PatternProperty(Pattern.RESPONSE, ScopeKind.GLOBALLY, Window(0, 2))
     written = {LEFT: "measured", RIGHT: "alarm"}

@@ -36,13 +36,13 @@ def checked(properties: str, jani: str = '{"properties": []}') -> list[tuple[str
     return [(d.code, d.message) for d in result.diagnostics]
 
 
-def test_a_whole_file_has_no_findings() -> None:
+def test_a_complete_file_has_no_findings() -> None:
     findings = checked(PROPERTIES)
     assert {code for code, _ in findings} <= {"topic-without-subscriber", "late-event-data"}  # of other files
 
 
 @pytest.mark.parametrize("start", range(7))
-def test_a_file_that_is_typed(start: int) -> None:
+def test_incomplete_files_cause_no_internal_error(start: int) -> None:
     for end in range(start, len(PROPERTIES), 49):
         assert "internal-error" not in {code for code, _ in checked(PROPERTIES[:end])}
 
@@ -84,7 +84,7 @@ def test_a_file_that_is_typed(start: int) -> None:
         (" &amp;&amp; urgent", "", "unused-port-variable"),
     ],
 )
-def test_a_planted_mistake(old: str, new: str, code: str) -> None:
+def test_an_inserted_error_is_reported(old: str, new: str, code: str) -> None:
     assert old in PROPERTIES
     assert code in {each for each, _ in checked(PROPERTIES.replace(old, new, 1))}
 

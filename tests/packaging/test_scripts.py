@@ -122,7 +122,7 @@ def test_all_passes(tree: Path, tools: Path) -> None:
     ]
 
 
-def test_the_time_of_each_part_is_told(tree: Path, tools: Path) -> None:
+def test_the_time_of_each_part_is_reported(tree: Path, tools: Path) -> None:
     done = run(tree / "tests/run", environment=os.environ)
     _, _, end = done.stdout.partition("== times:\n")
     parts = ["ruff check", "ruff format", "mypy", "tests", "VS Code extension, meanwhile"]

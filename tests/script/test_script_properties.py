@@ -100,7 +100,7 @@ def structure(expr: Expr) -> object:
 
 
 @given(SCRIPTS)
-def test_what_is_written_is_read_back(statements: list[Expr]) -> None:
+def test_written_scripts_are_parsed_back(statements: list[Expr]) -> None:
     script, problems = parse(Decoded("; ".join(map(written, statements)), 0))
     assert problems == ()
     assert [structure(each) for each in script.statements] == [structure(each) for each in statements]

@@ -82,7 +82,7 @@ def test_a_tick_ends_with_the_answer_of_the_root(robot: api.VerificationTarget) 
     assert session.steps[session.position - 1].action == "bt_1000_response_on_receive"
 
 
-def test_the_other_outcome_of_a_chance(robot: api.VerificationTarget) -> None:
+def test_another_outcome_of_a_choice(robot: api.VerificationTarget) -> None:
     """Back to where the block was dropped by chance; with the other outcome the arm still holds it."""
     session = next(
         session
@@ -104,7 +104,7 @@ def test_the_other_outcome_of_a_chance(robot: api.VerificationTarget) -> None:
     assert session.state().machines[0].variables["holding"] is True
 
 
-def test_choices_name_who_and_what(robot: api.VerificationTarget) -> None:
+def test_choices_name_automata_and_messages(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     assert session.until_sent("/arm/command")
     texts = [choice.text for choice in session.choices()]
@@ -112,7 +112,7 @@ def test_choices_name_who_and_what(robot: api.VerificationTarget) -> None:
     assert sum(choice.probability for choice in session.choices()) == pytest.approx(1)
 
 
-def test_a_different_step_forgets_what_came_after(robot: api.VerificationTarget) -> None:
+def test_a_different_step_discards_later_steps(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     session.until_decided()
     length = len(session.steps)
@@ -124,7 +124,7 @@ def test_a_different_step_forgets_what_came_after(robot: api.VerificationTarget)
     assert session.is_by_hand, "a step that was taken by hand is taken again"
 
 
-def test_a_fork_goes_its_own_way(robot: api.VerificationTarget) -> None:
+def test_a_fork_is_independent(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     session.jump(100)
     fork = session.fork()
@@ -162,7 +162,7 @@ def test_a_saved_session_is_the_same_run(robot: api.VerificationTarget, picks: l
         '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 0, "decisions": [99999999999]}',
     ],
 )
-def test_what_is_not_a_saved_session(text: str) -> None:
+def test_invalid_saved_sessions_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"session|position"):
         api.SavedSession.from_json(text)
 

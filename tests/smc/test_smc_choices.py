@@ -92,7 +92,7 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     assert (found.maximum.value, found.maximum.found) == (1, UNIFORM)
 
 
-def test_what_is_known_does_not_depend_on_workers() -> None:
+def test_results_do_not_depend_on_workers() -> None:
     checker = ModelChecker(model(starving(6000)))
     found = []
     for pool in (Pool(), Pool(2, patience=0)):
@@ -136,7 +136,7 @@ def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, i
     return found[0]
 
 
-def test_a_scheduler_that_goes_round_never_reaches_anything() -> None:
+def test_a_scheduler_in_a_cycle_never_reaches_the_goal() -> None:
     """A state comes again without any chance in between, so it does for ever: no need to wait for `max_steps`."""
     starve_worker, favour_worker = STARVE | (1 << 32) | 1, FAVOUR | (1 << 32) | 1
     verdict, steps = outcomes(starving(100), starve_worker)

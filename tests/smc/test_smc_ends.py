@@ -92,7 +92,7 @@ def test_reasons_are_counted_with_their_shortest_traces() -> None:
     assert counts(answer(checker, traces=500, jobs=2)) == counts(found)
 
 
-def test_goals_decided_early_are_not_told_to_end_otherwise(tmp_path: Path) -> None:
+def test_goals_decided_early_keep_their_end(tmp_path: Path) -> None:
     """Whether the system would have got stuck later is not known of such a trace."""
     checker = of_system(tmp_path, hospital())
     found = answer(checker, traces=300)
@@ -151,7 +151,7 @@ def test_a_translation_that_is_read_again_ends_for_the_same_reasons(tmp_path: Pa
     assert counts(answer(api.checker(again), traces=50)) == counts(first)
 
 
-def test_whether_a_plain_model_gets_stuck_cannot_be_asked() -> None:
+def test_stuck_cannot_be_verified_in_a_plain_model() -> None:
     written = document(automaton("a", "s t", ONE_WAY), variables=[variable("x")], properties=FINALLY)
     with pytest.raises(api.PropertyError, match="there is no property stuck; the model has: p"):
         api.checker(model(written), ["stuck"])
@@ -182,7 +182,7 @@ def test_both_kernels_end_for_the_same_reason(tmp_path: Path) -> None:
         assert {End.STUCK.value} < set(ends)
 
 
-def test_a_batch_tells_the_end_of_each_trace(tmp_path: Path) -> None:
+def test_a_batch_returns_the_end_of_each_trace(tmp_path: Path) -> None:
 
     checker = of_system(tmp_path, hospital())
     outcome = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 10_000))

@@ -194,7 +194,7 @@ def test_examples_are_remembered() -> None:
     assert answer.tally.shortest[TRUE] == min(examples[TRUE], key=lambda seen: seen.steps)
 
 
-def test_the_first_fault_is_told_however_traces_are_distributed() -> None:
+def test_the_first_fault_is_reported_however_traces_are_distributed() -> None:
     steps = [edge("s", way("end", 0.999), way("bad", 0.001)), edge("bad", way("end", x=op("%", 1, "x")))]
     written = document(
         automaton("a", "s bad end", steps),
@@ -285,7 +285,7 @@ def test_dask() -> None:
         assert killed
 
 
-def test_progress_is_told_during_long_traces() -> None:
+def test_progress_is_reported_during_long_traces() -> None:
     loop = document(
         automaton("a", "l m", [edge("l", "m"), edge("m", "l")]),
         variables=[variable("x")],

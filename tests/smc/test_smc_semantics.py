@@ -314,7 +314,7 @@ def test_input_enabled_automata_never_block() -> None:
     assert reaches(found) == 1
 
 
-def test_an_automaton_may_be_there_twice() -> None:
+def test_an_automaton_may_have_two_instances() -> None:
     counter = automaton("a", "l m", [edge("l", way("m", own=1, x=op("+", "x", 1)))], [variable("own")])
     found = document(counter, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 2)))})
     assert reaches(found) == 0

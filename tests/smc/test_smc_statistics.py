@@ -290,7 +290,7 @@ def test_errors_of_the_sequential_test(p: float, above: bool) -> None:
     assert wrong <= 0.09 * tests
 
 
-def test_means_may_be_looked_at_all_the_time() -> None:
+def test_intervals_of_means_are_valid_at_all_times() -> None:
     """Of many runs, in nearly none the interval ever misses the mean once there are some values."""
     source, missed, runs = random.Random(3), 0, 300
     for _ in range(runs):

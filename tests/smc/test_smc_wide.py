@@ -163,7 +163,7 @@ def test_combinations_of_destinations_are_counted_as_well() -> None:
         explorer.reachable(10)
 
 
-def test_choices_that_differ_in_nothing_are_one_that_counts_often() -> None:
+def test_equal_choices_are_one_choice_with_their_weight() -> None:
     """Edges without effect: 2^62 combinations of them, and one successor."""
     parts = [automaton("a", "s t", [edge("s", way("t", x=1), action="a")])]
     parts += [automaton(f"m{n}", "s", [edge("s", "s", action="a"), edge("s", "s", action="a")]) for n in range(62)]

@@ -19,7 +19,7 @@ NAMES = st.text(alphabet="abcXYZ_1", min_size=1, max_size=12)
     "written",
     ["batery_level", "battery_levell", "battery_lavel", "abttery_level", "battery_levle", "BATTERY_LEVE"],
 )
-def test_among_many_names_the_one_that_is_meant_comes_first(written: str) -> None:
+def test_the_intended_name_is_first_among_many(written: str) -> None:
     assert close_names(written, [*MANY, "battery_level"])[:1] == ("battery_level",)
 
 

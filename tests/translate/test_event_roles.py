@@ -115,7 +115,7 @@ def changed(network: Network, change: Change) -> Network:
     return replace(network, automata=tuple(automata))
 
 
-def test_names_mean_nothing_to_the_translation(network: Network) -> None:
+def test_the_translation_does_not_depend_on_names(network: Network) -> None:
     """With other names and the same roles comes the same model, but for the names."""
     names = {event.name for event in events(network)}
     renamed = changed(network, lambda event: replace(event, name=f"qq.{event.name}.qq"))

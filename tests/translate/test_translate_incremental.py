@@ -37,7 +37,7 @@ def workspace(model: Model) -> Workspace:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_changes_leave_nothing_behind(seed: int) -> None:
+def test_results_do_not_depend_on_earlier_changes(seed: int) -> None:
     random = Random(seed)
     model = random.choice([model for model in sound() if 3 < len(model.texts) < LARGEST])
     lasting = workspace(model)

@@ -177,7 +177,7 @@ def test_other_properties_keep_their_answers() -> None:
     assert not any(action.name == TIME_OVER_ACTION for action in alone.actions)
 
 
-def test_an_observer_joins_what_is_there() -> None:
+def test_an_observer_joins_existing_synchronisations() -> None:
     plain = api.to_jani(loaded(system("")))
     model = translated("existence_until")
     observer = model.automata[-1]

@@ -53,7 +53,7 @@ def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
         assert page.count(f"<th>{who}</th>") == 1
 
 
-def test_what_only_passes_on_is_left_out() -> None:
+def test_forwarding_steps_are_omitted() -> None:
     """Between a client and its server stands a handler, and the answer holds a text with its length."""
     folder = ROBOT.parent / "delivery_robot"
     texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
@@ -78,7 +78,7 @@ def walked(written: Json) -> Story:
     return tell(Recorder(ready, ready.asked[0], 0, 1000), 0)
 
 
-def test_steps_of_hand_written_models_are_told_one_by_one() -> None:
+def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:
     both = [edge("s", "t", action="meet"), edge("t", way("u", x=op("+", "x", 1)))]
     written = document(
         automaton("a", "s t u", both),

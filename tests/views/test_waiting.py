@@ -49,7 +49,7 @@ help: a tick must be answered before time passes; let Fetch (bt_1002) return RUN
     )
 
 
-def test_nothing_is_said_of_a_system_that_goes_on(tmp_path: Path) -> None:
+def test_no_text_for_a_system_that_continues(tmp_path: Path) -> None:
     assert told(tmp_path, hospital(mended=True)) == ""
 
 

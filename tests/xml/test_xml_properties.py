@@ -82,7 +82,7 @@ def cut(text: str, span: Span) -> str:
 
 
 @given(TEXTS | damaged())
-def test_findings_lie_in_the_text(text: str) -> None:
+def test_findings_are_inside_the_text(text: str) -> None:
     document = parse(text)
     assert len(document.findings) <= MAX_FINDINGS + 1
     for finding in document.findings:
@@ -108,7 +108,7 @@ BEYOND = re.compile(r"xmlns:p=(?!\"u\")|<\?xml version=.1\.\D|<!DOCTYPE")
 
 
 @given(damaged())
-def test_sound_means_what_libxml2_calls_sound(text: str) -> None:
+def test_well_formed_is_the_same_as_in_libxml2(text: str) -> None:
     assume(not BEYOND.search(text))
     assert (not parse(text).findings) == is_well_formed(text)
 
