@@ -27,7 +27,7 @@ function install(on: FakeMachine, preferred: string[] = [], onStep: (step: Step)
     });
 }
 
-test("an environment is made, the wheel installed and the mark written last", async () => {
+test("an environment is created, the wheel installed and the mark written last", async () => {
     const on = machine();
     on.files.set("/storage/1/ready.json", "{}");
     const steps: Step[] = [];
@@ -79,7 +79,7 @@ test("an attempt that was interrupted is repeated at the next start", async () =
     }
 });
 
-test("nothing is compiled where no environment was made", async () => {
+test("nothing is compiled without an environment", async () => {
     const on = machine();
     await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").compile(() => undefined);
     assert.deepEqual(on.ran, []);
@@ -95,7 +95,7 @@ test("the preferred interpreter comes first", async () => {
     assert.ok(on.ran.includes(`/conda/python -I -m venv ${HOME}`));
 });
 
-test("no Python of a folder that is not trusted is started", async () => {
+test("no Python of an untrusted folder is started", async () => {
     const on = machine();
     const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2");
     assert.deepEqual(await environment.install(["/bin/python3"], { avoid: ["/bin"] }), { kind: "no-python" });
@@ -115,7 +115,7 @@ test("a Python without venv", async () => {
     assert.equal(on.files.size, 0);
 });
 
-test("another Python is tried where one lacks venv", async () => {
+test("another Python is tried if one lacks venv", async () => {
     const on = new FakeMachine({
         "/bin/python3": (args) => (args.includes("venv") ? { status: 1 } : python("/bin/python3")(args)),
         "/bin/python3.12": (args) => (args.includes("venv") ? {} : python("/bin/python3.12", "3.12")(args)),
@@ -124,7 +124,7 @@ test("another Python is tried where one lacks venv", async () => {
     assert.ok("origin" in (await install(on)));
 });
 
-test("no package index: the end of what pip said is told, nothing is left", async () => {
+test("no package index: the end of the output of pip is reported, no files are left", async () => {
     const said = [...Array.from({ length: 20 }, (_, i) => `line ${i}`), "ERROR: No matching distribution"].join("\n");
     const found = await install(machine({ pip: { status: 1, err: said } }));
     assert.ok("kind" in found && found.kind === "no-packages");

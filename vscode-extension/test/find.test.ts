@@ -46,7 +46,7 @@ test("the setting comes first, then Python, PATH and the private environment", a
     assert.deepEqual(await find(new FakeMachine({})), { kind: "no-server" });
 });
 
-test("a setting that does not work is told of, not passed over", async () => {
+test("a setting that does not work is reported, not skipped", async () => {
     const found = await find(everything(), { server: "/nowhere/as2fm-lsp" });
     const detail = "spawn /nowhere/as2fm-lsp ENOENT";
     assert.deepEqual(found, { kind: "configured-server", path: "/nowhere/as2fm-lsp", detail });
@@ -65,7 +65,7 @@ test("without trust nothing is started but the private environment", async () =>
     assert.deepEqual(machine.ran, []);
 });
 
-test("Python never takes modules of the working folder", async () => {
+test("Python never imports modules of the working folder", async () => {
     const machine = everything();
     await find(machine, { active: ["/venv/bin/python", "/none/python"] });
     const python = machine.ran.filter((line) => line.includes("python"));
@@ -73,7 +73,7 @@ test("Python never takes modules of the working folder", async () => {
     for (const line of python) assert.match(line, /python\d*(\.\d+)? -I /);
 });
 
-test("an interpreter that the user has chosen is asked in place of the active one", async () => {
+test("an interpreter in the settings is used instead of the active one", async () => {
     const machine = new FakeMachine({
         "/a/python": python("/a/python", "3.10", "0.1.0"),
         "/b/python": python("/b/python", "3.10", "0.1.0"),
@@ -82,7 +82,7 @@ test("an interpreter that the user has chosen is asked in place of the active on
     assert.ok("command" in found && found.command === "/a/python");
 });
 
-test("what is too old, or something else, is passed over", async () => {
+test("servers that are too old and other programs are skipped", async () => {
     const old = new FakeMachine({
         "/old/python": python("/old/python", "3.8", "0.3.0"),
         "/none/python": python("/none/python", "3.12"),

@@ -115,7 +115,7 @@ test("expressions as text", () =>
  ^^ entity.name.tag
 `));
 
-test("what is half typed does not spill over", () =>
+test("incomplete text does not change the highlighting of what follows", () =>
     check(`
 <assign location="a
   expr="b" />

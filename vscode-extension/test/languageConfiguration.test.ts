@@ -25,7 +25,7 @@ test("words have dashes, numbers their sign and point; a dot ends a word, so tha
     assert.deepEqual(words('"exp": "seen.valid"', read("language-configuration-jani.json")), ["exp", "seen.valid"]);
 });
 
-test("what opens an element is followed by an indent, what closes one stands back", () => {
+test("a start tag increases the indentation, an end tag decreases it", () => {
     const { increaseIndentPattern, decreaseIndentPattern } = ASCXML.indentationRules;
     const opens = (line: string) => new RegExp(increaseIndentPattern).test(line);
     const closes = (line: string) => new RegExp(decreaseIndentPattern).test(line);

@@ -25,7 +25,7 @@ const { contributes } = JSON.parse(fs.readFileSync("package.json", "utf8")) as M
 const texts = JSON.parse(fs.readFileSync("package.nls.json", "utf8")) as Readonly<Record<string, string>>;
 const steps = contributes.walkthroughs[0].steps;
 
-test("no operator of JANI is called suspicious", () => {
+test("no operator of JANI is highlighted as an ambiguous character", () => {
     const source = fs.readFileSync("../server/roaml/jani/operators.py", "utf8");
     const operators = [...source.matchAll(/^ {4}[A-Z_]+ = "([^"]+)"/gm)].map(([, symbol]) => symbol ?? "");
     const unusual = Array.from(`${operators.join("")}∀∃`).filter((character) => character > "\u007f");
@@ -48,7 +48,7 @@ test("each step of the walkthrough has a picture for each kind of theme", () => 
     }
 });
 
-test("each step is marked by something that the extension says, and the last one is the verification", () => {
+test("each step is completed by an event of the extension, and the last one is the verification", () => {
     const commands = new Set(contributes.commands.map(({ command }) => command));
     const source = ["steps.ts", "documents.ts", "server.ts"].map((name) =>
         fs.readFileSync(`src/editor/${name}`, "utf8"),

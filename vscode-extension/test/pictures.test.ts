@@ -72,7 +72,7 @@ function box(drawing: Drawing, index: number) {
     return found;
 }
 
-test("what is initial lies at the top, frames hold what is in them", async () => {
+test("initial nodes are at the top, frames contain their nodes", async () => {
     const drawing = await layout(MACHINE);
     assert.ok(box(drawing, 0).y < box(drawing, 1).y);
     assert.ok(box(drawing, 3).y < box(drawing, 4).y);
@@ -107,7 +107,7 @@ function touches(rect: { x: number; y: number; width: number; height: number }, 
     return across && y >= rect.y - near && y <= rect.y + rect.height + near;
 }
 
-test("children of the tree keep their order, variables lie below", async () => {
+test("children of the tree keep their order, variables are below", async () => {
     const drawing = await layout(TREE);
     assert.ok(box(drawing, 1).x < box(drawing, 2).x);
     assert.ok(box(drawing, 0).y < box(drawing, 1).y);

@@ -22,13 +22,13 @@ test("the narrowest place around a position", () => {
     assert.equal(lineOf(LINES, URI, { line: 15, character: 0 }), 2);
 });
 
-test("what has no line of its own follows what stands above it", () => {
+test("a place without its own line maps to the line above", () => {
     assert.equal(lineOf(LINES, URI, { line: 25, character: 0 }), 4);
     assert.equal(lineOf(LINES, "file:///other", { line: 8, character: 0 }), undefined);
     assert.equal(lineOf([], URI, { line: 8, character: 0 }), undefined);
 });
 
-test("and back", () => {
+test("from the plain form to the source", () => {
     assert.equal(placeOf(LINES, 3)?.range.start.line, 7);
     assert.equal(placeOf(LINES, 5)?.range.start.line, 8);
     assert.equal(placeOf([], 5), undefined);

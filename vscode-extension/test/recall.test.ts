@@ -29,7 +29,7 @@ test("the server that ran last is known in the next window", async () => {
     assert.deepEqual(new Recall(kept).server(WISHES), SERVER);
 });
 
-test("with other wishes it is not expected", async () => {
+test("with other settings it is not expected", async () => {
     const recall = new Recall(new Kept());
     await recall.keep(WISHES, SERVER);
     assert.equal(recall.server(["", "", false, "0.1.0-abc"]), undefined);
@@ -37,7 +37,7 @@ test("with other wishes it is not expected", async () => {
     assert.equal(recall.server(WISHES), undefined);
 });
 
-test("what is known is not written again", async () => {
+test("unchanged data is not written again", async () => {
     const kept = new Kept();
     const recall = new Recall(kept);
     await recall.keep(WISHES, SERVER);
@@ -47,7 +47,7 @@ test("what is known is not written again", async () => {
     assert.equal(kept.updates, 2);
 });
 
-test("what another version has kept, or nobody, is no server", async () => {
+test("data of another version, or no data, is not a server", async () => {
     const kept = new Kept();
     for (const server of [null, "as2fm-lsp", {}, { ...SERVER, args: "-m" }, { ...SERVER, args: [1] }]) {
         await kept.update("server", { wishes: WISHES, server });

@@ -12,7 +12,7 @@ test("a program's output and status", async () => {
     assert.deepEqual(await run(process.execPath, ["-e", code]), { status: 3, out: "out\n", err: "err\n" });
 });
 
-test("one that is not there, one that takes too long, one that is called off", async () => {
+test("a missing program, one that takes too long, one that is cancelled", async () => {
     const missing = await run("/no/such/program", []);
     assert.equal(missing.status, null);
     assert.match(missing.err, /ENOENT/);
@@ -24,7 +24,7 @@ test("one that is not there, one that takes too long, one that is called off", a
     assert.equal((await running).status, null);
 });
 
-test("programs are looked for in absolute folders of PATH only", async () => {
+test("programs are searched only in absolute folders of PATH", async () => {
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "as2fm-path-"));
     const [before, cwd] = [process.env["PATH"], process.cwd()];
     try {

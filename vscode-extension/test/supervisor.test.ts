@@ -65,7 +65,7 @@ test("searching, starting, running, stopped", async () => {
     assert.deepEqual(fake.restarts, []);
 });
 
-test("a failure to find is a state, and an installation mends it", async () => {
+test("a failed search is a state, and an installation ends it", async () => {
     const fake = new Fake();
     fake.found = { kind: "no-server" };
     const supervisor = new Supervisor(fake);
@@ -77,7 +77,7 @@ test("a failure to find is a state, and an installation mends it", async () => {
     assert.deepEqual(fake.states, ["searching", "failed", ...after]);
 });
 
-test("a server that does not start, and a mistake of ours", async () => {
+test("a server that does not start, and an internal error", async () => {
     const fake = new Fake();
     fake.launching = () => Promise.reject(new Error("it ended with status 3"));
     const supervisor = new Supervisor(fake);
@@ -89,7 +89,7 @@ test("a server that does not start, and a mistake of ours", async () => {
     assert.deepEqual(supervisor.state, { kind: "failed", failure: { kind: "internal", detail: "oops" } });
 });
 
-test("a server that ends by itself is started again, and it is told", async () => {
+test("a server that crashes is restarted and reported", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.start();
@@ -99,7 +99,7 @@ test("a server that ends by itself is started again, and it is told", async () =
     assert.deepEqual(fake.restarts, [KILLED]);
 });
 
-test("one that keeps ending is left alone, one that seldom ends is not", async () => {
+test("a server that crashes repeatedly is not restarted, one that crashes seldom is", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.start();
@@ -115,7 +115,7 @@ test("one that keeps ending is left alone, one that seldom ends is not", async (
     assert.equal(supervisor.state.kind, "running");
 });
 
-test("one that ends while it is started again has ended once more", async () => {
+test("a server that ends during its restart has crashed again", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.start();
@@ -131,7 +131,7 @@ test("one that ends while it is started again has ended once more", async () => 
     assert.deepEqual(supervisor.state, { kind: "failed", failure });
 });
 
-test("a restart ends the server that runs, and is no crash", async () => {
+test("a restart stops the running server and is not a crash", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.start();
@@ -145,7 +145,7 @@ test("a restart ends the server that runs, and is no crash", async () => {
 
 const OTHER: Server = { ...SERVER, origin: "python", command: "/env/bin/python" };
 
-test("a server that is expected is started before it is looked for", async () => {
+test("an expected server is started before the search ends", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.expect(SERVER);
@@ -153,7 +153,7 @@ test("a server that is expected is started before it is looked for", async () =>
     assert.deepEqual(fake.launched, [SERVER]);
 });
 
-test("where another is found, or none, that counts", async () => {
+test("the result of the search replaces the expected server", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.expect(OTHER);
@@ -169,7 +169,7 @@ test("where another is found, or none, that counts", async () => {
     assert.ok(fake.sessions.every((session) => session.stopped));
 });
 
-test("an expected server that does not start is no failure", async () => {
+test("an expected server that does not start is not a failure", async () => {
     const fake = new Fake();
     let left = 1;
     fake.launching = () => (left-- > 0 ? Promise.reject(new Error("it is gone")) : Promise.resolve());
@@ -179,7 +179,7 @@ test("an expected server that does not start is no failure", async () => {
     assert.deepEqual(supervisor.state, { kind: "running", server: SERVER });
 });
 
-test("looking again leaves the server alone that is found again, and tells what is wrong", async () => {
+test("a new search does not restart the same server, and reports failures", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.look();
@@ -193,7 +193,7 @@ test("looking again leaves the server alone that is found again, and tells what 
     assert.deepEqual(supervisor.state, { kind: "failed", failure: { kind: "internal", detail: "oops" } });
 });
 
-test("what a search finds after a newer wish changes nothing", async () => {
+test("the result of a search after a newer request changes nothing", async () => {
     const fake = new Fake();
     const supervisor = new Supervisor(fake);
     await supervisor.start();
@@ -206,7 +206,7 @@ test("what a search finds after a newer wish changes nothing", async () => {
     assert.equal(supervisor.state.kind, "stopped");
 });
 
-test("what was overtaken changes nothing any more", async () => {
+test("results of superseded requests change nothing", async () => {
     const fake = new Fake();
     let go: () => void = () => undefined;
     fake.launching = () => new Promise((resolve) => (go = resolve));

@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { run } from "../src/server/run";
 import { isInside, safeFolder, safeVariables } from "../src/server/surroundings";
 
-test("a program is not started in the folder of the workspace, and takes no modules from there", async () => {
+test("a program is not started in the folder of the workspace and imports no modules from there", async () => {
     const workspace = fs.mkdtempSync(path.join(os.tmpdir(), "as2fm-workspace-"));
     const [before, named] = [process.cwd(), process.env["PYTHONPATH"]];
     try {
@@ -25,7 +25,7 @@ test("a program is not started in the folder of the workspace, and takes no modu
     }
 });
 
-test("what PYTHONPATH names with its whole path stays", () => {
+test("absolute entries of PYTHONPATH stay", () => {
     const named = ["/opt/ros/lib", "", ".", "lib", "/opt/x"].join(path.delimiter);
     const safe = safeVariables({ PYTHONPATH: named });
     assert.equal(safe["PYTHONPATH"], ["/opt/ros/lib", "/opt/x"].join(path.delimiter));

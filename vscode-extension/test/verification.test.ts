@@ -9,7 +9,7 @@ const ROW: Verified = { property: "alarm", seconds: 1.25, short: "0.71 [0.66, 0.
 const MET = { expected: ">= 0.5", met: true, certain: true };
 const MISSED = { expected: ">= 0.95", met: false, certain: true };
 
-test("a property of which nothing is expected passes, and tells its probability", () => {
+test("a property without an expectation passes with its probability", () => {
     assert.deepEqual(outcomeOf(ROW), {
         kind: "passed",
         short: "0.71 [0.66, 0.76]",
@@ -33,7 +33,7 @@ test("expectations decide", () => {
 
 const STUCK = { level: "warning", text: "who waits for whom", example: { trace: 3 } } as const;
 
-test("a system that gets stuck is told, and fails its properties if that is an error", () => {
+test("a system that gets stuck is reported, and fails its properties if that is an error", () => {
     const told = { short: "0.71 [0.66, 0.76]", milliseconds: 1250 };
     assert.deepEqual(outcomeOf(ROW, STUCK), { ...told, kind: "passed", uniform: [], stuck: "who waits for whom" });
     assert.deepEqual(outcomeOf(ROW, { ...STUCK, level: "error" }), {
@@ -47,13 +47,13 @@ test("a system that gets stuck is told, and fails its properties if that is an e
     assert.ok(missed.kind === "failed" && missed.stuck === "who waits for whom");
 });
 
-test("a system of which no trace got stuck is told nothing of", () => {
+test("nothing is reported if no trace got stuck", () => {
     for (const level of ["warning", "error"] as const)
         assert.deepEqual(outcomeOf(ROW, { ...STUCK, level, example: null }), outcomeOf(ROW));
     assert.deepEqual(outcomeOf(ROW, null), outcomeOf(ROW));
 });
 
-test("what only uniform choices are known to meet has passed, and how is told", () => {
+test("an expectation that only uniform choices are known to meet passes with a remark", () => {
     const warning = "this is the value under uniform choices";
     const only = { ...MET, under_uniform_choices_only: true };
     assert.deepEqual(outcomeOf({ ...ROW, expectations: [MET, only], warning }), {
@@ -65,13 +65,13 @@ test("what only uniform choices are known to meet has passed, and how is told", 
     });
 });
 
-test("a warning is told of what has failed as well", () => {
+test("a warning is also reported for a failure", () => {
     const warning = "all 200 traces got stuck and say nothing about the property";
     const failed = outcomeOf({ ...ROW, expectations: [MISSED], warning });
     assert.ok(failed.kind === "failed" && failed.warning === warning);
 });
 
-test("what goes wrong is an error, not a failure", () => {
+test("a failed verification is an error, not a failure of the test", () => {
     const message = "a division by zero";
     assert.deepEqual(outcomeOf({ property: "alarm", error: { message } }), { kind: "errored", message });
 });
@@ -87,7 +87,7 @@ function suite(id: string, ...names: readonly string[]): [string, Item] {
     return [id, made];
 }
 
-test("what is chosen: all, suites, single properties, but for those left out", () => {
+test("selection: all, suites, single properties, without excluded ones", () => {
     const all = new Map([suite("a", "x", "y"), suite("b", "x"), suite("empty")]);
     const [a, b] = [all.get("a"), all.get("b")];
     assert.ok(a && b);

@@ -19,7 +19,7 @@ const FAILURES: Record<Failure["kind"], Failure> = {
     internal: { kind: "internal", detail: "oops" },
 };
 
-test("every failure says what to do, and offers it", () => {
+test("every failure contains and offers an action", () => {
     const packageJson = JSON.parse(fs.readFileSync("package.json", "utf8")) as {
         contributes: { commands: { command: string }[] };
     };
@@ -34,7 +34,7 @@ test("every failure says what to do, and offers it", () => {
     }
 });
 
-test("the words that help", () => {
+test("the texts that help", () => {
     const long = (failure: Failure) => tellState({ kind: "failed", failure }).long;
     assert.match(long(FAILURES["no-python"]), /Python 3\.10 or newer.*apt install python3 python3-venv/);
     assert.match(long(FAILURES["no-venv"]), /apt install python3-venv/);
