@@ -21,8 +21,8 @@ MAX_LENGTH = 80
 _MIN_SIMILARITY = 0.6
 """The minimum similarity after `difflib`, between 0 and 1."""
 MAX_COMPARED = 40
-"""The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are
-selected first."""
+"""The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are selected
+first."""
 _NEIGHBOURS = 5
 """The number of neighbours on each side of a name in a sorted list of candidates."""
 

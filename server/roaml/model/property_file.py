@@ -43,8 +43,7 @@ class PortVariable:
 @dataclass(frozen=True, slots=True, eq=False)
 class Port:
     """`kind` is the name of its element, `name` the interface, node or event that it listens to, `event` the part of
-    the
-    interface."""
+    the interface."""
 
     element: Element
     kind: str

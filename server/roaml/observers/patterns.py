@@ -124,8 +124,7 @@ class _Scope:
 
 class _Judge(Protocol):
     """A pattern in a stretch (docs/spec/xml-properties.md#patterns). Its registers have fixed values while no stretch
-    is
-    open.
+    is open.
 
     Attributes:
         owes: whether an obligation is open: the stretch violates the pattern if it ends here.
@@ -290,8 +289,7 @@ class _Response:
     """The pattern that requires an answer to each request, at a distance in the window.
 
     Only the oldest open request matters: what answers it also answers all others whose window has begun, and its
-    deadline
-    is the first one.
+    deadline is the first one.
     """
 
     is_safe: Expression = FALSE

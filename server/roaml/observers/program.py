@@ -3,8 +3,7 @@
 
 - All values are booleans or integers from 0 to the `limit` of their register.
 - Registers that only pass a value from one assignment to a later one are reset at the end of each letter, so that
-  states
-  of an observer differ only if its future behaviour differs.
+  states of an observer differ only if its future behaviour differs.
 """
 
 from __future__ import annotations
@@ -95,8 +94,7 @@ class Outputs:
         satisfied: the property holds, however the trace continues; `None` if that is never known.
         pending: an obligation is open that is violated if the trace ends here.
         due: an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline is now.
-        exercised: whether something triggered the property: a request, or a scope that opened; `None` if it always
-        applies.
+        exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
     """
 
     violated: Register

@@ -34,7 +34,7 @@ class SavedSession:
     Attributes:
         property: the name of the property that is evaluated on the run.
         decisions: the decisions of all steps; `None` where the seed decides.
-        position: the number of steps before the position.
+        position: the position in the run, as a number of steps.
     """
 
     property: str
@@ -282,8 +282,7 @@ class Session:
 
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
         """Take steps until an event is sent, named as in plain SCXML or by its topic, service or action; returns
-        whether
-        it was sent."""
+        whether it was sent."""
         return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:

@@ -269,8 +269,7 @@ class Kernel:
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for
-        each
-        slot that does something the probabilities of the ways of each enabled edge."""
+        each slot that does something the probabilities of the ways of each enabled edge."""
         found = []
         for i in range(self.enabled_count):
             vector = self.enabled[i]
@@ -713,8 +712,7 @@ class Kernel:
 
     def _execute_phases(self) -> None:
         """Execute the assignments of ways that depend on each other: for each index, first compute all values, then
-        assign
-        them."""
+        assign them."""
         index = LEAST
         while True:
             following = MOST
@@ -903,8 +901,7 @@ class Kernel:
 
     def _goes_round(self) -> int:
         """Evaluate the goal if the trace repeats a cycle for ever: a condition that has not been true will never be.
-        Whether
-        a condition is true at every step of the cycle is not known."""
+        Whether a condition is true at every step of the cycle is not known."""
         self.end = IDLE
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN and self.lower[i] >= 0:

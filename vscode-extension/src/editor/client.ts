@@ -20,7 +20,7 @@ import { ownsWellFormedness } from "./xmlExtension";
 
 /**
  * Interface definitions keep the language that another extension assigns to them. JSON is excluded: its documents would
-  * have two formatters, and the server reads struct declarations in it from the disk.
+ * have two formatters, and the server reads struct declarations in it from the disk.
  */
 const SELECTOR: DocumentSelector = [
     ...["ascxml", "scxml", "jani", "xml"].flatMap((language) => [

@@ -3,8 +3,7 @@
  * Decides whether the workspace contains models, so that the server is needed.
  *
  * A system file is usually called `main.xml`. VS Code finds a file by its name much faster than by its extension, so
- * only
-  * this name activates the extension. Other projects may have such a file, too: there, the server is not started.
+ * only this name activates the extension. Other projects may have such a file, too: there, the server is not started.
  */
 
 import * as vscode from "vscode";

@@ -3,11 +3,9 @@
  * Cooperation with the XML extension, if it is installed.
  *
  * - It checks files of the language `xml`, such as system files and behavior trees. It reports errors of
- * well-formedness
-  *   in them, so the client hides those of the server.
-  * - The client offers its schemas to it as a catalog. It uses them in documents that refer to one of them by name;
-  * only
-  *   the server checks other documents, so that nothing is reported twice.
+ *   well-formedness in them, so the client hides those of the server.
+ * - The client offers its schemas to it as a catalog. It uses them in documents that refer to one of them by name; only
+ *   the server checks other documents, so that nothing is reported twice.
  */
 
 import * as vscode from "vscode";

@@ -3,12 +3,10 @@
  * The private Python environment of the extension, with the server from the wheel in the extension.
  *
  * - An environment is named after its wheel, so a new version of the extension creates a new one and removes the old
- * one.
-  * - It is valid only if it has a mark file, which is written as the last step: an interrupted installation is
-  * repeated.
-  * - The packages that the server needs come from the index for which the user's pip is configured. Only files with
-  * known
-  *   hashes are installed, and none of them runs code during its installation.
+ *   one.
+ * - It is valid only if it has a mark file, which is written as the last step: an interrupted installation is repeated.
+ * - The packages that the server needs come from the index for which the user's pip is configured. Only files with
+ *   known hashes are installed, and none of them runs code during its installation.
  */
 
 import * as path from "node:path";
@@ -36,7 +34,7 @@ export interface InstallOptions {
 export class PrivateEnvironment {
     /**
      * @param folder the folder with environments.
-      * @param wheel the wheel of the server.
+     * @param wheel the wheel of the server.
      * @param requirements the packages that the server needs, with their hashes.
      * @param id identifies this wheel with these packages.
      */
@@ -96,7 +94,7 @@ export class PrivateEnvironment {
 
     /**
      * Compile the kernel of the model checker in the environment, unless an earlier attempt was completed. Without a C
-      * compiler, the plain Python kernel is used, which is slower.
+     * compiler, the plain Python kernel is used, which is slower.
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
         const mark = path.join(this.home, KERNEL_MARK);

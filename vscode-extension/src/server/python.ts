@@ -40,7 +40,7 @@ export async function askPython(machine: Machine, executable: string): Promise<P
  * The interpreters on this machine that are recent enough, without duplicates.
  *
  * @param first the paths to try before the names on PATH.
-  * @param avoid the folders from which no program is started.
+ * @param avoid the folders from which no program is started.
  */
 export async function* pythons(
     machine: Machine,

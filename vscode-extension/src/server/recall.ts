@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * The server that ran last in a workspace. With the same settings, the search will probably return it again, so it is
-  * started before the search ends: querying extensions for Python and an interpreter takes longer than starting the
-  * server.
+ * started before the search ends: querying extensions for Python and an interpreter takes longer than starting the
+ * server.
  */
 
 import { isDeepStrictEqual } from "node:util";

@@ -3,8 +3,8 @@
  * The states of the server: searching, installing, starting, running, failed.
  *
  * - There is one state at a time, and each change is reported; the user sees nothing else.
-  * - A server that crashes is restarted with a message; one that crashes repeatedly is not.
-  * - A newer request makes the results of older ones irrelevant: they change nothing any more.
+ * - A server that crashes is restarted with a message; one that crashes repeatedly is not.
+ * - A newer request makes the results of older ones irrelevant: they change nothing any more.
  */
 
 import { isDeepStrictEqual } from "node:util";

@@ -29,8 +29,7 @@ export type Outcome =
 
 /**
  * A property without an expectation passes: the result is its probability. If the system gets stuck, the result
- * contains
-  * this; if that is an error, the test fails.
+ * contains this; if that is an error, the test fails.
  */
 export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome {
     if (verified.error) return { kind: "errored", message: verified.error.message };
