@@ -128,8 +128,8 @@ class Possible:
         """The children that are never ticked.
 
         Each comes with the earlier child that always ends the node, and with the answer that this one never gives. Of
-        several such children in a row, this is the first. If the answers of a child follow from an unreached child
-        inside it, this is only the inner one.
+        several such children in a row, only the first is returned. If the answers of a child follow from an unreached
+        child inside it, only the inner one is returned.
         """
         answers = self.answers(root)
         has_inner: set[TreeNode] = set()
