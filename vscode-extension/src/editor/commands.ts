@@ -132,7 +132,11 @@ async function migrateSystem({ server, documents }: Parts): Promise<void> {
     }
     const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
     const question = vscode.l10n.t("Migrate {0} to the current dialect?", vscode.workspace.asRelativePath(system));
-    const detail = [...found.files, "", vscode.l10n.t("Comments and layout are kept; Undo reverts the migration.")].join("\n");
+    const detail = [
+        ...found.files,
+        "",
+        vscode.l10n.t("Comments and layout are kept; Undo reverts the migration."),
+    ].join("\n");
     const answer = await vscode.window.showInformationMessage(question, { modal: true, detail }, apply, show);
     if (answer === show) await showChanges(server, system);
     if (answer === apply && (await vscode.workspace.applyEdit(edit, { isRefactoring: true }))) {

@@ -31,7 +31,9 @@ export class Documents implements vscode.Disposable {
     async system(document: vscode.TextDocument | undefined): Promise<vscode.Uri | undefined> {
         const { systems } = await this.about(document);
         if (systems.length === 0) {
-            const text = vscode.l10n.t("This file is not part of a system. Open a system file, or a file that one names.");
+            const text = vscode.l10n.t(
+                "This file is not part of a system. Open a system file, or a file that one names.",
+            );
             void vscode.window.showInformationMessage(text);
         }
         if (systems.length < 2) return systems[0] === undefined ? undefined : vscode.Uri.parse(systems[0]);

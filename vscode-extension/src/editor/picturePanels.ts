@@ -258,7 +258,9 @@ function words(): Words {
         saveSvg: vscode.l10n.t("Save as SVG"),
         savePng: vscode.l10n.t("Save as PNG"),
         nothing: vscode.l10n.t("No results"),
-        help: vscode.l10n.t("Arrow keys move between nodes, Enter opens the source, + and - zoom, 0 fits the diagram, / searches."),
+        help: vscode.l10n.t(
+            "Arrow keys move between nodes, Enter opens the source, + and - zoom, 0 fits the diagram, / searches.",
+        ),
         byChance: vscode.l10n.t("random"),
         kinds: {
             state: vscode.l10n.t("state"),

@@ -241,7 +241,10 @@ export class PropertyTests implements vscode.Disposable {
         if (told.has(system)) return;
         told.add(system);
         const name = vscode.workspace.asRelativePath(this.uri(system));
-        const text = vscode.l10n.t("{0} gets stuck: its time stands still, because its automata wait for one another.", name);
+        const text = vscode.l10n.t(
+            "{0} gets stuck: its time stands still, because its automata wait for one another.",
+            name,
+        );
         const show = vscode.l10n.t("Show Waiting Automata");
         void vscode.window.showWarningMessage(text, show).then((pressed) => {
             if (pressed === show) void vscode.commands.executeCommand(SHOW_COUNTEREXAMPLE, system, STUCK);

@@ -11,7 +11,9 @@ export function isTrusted(): boolean {
 
 async function tellRestricted(): Promise<void> {
     const manage = vscode.l10n.t("Manage Workspace Trust");
-    const text = vscode.l10n.t("This is disabled in Restricted Mode, because it would write files or run programs from the workspace.");
+    const text = vscode.l10n.t(
+        "This is disabled in Restricted Mode, because it would write files or run programs from the workspace.",
+    );
     if ((await vscode.window.showWarningMessage(text, manage)) === manage) {
         await vscode.commands.executeCommand("workbench.trust.manage");
     }
