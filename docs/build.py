@@ -2,8 +2,8 @@
 """Writes the reference manual from the schemas and the rule documents, and the nodes of the schema of trees:
 `python docs/build.py`.
 
-The writer is also the test that all pages are current: `python docs/build.py --check` writes nothing and exits with 1 if
-a page differs from what would be written.
+The writer is also the test that all pages are current: `python docs/build.py --check` writes nothing and exits with 1
+if a page differs from what would be written.
 """
 
 from __future__ import annotations
@@ -140,8 +140,8 @@ string. A member of an array of structs, `points.x`, is the array of all these m
 
 ## Operators
 
-An operator with a greater number binds tighter. `===` and `!==` mean `==` and `!=`. The unary operators, before a value,
-are {unary}. `test ? a : b` gives `a` if `test` is true, else `b`.
+An operator with a greater number binds tighter. `===` and `!==` mean `==` and `!=`. The unary operators, before a
+value, are {unary}. `test ? a : b` gives `a` if `test` is true, else `b`.
 
 | operator | kind | binds |
 | --- | --- | --- |
