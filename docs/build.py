@@ -2,8 +2,8 @@
 """Writes the reference manual from the schemas and the rule documents, and the nodes of the schema of trees:
 `python docs/build.py`.
 
-The writer is also the test that nothing has drifted: `python docs/build.py --check` writes nothing and exits with 1 if
-a page differs from what would be written.
+The writer is also the test that all pages are current: `python docs/build.py --check` writes nothing and exits with 1
+if a page differs from what would be written.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ LANGUAGES = {
 
 def pages() -> dict[str, str]:
     """File name -> text of each page of the reference."""
-    found = {f"{name}.md": language(grammar, title) for name, (grammar, title) in LANGUAGES.items()}
-    found["expressions.md"] = expressions()
-    found["properties.md"] = properties()
-    found["rules.md"] = rules()
-    found["command-line.md"] = command_line()
-    found["README.md"] = contents()
-    return {name: text if name == "README.md" else f"{NOTICE}\n{text}" for name, text in found.items()}
+    texts = {f"{name}.md": language(grammar, title) for name, (grammar, title) in LANGUAGES.items()}
+    texts["expressions.md"] = expressions()
+    texts["properties.md"] = properties()
+    texts["rules.md"] = rules()
+    texts["command-line.md"] = command_line()
+    texts["README.md"] = contents()
+    return {name: text if name == "README.md" else f"{NOTICE}\n{text}" for name, text in texts.items()}
 
 
 def contents() -> str:
@@ -69,8 +69,8 @@ def contents() -> str:
 
 def language(grammar: Grammar, title: str) -> str:
     roots = " or ".join(f"`<{root}>`" for root in grammar.roots)
-    parts = [f"# {title}\n\nThe root is {roots}. The grammar stands in `schemas/{grammar.schema}`.\n"]
-    parts += [element(each, grammar) for each in grammar.elements.values()]
+    parts = [f"# {title}\n\nThe root is {roots}. The grammar is defined in `schemas/{grammar.schema}`.\n"]
+    parts += [element(declared, grammar) for declared in grammar.elements.values()]
     return "\n".join(parts)
 
 
@@ -81,12 +81,12 @@ def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
         lines.append(f"*Older spelling; write `{type_.use}`.*\n")
     parents = [p for p in grammar.parents(type_.name) if type_.name not in grammar.elements[p].local]
     if parents and not inside:
-        lines.append(f"Stands in: {', '.join(f'`<{p}>`' for p in parents)}.\n")
+        lines.append(f"Parents: {', '.join(f'`<{p}>`' for p in parents)}.\n")
     if type_.binds:
         lines.append(f"Event variables: {', '.join(f'`{b.name}`' for b in type_.binds)}.\n")
     if type_.attributes:
         lines += ["| attribute | required | meaning |", "| --- | --- | --- |"]
-        lines += [attribute(each) for each in type_.attributes.values()]
+        lines += [attribute(declared) for declared in type_.attributes.values()]
         lines.append("")
     if type_.children:
         lines += ["| child | how often |", "| --- | --- |"]
@@ -125,8 +125,8 @@ def expressions() -> str:
     functions = "\n".join(f"| `{f.signature}` | {f.documentation} |" for f in FUNCTIONS.values())
     return f"""# Expressions
 
-Expressions are a part of ECMAScript 5. They stand in `cond`, `expr`, `location` and some other attributes, where `<` is
-written `&lt;` and `&&` is written `&amp;&amp;`.
+Expressions are a part of ECMAScript 5. They are written in `cond`, `expr`, `location` and some other attributes, where
+`<` is written `&lt;` and `&&` is written `&amp;&amp;`.
 
 ## Values
 
@@ -140,8 +140,8 @@ string. A member of an array of structs, `points.x`, is the array of all these m
 
 ## Operators
 
-The greater the number, the tighter an operator binds. `===` and `!==` mean `==` and `!=`. Before a value may stand
-{unary}. `test ? a : b` gives `a` if `test` is true, else `b`.
+An operator with a greater number binds tighter. `===` and `!==` mean `==` and `!=`. The unary operators, before a
+value, are {unary}. `test ? a : b` gives `a` if `test` is true, else `b`.
 
 | operator | kind | binds |
 | --- | --- | --- |
@@ -203,11 +203,11 @@ Each finding has a code. `as2fm-lsp --explain CODE` prints the document of a rul
 comment `<!-- as2fm: ignore[code] -->` suppresses a rule: on the line of the comment or, if it is alone on its line, in
 the element that follows. `python docs/build.py --rules FILE` writes all documents to one page.
 
-A fix is a change that an editor offers. Some fixes are *safe*: they remove nothing that has an effect and guess
-nothing. `as2fm-lsp --check PATH --fix` makes all safe fixes and reports what is left; in an editor, the code action
-`source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes need somebody who looks at
-them: an editor makes the preferred one with its key for fixes, and all preferred ones of a rule with *Fix all ... in
-this file*. A safe fix is not made where, alone or with others, it would cause an error.
+A fix is a change that an editor offers. Some fixes are *safe*: they remove nothing that has an effect and do not
+guess. `as2fm-lsp --check PATH --fix` applies all safe fixes and reports the remaining findings; in an editor, the
+code action `source.fixAll.as2fm` does so for one file, for example when it is saved. All other fixes need a review:
+an editor applies the preferred one with its key for fixes, and all preferred ones of a rule with *Fix all ... in this
+file*. A safe fix is not applied if it would cause an error, alone or together with others.
 
 An editor also offers these refactorings:
 
@@ -238,13 +238,13 @@ def command_line() -> str:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)
     for command in (explain, init, layout, migrate, simulate, translate, verify):
-        each = command.parser()
-        lines += options(f"`{each.prog}`", each._actions, f"{each.description}\n")
+        subparser = command.parser()
+        lines += options(f"`{subparser.prog}`", subparser._actions, f"{subparser.description}\n")
     return "\n".join(lines)
 
 
 def options(title: str, actions: Iterable[argparse.Action], text: str = "") -> list[str]:
-    """A section with a table; nothing if there is nothing to tell."""
+    """A section with a table; empty if there are no options."""
     rows = [option(action) for action in actions if action.dest != "help"]
     head = [f"## {title}\n", *filter(None, [text]), "| option | meaning |", "| --- | --- |"]
     return [*head, *rows, ""] if rows else []
@@ -268,16 +268,16 @@ def cell(text: str) -> str:
 
 def drifted() -> Iterator[Path]:
     """Pages that are missing, differ, or should not be there."""
-    wanted = pages()
-    for name, text in wanted.items():
+    expected = pages()
+    for name, text in expected.items():
         path = REFERENCE / name
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             yield path
-    yield from (path for path in REFERENCE.glob("*") if path.name not in wanted)
+    yield from (path for path in REFERENCE.glob("*") if path.name not in expected)
 
 
 def update_schema(check: bool) -> bool:
-    """Write the nodes of the schema of trees, or only look; whether they were as they should be."""
+    """Write the nodes of the schema of trees, or only compare them; whether they were current."""
     path = schema_path(BEHAVIOR_TREE.schema)
     before = path.read_text(encoding="utf-8")
     after = node_schema.with_nodes(before)
@@ -305,10 +305,10 @@ def main() -> int:
             print(f"{path.relative_to(HERE.parent)} is not what docs/build.py writes", file=sys.stderr)
         return 1 if stale else 0
     REFERENCE.mkdir(exist_ok=True)
-    wanted = pages()
+    expected = pages()
     for path in stale:
-        if path.name in wanted:
-            path.write_text(wanted[path.name], encoding="utf-8")
+        if path.name in expected:
+            path.write_text(expected[path.name], encoding="utf-8")
         else:
             path.unlink()
     return 0
