@@ -46,9 +46,9 @@ export function restricted(stage: Stage): void {
             const before = content(window.folder);
             for (const lens of ["Translate to JANI", "Verify all"]) {
                 await window.page.locator(".codelens-decoration a", { hasText: lens }).first().click();
-                await window.notification("This is off in Restricted Mode").first().waitFor();
+                await window.notification("This is disabled in Restricted Mode").first().waitFor();
                 await window.run("Notifications: Clear All Notifications");
-                await window.notification("This is off in Restricted Mode").first().waitFor({ state: "detached" });
+                await window.notification("This is disabled in Restricted Mode").first().waitFor({ state: "detached" });
             }
             assert.deepEqual(content(window.folder), before);
             await window.screenshot("restricted-lens");
