@@ -39,20 +39,20 @@ class Progress:
         """Whether the user has cancelled the work in the client."""
         return bool(self.token) and self._inbox.is_cancelled(self.token)
 
-    async def step(self, what: str) -> None:
+    async def step(self, message: str) -> None:
         """Begin a part of the work, after pending messages of the client are handled.
 
         Raises:
             Interrupted: the work is not needed any more.
         """
-        self.say(what)
+        self.say(message)
         await asyncio.sleep(0)
         self._requests.checkpoint()
 
-    def say(self, what: str) -> None:
+    def say(self, message: str) -> None:
         """Show a text."""
         if self.token:
-            self._client.report_progress(self.token, types.WorkDoneProgressReport(message=what))
+            self._client.report_progress(self.token, types.WorkDoneProgressReport(message=message))
 
     def report(self, done: int, total: int) -> None:
         percentage = done * 100 // max(total, 1)

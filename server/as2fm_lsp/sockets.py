@@ -160,7 +160,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
         token: the `token` that the client must send in its `initializationOptions`; "" if none is required.
     """
     admitted: list[Connection] = []
-    one = threading.Lock()
+    claimed = threading.Lock()
     waiting = threading.Semaphore(MAX_WAITING_CONNECTIONS)
     news, told = socket.socketpair()
 
@@ -172,7 +172,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
             client = None
         finally:
             waiting.release()
-        if client is not None and one.acquire(blocking=False):
+        if client is not None and claimed.acquire(blocking=False):
             admitted.append(client)
             told.send(b"!")
         else:

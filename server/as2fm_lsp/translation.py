@@ -58,4 +58,4 @@ def summary(model: Model) -> str:
         (len(model.variables), "global variable", "global variables"),
         (len(model.properties), "property", "properties"),
     )
-    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts)
+    return ", ".join(f"{count} {singular if count == 1 else many}" for count, singular, many in counts)

@@ -203,7 +203,7 @@ NOT_FOUND = [
 def test_not_found(registry: Registry, kind: Kind, name: str, reason: Reason, beginning: str) -> None:
     answer = registry.resolve(kind, name)
     assert isinstance(answer, NotFound)
-    assert (answer.reason, answer.kind, answer.wanted) == (reason, kind, name)
+    assert (answer.reason, answer.kind, answer.type_name) == (reason, kind, name)
     assert answer.message.startswith(beginning)
     assert answer.looked_in[-1] == "the standard packages that come with this tool"
     for close in answer.close:

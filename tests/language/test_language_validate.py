@@ -119,7 +119,7 @@ def describe(violation: Violation) -> str:
         case MissingElement():
             return f"{name} {' '.join(violation.names) or 'any'}"
         case InvalidValue():
-            return f"{name} {violation.type.name}, wanted {violation.wanted}"
+            return f"{name} {violation.type.name}, wanted {violation.required}"
         case SchemaViolation():
             return f"{name}: {violation.reason}"
 

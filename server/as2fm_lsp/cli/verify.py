@@ -306,8 +306,8 @@ class _Verification:
             if self.options.explain:
                 seen = unwanted_trace(result)
                 if seen is None:
-                    what = "fails" if unwanted_verdict(result) == FALSE else "holds"
-                    print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
+                    verb = "fails" if unwanted_verdict(result) == FALSE else "holds"
+                    print_text(f"{result.name}: there is no trace in which it {verb}\n", stream=sys.stderr)
                 else:
                     stories.append(traces.story(seen.trace))
         for file in self.options.explain:

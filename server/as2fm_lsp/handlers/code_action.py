@@ -168,4 +168,4 @@ def _is_wanted(kind: str, only: Sequence[str] | None) -> bool:
     only on request."""
     if not only:
         return kind != FIX_ALL
-    return any(wanted in ("", kind) or kind.startswith(f"{wanted}.") for wanted in only)
+    return any(requested in ("", kind) or kind.startswith(f"{requested}.") for requested in only)

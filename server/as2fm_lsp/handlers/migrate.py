@@ -61,10 +61,10 @@ def register(context: Context) -> None:
     def edits(migration: Migration) -> list[types.TextDocumentEdit | types.RenameFile]:
         uri = session.convert.uri(migration.path)
         source = SourceFile(migration.path, migration.before)
-        whole = session.convert.range(source, Span(0, len(source.text)))
+        full_range = session.convert.range(source, Span(0, len(source.text)))
         steps: list[types.TextDocumentEdit | types.RenameFile] = []
         if migration.after != migration.before:
-            edit = types.TextEdit(whole, migration.after)
+            edit = types.TextEdit(full_range, migration.after)
             steps.append(types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri), [edit]))
         if migration.new_path != migration.path:
             new = session.convert.uri(migration.new_path)

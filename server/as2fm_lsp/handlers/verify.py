@@ -184,8 +184,8 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
             text = f"{mark} {', '.join(_words(context, on.analysis, system, known))}{where}"
             position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(_place_in_words, known.result.traces.target if known.result.traces else None)
-            whole = one_as_text(known.result, place_of)
-            yield types.InlayHint(position, text, tooltip=whole, padding_left=True)
+            tooltip = one_as_text(known.result, place_of)
+            yield types.InlayHint(position, text, tooltip=tooltip, padding_left=True)
 
 
 def _shows_hints(context: Context) -> bool:

@@ -81,8 +81,8 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
         if not result.is_interrupted and not result.answer.is_complete:
             lines.append("  the interval is wider than requested (--epsilon)")
     if result.is_interrupted:
-        what = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
-        lines.append(f"  interrupted; {what}" if lines else f"{result.name}: interrupted; {what}")
+        clause = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
+        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
     for verdict in result.verdicts:
         doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
@@ -110,13 +110,13 @@ def _estimate(answer: Answer) -> str:
     tally, (lower, upper) = answer.tally, answer.bounds
     if tally.traces == 0:
         return "no result yet"
-    what = "infinite" if math.isinf(answer.value) else _number(answer.value)
+    value = "infinite" if math.isinf(answer.value) else _number(answer.value)
     interval = f" in [{_number(lower)}, {_number(upper)}]"
     good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
     counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
     if tally.undecided:
         counts += f", {tally.undecided:,} undecided"
-    return f"{what}{interval} from {counts}"
+    return f"{value}{interval} from {counts}"
 
 
 def _remarks(answer: Answer) -> list[str]:

@@ -53,13 +53,13 @@ def verification_settings(settings: object, options: object = None) -> Verificat
         return otherwise
 
     default = Options()
-    share, whole = "a number between 0 and 1", "a whole number"
+    share, integer = "a number between 0 and 1", "a whole number"
     width = f"a number from {LEAST_EPSILON:g} to 1"
     chosen = Options(
         confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
         epsilon=number("epsilon", default.epsilon, lambda value: LEAST_EPSILON <= value < 1, width),
-        max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{whole} from 1 on"),
-        seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{whole} from 0 on"),
+        max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{integer} from 1 on"),
+        seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{integer} from 0 on"),
     )
     expectations = []
     for name, text in _mapping(values.get("expectations")).items():

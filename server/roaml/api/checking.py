@@ -135,17 +135,17 @@ def _workspace(
 
 def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
     """The files that are reported on, in this order: the configuration, and the named paths."""
-    analysis, found = snapshot.analysis, dict[str, None]()
+    analysis, paths = snapshot.analysis, dict[str, None]()
     if origin := snapshot.checker.settings.origin:  # errors in it affect all of them
-        found[origin] = None
+        paths[origin] = None
     for path in named:
         if path not in kinds:
-            inside = [each for each in snapshot.files() if is_below(each, path)]
-            systems = [each for each in inside if analysis.kind(each) is FileKind.SYSTEM]
-            found.update(dict.fromkeys(each for system in systems for each in analysis.files_of(system)))
-            found.update(dict.fromkeys(inside))
+            inside = [known for known in snapshot.files() if is_below(known, path)]
+            systems = [system for system in inside if analysis.kind(system) is FileKind.SYSTEM]
+            paths.update(dict.fromkeys(member for system in systems for member in analysis.files_of(system)))
+            paths.update(dict.fromkeys(inside))
         elif kinds[path] is FileKind.SYSTEM:
-            found.update(dict.fromkeys(analysis.files_of(path)))
+            paths.update(dict.fromkeys(analysis.files_of(path)))
         else:
-            found[path] = None
-    return tuple(path for path in found if analysis.source(path) is not None)
+            paths[path] = None
+    return tuple(path for path in paths if analysis.source(path) is not None)

@@ -40,8 +40,8 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     value, syntax = parse(source.text)
     model, findings = (None, ()) if syntax else read_model(value, path)
     diagnostics = tuple(
-        Diagnostic(path, found.code, found.severity or Severity.ERROR, found.span, found.message)
-        for found in (*syntax, *findings)
+        Diagnostic(path, finding.code, finding.severity or Severity.ERROR, finding.span, finding.message)
+        for finding in (*syntax, *findings)
     )
     errors = tuple(diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR)
     if errors or model is None:

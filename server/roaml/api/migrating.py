@@ -83,13 +83,13 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
     causes errors."""
     memberships = around.analysis.memberships
     shared: dict[str, tuple[str, ...]] = {}
-    for each in migrations:
-        others = [system for system in memberships.get(each.path, ()) if system not in migrated]
-        if others and each.path == each.new_path:
-            after = around.with_texts({each.path: each.after})
+    for migration in migrations:
+        others = [system for system in memberships.get(migration.path, ()) if system not in migrated]
+        if others and migration.path == migration.new_path:
+            after = around.with_texts({migration.path: migration.after})
             others = [s for s in others if len(after.checker.errors(s)) > len(around.checker.errors(s))]
         if others:
-            shared[each.path] = tuple(others)
+            shared[migration.path] = tuple(others)
     return shared
 
 

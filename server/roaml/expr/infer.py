@@ -88,12 +88,12 @@ class IndexOutOfBounds:
 
 @dataclass(frozen=True, slots=True)
 class BadOperand:
-    """`operator` does not take an operand of type `given`; it takes `wanted`, BOOL or REAL."""
+    """`operator` does not take an operand of type `given`; it takes `required`, BOOL or REAL."""
 
     span: Span
     operator: str
     given: Type
-    wanted: Type
+    required: Type
 
 
 @dataclass(frozen=True, slots=True)
@@ -427,10 +427,10 @@ class _Inference:
             return UNKNOWN
         return common
 
-    def operand(self, expr: Expr, operator: str, wanted: Type) -> None:
+    def operand(self, expr: Expr, operator: str, required: Type) -> None:
         type_ = self.type_of(expr)
-        if not fits(type_, wanted):
-            self.problems.append(BadOperand(expr.span, operator, type_, wanted))
+        if not fits(type_, required):
+            self.problems.append(BadOperand(expr.span, operator, type_, required))
 
 
 def _function_name(function: Expr) -> str | None:

@@ -475,16 +475,16 @@ class _Parser:
                 opened -= 1
             self.at += 1
 
-    def missing(self, what: str) -> Expr:
+    def missing(self, operand: str) -> Expr:
         """Report that `what` is missing before the next token, or at the end."""
         token = self.peek()
         if token is not None:
             span = self.span(token)
-            self.report(span, f"{what} is missing before `{token.text[:20]}`")
+            self.report(span, f"{operand} is missing before `{token.text[:20]}`")
             self.gap = token.start
             return ErrorExpr(Span(span.start, span.start))
         last = self.span(self.tokens[-1])
-        self.report(last, f"{what} is missing after `{self.tokens[-1].text[:20]}`")
+        self.report(last, f"{operand} is missing after `{self.tokens[-1].text[:20]}`")
         return ErrorExpr(Span(last.end, last.end))
 
     def deeper(self) -> None:

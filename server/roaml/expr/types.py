@@ -190,12 +190,12 @@ def fits(value: Type, target: Type) -> bool:
     match value, target:
         case (Unknown(), _) | (_, Unknown()):
             return True
-        case Scalar(kind=given), Scalar(kind=wanted):
-            return given == wanted or (given == "int" and wanted == "real")
+        case Scalar(kind=given), Scalar(kind=required):
+            return given == required or (given == "int" and required == "real")
         case EmptyArray(), Array() | EmptyArray():
             return True
-        case Array(element=given), Array(element=wanted):
-            return fits(given, wanted)
+        case Array(element=given), Array(element=required):
+            return fits(given, required)
         case Struct(), Struct():
             return value.name == target.name
         case _:

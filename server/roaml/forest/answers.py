@@ -50,15 +50,15 @@ class Possible:
 
     def answers(self, root: TreeNode) -> dict[TreeNode, Answers]:
         """The possible answers of a node and of all nodes below it."""
-        found: dict[TreeNode, Answers] = {}
+        answers: dict[TreeNode, Answers] = {}
         order, stack = [], [root]
         while stack:
             node = stack.pop()
             order.append(node)
             stack += node.children
         for node in reversed(order):
-            found[node] = self._conditions(node, self._own(node, [found[child] for child in node.children]))
-        return found
+            answers[node] = self._conditions(node, self._own(node, [answers[child] for child in node.children]))
+        return answers
 
     def _conditions(self, node: TreeNode, own: Answers) -> Answers:
         more: Answers = frozenset()
@@ -138,14 +138,14 @@ class Possible:
             node = stack.pop()
             order.append(node)
             stack += node.children
-        found = []
+        stopped_nodes = []
         for node in reversed(order):  # children before their parents
             stopped = self._stopped(node, answers)
             if stopped is not None and stopped[1] not in has_inner:
-                found.append(stopped)
+                stopped_nodes.append(stopped)
             if stopped is not None or any(child in has_inner for child in node.children):
                 has_inner.add(node)
-        yield from reversed(found)
+        yield from reversed(stopped_nodes)
 
     def _stopped(self, node: TreeNode, answers: dict[TreeNode, Answers]) -> tuple[TreeNode, TreeNode, str] | None:
         name = node.plugin.value if node.plugin else ""
@@ -175,15 +175,15 @@ class Possible:
 
 def _in_turn(below: list[Answers], goes_on: str, ends: str) -> Answers:
     """The possible answers of a node that ticks its children in order as long as they answer `goes_on`."""
-    found: set[str] = set()
+    statuses: set[str] = set()
     all_skip = True
     for child in below:
-        found |= child & {ends, R}
+        statuses |= child & {ends, R}
         if not child & {goes_on, K}:
-            return frozenset(found)
+            return frozenset(statuses)
         all_skip = all_skip and K in child
     may_succeed = any(goes_on in child for child in below)
-    return frozenset(found | ({goes_on} if may_succeed else set()) | ({K} if all_skip else set()))
+    return frozenset(statuses | ({goes_on} if may_succeed else set()) | ({K} if all_skip else set()))
 
 
 def _number(node: TreeNode, port: str) -> str:

@@ -84,10 +84,10 @@ class Entries:
         return key
 
     def by_entry(self) -> Mapping[Key, list[Use]]:
-        found: dict[Key, list[Use]] = {}
+        uses: dict[Key, list[Use]] = {}
         for use in self.uses:
-            found.setdefault(self.entry(use.tree, use.name), []).append(use)
-        return found
+            uses.setdefault(self.entry(use.tree, use.name), []).append(use)
+        return uses
 
 
 def entry_of(setting: PortSetting) -> str | None:
@@ -168,8 +168,8 @@ def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
             roots[key], key = top, roots[key]
         return top
 
-    def join(one: Key, other: Key) -> None:
-        first, second = find(one), find(other)
+    def join(left: Key, right: Key) -> None:
+        first, second = find(left), find(right)
         if first != second:
             roots[first] = second
 

@@ -76,31 +76,31 @@ class Forest:
     @cached_property
     def trees(self) -> Mapping[str, tuple[str, Tree]]:
         """Name -> path of the file and tree; if names are equal, the first tree."""
-        found: dict[str, tuple[str, Tree]] = {}
+        trees: dict[str, tuple[str, Tree]] = {}
         for path, file in self.files:
             for tree in file.trees:
                 if tree.id is not None:
-                    found.setdefault(tree.id.value, (path, tree))
-        return found
+                    trees.setdefault(tree.id.value, (path, tree))
+        return trees
 
     @cached_property
     def models(self) -> Mapping[str, Node]:
         """The nodes that models in the files describe, without subtrees; if names are equal, the first one."""
-        found: dict[str, Node] = {}
+        models: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
                 if model.id is not None and model.kind != "SubTree":
-                    found.setdefault(model.id.value, node_of(model))
-        return found
+                    models.setdefault(model.id.value, node_of(model))
+        return models
 
     @cached_property
     def subtree_models(self) -> Mapping[str, Node]:
-        found: dict[str, Node] = {}
+        models: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
                 if model.id is not None and model.kind == "SubTree":
-                    found.setdefault(model.id.value, node_of(model))
-        return found
+                    models.setdefault(model.id.value, node_of(model))
+        return models
 
     @cached_property
     def libraries(self) -> tuple[Library, ...]:
@@ -126,12 +126,12 @@ class Forest:
 
     def node(self, name: str) -> Node | None:
         """The declaration of the node type with a name; `None` if there is none."""
-        found = CPP.nodes.get(name)
-        if found is not None and not found.until and not self.is_newer_than_used(found):
-            return found
-        found = self.models.get(name)
-        if found is not None:
-            return found
+        declaration = CPP.nodes.get(name)
+        if declaration is not None and not declaration.until and not self.is_newer_than_used(declaration):
+            return declaration
+        declaration = self.models.get(name)
+        if declaration is not None:
+            return declaration
         return next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
 
     def is_newer_than_used(self, node: Node) -> bool:

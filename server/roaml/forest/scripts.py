@@ -68,12 +68,12 @@ def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
 def names_in(text: str) -> tuple[tuple[str, str], ...]:
     """The names in a script, each with `read` or with the operator that assigns to it."""
     script, _ = parse(Decoded(text, 0))
-    found: list[tuple[str, str]] = []
+    names: list[tuple[str, str]] = []
     targets: set[int] = set()
     for expr in walk(script):
         if isinstance(expr, Assignment):
             targets.add(id(expr.target))
-            found.append((expr.target.name, expr.operator))
+            names.append((expr.target.name, expr.operator))
         elif isinstance(expr, Name) and id(expr) not in targets:
-            found.append((expr.name, "read"))
-    return tuple(found)
+            names.append((expr.name, "read"))
+    return tuple(names)

@@ -43,14 +43,14 @@ class Counted:
 def lenses(analysis: Analysis, path: str) -> tuple[Lens, ...]:
     """The lenses of a file, in the order of the text."""
     kind, machine = analysis.kind(path), analysis.machine(path)
-    found: Iterable[Lens] = ()
+    unordered: Iterable[Lens] = ()
     if kind is FileKind.MACHINE and machine is not None:
-        found = _machine(analysis, path, machine)
+        unordered = _machine(analysis, path, machine)
     elif kind is FileKind.TREE:
-        found = _defined(analysis, path, SymbolKind.TREE)
+        unordered = _defined(analysis, path, SymbolKind.TREE)
     elif kind in (FileKind.STRUCTS, FileKind.JSON_STRUCTS):
-        found = _defined(analysis, path, SymbolKind.STRUCT)
-    return tuple(sorted(dict.fromkeys(found), key=lambda each: each.span))
+        unordered = _defined(analysis, path, SymbolKind.STRUCT)
+    return tuple(sorted(dict.fromkeys(unordered), key=lambda lens: lens.span))
 
 
 def _machine(analysis: Analysis, path: str, machine: Machine) -> Iterator[Lens]:
@@ -65,18 +65,18 @@ def _machine(analysis: Analysis, path: str, machine: Machine) -> Iterator[Lens]:
             symbol = Symbol(path, declaration.kind, declaration.handle.value)
             yield Lens(declaration.element.name_span, symbol)
     seen: set[Symbol] = set()
-    for each in uses(analysis, path, owner if owner != path else None).all:
-        if each.symbol.kind is SymbolKind.EVENT and each.symbol not in seen:
-            seen.add(each.symbol)
-            yield Lens(each.span, each.symbol)
+    for occurrence in uses(analysis, path, owner if owner != path else None).all:
+        if occurrence.symbol.kind is SymbolKind.EVENT and occurrence.symbol not in seen:
+            seen.add(occurrence.symbol)
+            yield Lens(occurrence.span, occurrence.symbol)
 
 
 def _defined(analysis: Analysis, path: str, kind: SymbolKind) -> Iterator[Lens]:
     """Definitions of one kind."""
     owner = _owner(analysis, path)
-    for each in uses(analysis, path, owner if owner != path else None).all:
-        if each.defines and each.symbol.kind is kind:
-            yield Lens(each.span, each.symbol)
+    for occurrence in uses(analysis, path, owner if owner != path else None).all:
+        if occurrence.defines and occurrence.symbol.kind is kind:
+            yield Lens(occurrence.span, occurrence.symbol)
 
 
 def _owner(analysis: Analysis, path: str) -> str:
@@ -84,7 +84,7 @@ def _owner(analysis: Analysis, path: str) -> str:
 
 
 def _is_plugin(analysis: Analysis, path: str) -> bool:
-    systems = (analysis.system(each) for each in analysis.memberships.get(path, ()))
+    systems = (analysis.system(owner) for owner in analysis.memberships.get(path, ()))
     return any(path == plugin for system in systems if system for plugin, _ in system.plugins)
 
 
@@ -96,9 +96,9 @@ def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
     and named where they differ."""
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
-    said = grouped({system: found.title for system, found in by_system.items()})
-    title = " / ".join(f"{names}: {each}" if names else each for each, names in said[:MAX_NAMES])
-    places = tuple(sorted({place for found in by_system.values() for place in found.places}))
+    said = grouped({system: count.title for system, count in by_system.items()})
+    title = " / ".join(f"{names}: {title}" if names else title for title, names in said[:MAX_NAMES])
+    places = tuple(sorted({place for count in by_system.values() for place in count.places}))
     return Counted(f"{title} / …" if len(said) > MAX_NAMES else title, places)
 
 
@@ -106,11 +106,11 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     """The uses in one system, or in the file alone."""
     if symbol.kind in HANDLES:
         return _handle(analysis, symbol, system)
-    found = _within(analysis, thing(analysis, (symbol,)).uses, system)
-    in_trees = [use for use in found if analysis.tree(use.path) is not None]
+    uses_in_system = _within(analysis, thing(analysis, (symbol,)).uses, system)
+    in_trees = [use for use in uses_in_system if analysis.tree(use.path) is not None]
     match symbol.kind:
         case SymbolKind.EVENT:
-            return _event(analysis, found)
+            return _event(analysis, uses_in_system)
         case SymbolKind.MACHINE:
             return Counted(f"{_count(in_trees, 'use')} in trees", _locations(in_trees))
         case SymbolKind.PORT:
@@ -119,18 +119,18 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
             places = [use for use in in_trees if not use.occurrence.defines]
             executed = "executed · " if is_main(analysis, symbol) else ""
             return Counted(f"{executed}{_count(places, 'use')}", _locations(places))
-    places = [use for use in found if not use.occurrence.defines]
+    places = [use for use in uses_in_system if not use.occurrence.defines]
     return Counted(_count(places, "use"), _locations(places))
 
 
-def _within(analysis: Analysis, found: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
+def _within(analysis: Analysis, symbol_uses: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
     """The uses in the files of a system; all if there is no system."""
     files = frozenset(analysis.files_of(system)) if system else None
-    return [use for use in found if files is None or use.path in files]
+    return [use for use in symbol_uses if files is None or use.path in files]
 
 
-def _event(analysis: Analysis, found: Iterable[SymbolUse]) -> Counted:
-    in_machines = [use for use in found if analysis.machine(use.path) is not None]
+def _event(analysis: Analysis, symbol_uses: Iterable[SymbolUse]) -> Counted:
+    in_machines = [use for use in symbol_uses if analysis.machine(use.path) is not None]
     sent = [use for use in in_machines if use.occurrence.access is Access.WRITE]
     received = [use for use in in_machines if use.occurrence.access is Access.READ]
     return Counted(f"sent {_times(sent)} · received {_times(received)}", _locations(in_machines))
@@ -147,7 +147,9 @@ def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     """Both sides of a topic, service or action; the callbacks of a timer."""
     own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
     linked = analysis.system(system) if system else None
-    interfaces = tuple(dict.fromkeys(each for each in interfaces_of(analysis, symbol) if each.path == system))
+    interfaces = tuple(
+        dict.fromkeys(interface for interface in interfaces_of(analysis, symbol) if interface.path == system)
+    )
     if not interfaces or linked is None:
         return Counted(_count(own, "use"), _locations(own))
     shown = [_sides(linked, interface) for interface in interfaces]
@@ -168,15 +170,15 @@ def _sides(system: System, interface: Symbol) -> str:
     return f"{_count(sources, source)} · {_count(users, user)}"
 
 
-def _count(found: Iterable[object], what: str) -> str:
-    count = len(list(found))
-    return f"{count} {what}" if count == 1 else f"{count or 'no'} {what}s"
+def _count(counted_things: Iterable[object], noun: str) -> str:
+    count = len(list(counted_things))
+    return f"{count} {noun}" if count == 1 else f"{count or 'no'} {noun}s"
 
 
-def _times(found: Iterable[object]) -> str:
-    count = len(list(found))
+def _times(counted_things: Iterable[object]) -> str:
+    count = len(list(counted_things))
     return {0: "nowhere", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
-def _locations(found: Iterable[SymbolUse]) -> tuple[Location, ...]:
-    return tuple(sorted(dict.fromkeys(use.location for use in found)))
+def _locations(symbol_uses: Iterable[SymbolUse]) -> tuple[Location, ...]:
+    return tuple(sorted(dict.fromkeys(use.location for use in symbol_uses)))

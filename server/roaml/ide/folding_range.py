@@ -34,14 +34,14 @@ def folds(analysis: Analysis, path: str) -> tuple[Fold, ...]:
     if source is None:
         return ()
     if (file := xml_file(analysis, path)) is not None:
-        found = _xml(source, file.document)
+        unordered = _xml(source, file.document)
     elif (json := analysis.json(path)) is not None and path.endswith((".jani", ".json")):
         spans = [value.span for value in values(json[0]) if isinstance(value, (JsonObject, JsonArray))]
-        found = (fold for span in spans for fold in _block(source, span.start, span.end - 1))
+        unordered = (fold for span in spans for fold in _block(source, span.start, span.end - 1))
     else:
         return ()
     first: dict[int, Fold] = {}
-    for fold in sorted(found, key=lambda fold: (fold.first, -fold.last)):
+    for fold in sorted(unordered, key=lambda fold: (fold.first, -fold.last)):
         first.setdefault(fold.first, fold)
     return tuple(first.values())
 

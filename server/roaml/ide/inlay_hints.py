@@ -92,12 +92,12 @@ def inlay_hints(
 ) -> tuple[InlayHint, ...]:
     """The hints in a part of a file, in the order of the text."""
     by_system = {
-        system or "": {each for each in _hints(analysis, path, within, system) if each.kind in kinds}
+        system or "": {hint for hint in _hints(analysis, path, within, system) if hint.kind in kinds}
         for system in analysis.systems_of(path)
     }
-    found = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
-    chosen = (each for each in found if within.start <= each.offset <= within.end)
-    return tuple(sorted(chosen, key=lambda each: (each.offset, each.text)))
+    merged = _merged(by_system) if len(by_system) > 1 else next(iter(by_system.values()))
+    chosen = (hint for hint in merged if within.start <= hint.offset <= within.end)
+    return tuple(sorted(chosen, key=lambda hint: (hint.offset, hint.text)))
 
 
 def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> Iterable[InlayHint]:
@@ -117,8 +117,8 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
     """Hints that are equal in all systems that share a file are shown once; where they differ, the systems are
     named."""
     at: dict[tuple[int, HintKind], dict[str, InlayHint]] = {}
-    for system, found in by_system.items():
-        for hint in found:
+    for system, hints in by_system.items():
+        for hint in hints:
             at.setdefault((hint.offset, hint.kind), {})[system] = hint
     merged: set[InlayHint] = set()
     for (offset, kind), said in at.items():
@@ -212,14 +212,14 @@ class _Machine:
             handle = declaration.handle.value if declaration.handle else ""
             yield from self.names(port.key, self.interfaces.get((declaration.kind, handle), {}), " = ")
 
-    def names(self, at: Name, found: dict[Symbol, str], lead: str) -> Iterator[InlayHint]:
+    def names(self, at: Name, interfaces: dict[Symbol, str], lead: str) -> Iterator[InlayHint]:
         """The topics, services or actions of a use."""
-        if not found:
+        if not interfaces:
             return
         parts: list[InlayHintLabelPart] = []
-        for symbol, written in list(found.items())[:_MAX_NAMES]:
+        for symbol, written in list(interfaces.items())[:_MAX_NAMES]:
             parts += [InlayHintLabelPart(", " if parts else lead), InlayHintLabelPart(written, symbol)]
-        if len(found) > _MAX_NAMES:
+        if len(interfaces) > _MAX_NAMES:
             parts.append(InlayHintLabelPart(", …"))
         yield InlayHint(_behind(at), HintKind.TOPICS, tuple(parts))
 
@@ -257,7 +257,7 @@ class _Machine:
         for param in params:
             value = self.values.get(param.element)
             if param.name is not None and value is not None:
-                yield from self.type(param.name, value.type if value.use is ValueUse.PARAMETER else value.wanted)
+                yield from self.type(param.name, value.type if value.use is ValueUse.PARAMETER else value.required)
 
     def type(self, name: Name, type_: Type | None) -> Iterator[InlayHint]:
         if type_ is not None and type_ != UNKNOWN:
@@ -302,12 +302,12 @@ class _Machine:
                     _behind(user.handle), HintKind.TOPICS, (InlayHintLabelPart(" "), InlayHintLabelPart(text, symbol))
                 )
             return
-        found = self.interfaces.get((declaration.kind, user.handle.value), {})
-        if not found and isinstance(declaration.interface, Name):
+        interfaces = self.interfaces.get((declaration.kind, user.handle.value), {})
+        if not interfaces and isinstance(declaration.interface, Name):
             written = declaration.interface.value
-            found = {interface_symbol(self.owner, declaration.kind, written): written}
-        if {name.removeprefix("/") for name in found.values()} != {user.handle.value.removeprefix("/")}:
-            yield from self.names(user.handle, found, " → ")
+            interfaces = {interface_symbol(self.owner, declaration.kind, written): written}
+        if {name.removeprefix("/") for name in interfaces.values()} != {user.handle.value.removeprefix("/")}:
+            yield from self.names(user.handle, interfaces, " → ")
 
 
 # ----------------------------------------------------------- trees and properties
@@ -320,15 +320,15 @@ def _tree(analysis: Analysis, path: str, within: Span, system: System | None) ->
         if not _touches(within, tree.element):
             continue
         for position, node in enumerate(nodes(tree)):
-            found = instances.get((tree.id.value if tree.id else "", position), [])
+            automata = instances.get((tree.id.value if tree.id else "", position), [])
             if node.plugin is not None and within.start <= node.element.open_span.end:
-                yield from _node(node, node.plugin, found)
+                yield from _node(node, node.plugin, automata)
 
 
-def _node(node: TreeNode, plugin: Name, found: list[tuple[System, SystemAutomaton]]) -> Iterator[InlayHint]:
+def _node(node: TreeNode, plugin: Name, automata: list[tuple[System, SystemAutomaton]]) -> Iterator[InlayHint]:
     at = plugin.span.end + (0 if node.compact else 1)
     parts: list[InlayHintLabelPart] = []
-    numbers = {(s.path, a.instance.number): None for s, a in found if a.instance}
+    numbers = {(s.path, a.instance.number): None for s, a in automata if a.instance}
     for (system, number), _ in list(numbers.items())[:_MAX_NAMES]:
         parts += [
             InlayHintLabelPart(", " if parts else " "),
@@ -339,8 +339,8 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, SystemAutomato
     if parts:
         yield InlayHint(at, HintKind.NODES, tuple(parts))
     for port in node.ports:
-        types = {a.outline.port(port.key.value): a for _, a in found}
-        shown = dict.fromkeys(each.type for each in types if each is not None and each.type)
+        types = {a.outline.port(port.key.value): a for _, a in automata}
+        shown = dict.fromkeys(port.type for port in types if port is not None and port.type)
         owners = [a for a in types.values() if a.path]
         if shown and port.attribute.has_value:
             symbol = Symbol(owners[0].path, SymbolKind.PORT, port.key.value) if owners else None
@@ -353,18 +353,18 @@ def _node(node: TreeNode, plugin: Name, found: list[tuple[System, SystemAutomato
 
 def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, SystemAutomaton]]]:
     """The nodes of executed trees by tree and position in a file."""
-    found: dict[tuple[str, int], list[tuple[System, SystemAutomaton]]] = {}
+    by_position: dict[tuple[str, int], list[tuple[System, SystemAutomaton]]] = {}
     for automaton in system.automata:
         source = automaton.instance.source if automaton.instance else None
         if source is not None and source.path == path:
-            found.setdefault((source.tree, source.position), []).append((system, automaton))
-    return found
+            by_position.setdefault((source.tree, source.position), []).append((system, automaton))
+    return by_position
 
 
 def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
     """The nodes whose numbers occur in events of the tree."""
-    for each in analysis.properties(path)[0]:
-        for identifier, span in identifiers(each.expression):
+    for prop in analysis.properties(path)[0]:
+        for identifier, span in identifiers(prop.expression):
             if span.start > within.end or span.end < within.start:
                 continue
             node = node_of(system, identifier)

@@ -13,37 +13,37 @@ def values(value: JsonValue) -> Iterator[JsonValue]:
     """A value and all in it, in the order of the text."""
     stack = [value]
     while stack:
-        each = stack.pop()
-        yield each
-        if isinstance(each, JsonObject):
-            stack += [member.value for member in reversed(each.members) if member.value is not None]
-        elif isinstance(each, JsonArray):
-            stack += reversed(each.items)
+        inner = stack.pop()
+        yield inner
+        if isinstance(inner, JsonObject):
+            stack += [member.value for member in reversed(inner.members) if member.value is not None]
+        elif isinstance(inner, JsonArray):
+            stack += reversed(inner.items)
 
 
 def members(value: JsonValue) -> dict[str, JsonValue]:
     """The members of an object by their keys, without those that have no value; empty for other values."""
-    found = value.members if isinstance(value, JsonObject) else ()
-    return {member.key: member.value for member in found if member.value is not None}
+    written = value.members if isinstance(value, JsonObject) else ()
+    return {member.key: member.value for member in written if member.value is not None}
 
 
 def spans_at(value: JsonValue, offset: int) -> list[Span]:
     """The values, members, keys and contents of strings around an offset, outermost first."""
-    found: list[Span] = []
+    spans: list[Span] = []
     inner: JsonValue | Member | None = value
     while inner is not None and inner.span.contains(offset):
-        found.append(inner.span)
+        spans.append(inner.span)
         parts: tuple[JsonValue | Member, ...] = ()
         if isinstance(inner, JsonObject):
             parts = inner.members
         elif isinstance(inner, JsonArray):
             parts = inner.items
         elif isinstance(inner, JsonString):
-            found += [inner.content_span] if inner.content_span.contains(offset) else []
+            spans += [inner.content_span] if inner.content_span.contains(offset) else []
         elif isinstance(inner, Member):
             if inner.key_span.contains(offset):
-                found += [span for span in (inner.key_span, inner.key_content_span) if span.contains(offset)]
+                spans += [span for span in (inner.key_span, inner.key_content_span) if span.contains(offset)]
             elif inner.value is not None:
                 parts = (inner.value,)
         inner = next((part for part in parts if part.span.contains(offset)), None)
-    return found
+    return spans

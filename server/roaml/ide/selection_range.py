@@ -19,16 +19,16 @@ def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
     source = analysis.source(path)
     if source is None:
         return ()
-    found = [Span(0, len(source.text))]
+    spans = [Span(0, len(source.text))]
     if (file := xml_file(analysis, path)) is not None:
         around = path_at(file, offset)
-        for each in around:
-            found += [each.element.span, each.element.content_span]
-        found += _node(file.document, around[-1].element if around else None, offset)
-        found += _in_element(file.document, around[-1], offset) if around else ()
+        for typed in around:
+            spans += [typed.element.span, typed.element.content_span]
+        spans += _node(file.document, around[-1].element if around else None, offset)
+        spans += _in_element(file.document, around[-1], offset) if around else ()
     elif path.endswith((".jani", ".json")) and (json := analysis.json(path)) is not None:
-        found += spans_at(json[0], offset)
-    return tuple(_nested(found, offset))
+        spans += spans_at(json[0], offset)
+    return tuple(_nested(spans, offset))
 
 
 def _nested(spans: list[Span], offset: int) -> list[Span]:
@@ -44,9 +44,9 @@ def _nested(spans: list[Span], offset: int) -> list[Span]:
     return result[::-1]
 
 
-def _in_element(document: Document, each: Typed, offset: int) -> Iterator[Span]:
+def _in_element(document: Document, typed: Typed, offset: int) -> Iterator[Span]:
     """The spans around an offset in the tags and the expressions of an element."""
-    element = each.element
+    element = typed.element
     yield element.open_span
     yield element.name_span
     if element.close_span is not None and element.close_name_span is not None:
@@ -59,7 +59,7 @@ def _in_element(document: Document, each: Typed, offset: int) -> Iterator[Span]:
             quoted = Span(attribute.value_span.start - 1, attribute.span.end)
             yield quoted if document.text[quoted.start] in "\"'" else attribute.value_span
             yield attribute.value_span
-    for expression in expressions(document, each):
+    for expression in expressions(document, typed):
         if expression.span.contains(offset):
             yield expression.span
             yield from _in_expression(expression, offset)

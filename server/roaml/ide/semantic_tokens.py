@@ -75,14 +75,14 @@ def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -
     if source is None:
         return ()
     if (file := xml_file(analysis, path)) is not None:
-        found = _xml(file)
+        tokens = _xml(file)
     elif analysis.kind(path) is FileKind.PROPERTIES and (json := analysis.json(path)) is not None:
-        found = (token for value in values(json[0]) for token in _json(value))
+        tokens = (token for value in values(json[0]) for token in _json(value))
     else:
         return ()
     if within is not None:
-        found = (token for token in found if token.span.start <= within.end and within.start <= token.span.end)
-    return tuple(_on_lines(source.text, sorted(found, key=attrgetter("span"))))
+        tokens = (token for token in tokens if token.span.start <= within.end and within.start <= token.span.end)
+    return tuple(_on_lines(source.text, sorted(tokens, key=attrgetter("span"))))
 
 
 _LINE = re.compile(r"[^\r\n]+")
@@ -106,9 +106,9 @@ def _on_lines(text: str, tokens: Iterable[SemanticToken]) -> Iterator[SemanticTo
 
 
 def _xml(file: XmlFile) -> Iterator[SemanticToken]:
-    for each in walk(file):
-        kind = _tag_kind(file, each)
-        element, type_ = each
+    for typed in walk(file):
+        kind = _tag_kind(file, typed)
+        element, type_ = typed
         if kind is not None:
             modifiers = _modifiers(deprecated=bool(type_ and type_.use))
             yield SemanticToken(element.name_span, kind, modifiers)
@@ -120,13 +120,13 @@ def _xml(file: XmlFile) -> Iterator[SemanticToken]:
                 attribute.name_span, TokenKind.ATTRIBUTE, _modifiers(deprecated=bool(known and known.use))
             )
             yield from _value(file, attribute, known)
-        for source in expression_sources(file.document, each):
+        for source in expression_sources(file.document, typed):
             yield from expression_tokens(source)
 
 
-def _tag_kind(file: XmlFile, each: Typed) -> TokenKind | None:
+def _tag_kind(file: XmlFile, typed: Typed) -> TokenKind | None:
     """The token type of a tag; `None` for unknown tags. In trees an unknown tag names a plugin."""
-    element, type_ = each
+    element, type_ = typed
     if file.grammar is BEHAVIOR_TREE:
         return _NODES.get(type_.node, TokenKind.STRUCTURE_TAG) if type_ else TokenKind.LEAF_TAG
     if type_ is None:
@@ -189,8 +189,8 @@ def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> 
 
 @cache
 def _modifiers(*, declaration: bool = False, deprecated: bool = False) -> frozenset[Modifier]:
-    found = ((Modifier.DECLARATION, declaration), (Modifier.DEPRECATED, deprecated))
-    return frozenset(modifier for modifier, holds in found if holds)
+    modifiers = ((Modifier.DECLARATION, declaration), (Modifier.DEPRECATED, deprecated))
+    return frozenset(modifier for modifier, holds in modifiers if holds)
 
 
 # ----------------------------------------------------------------- expressions
@@ -205,15 +205,15 @@ def expression_tokens(source: Decoded) -> Iterator[SemanticToken]:
 @lru_cache(maxsize=5000)  # files repeat the same expressions, and most are unchanged after the next keystroke
 def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
     """The beginnings and ends of the tokens of an expression in its text, and their kinds."""
-    found: list[tuple[int, int, TokenKind]] = []
+    words: list[tuple[int, int, TokenKind]] = []
     tokens = expr.tokens(text)
     for i, token in enumerate(tokens):
         before = tokens[i - 1].text if i else ""
         after = tokens[i + 1].text if i + 1 < len(tokens) else ""
         kind = _word(token.text, before, after) if token.kind == "name" else _OTHERS.get(token.kind)
         if kind is not None and not (kind is TokenKind.OPERATOR and token.text in _PUNCTUATION):
-            found.append((token.start, token.end, kind))
-    return tuple(found)
+            words.append((token.start, token.end, kind))
+    return tuple(words)
 
 
 _OTHERS = {

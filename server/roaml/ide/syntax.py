@@ -37,24 +37,24 @@ def xml_file(analysis: Analysis, path: str) -> XmlFile | None:
 
 def walk(file: XmlFile) -> Iterator[Typed]:
     """All elements in document order."""
-    stack = [_typed(file.grammar, None, each) for each in _roots(file.document)][::-1]
+    stack = [_typed(file.grammar, None, typed) for typed in _roots(file.document)][::-1]
     while stack:
-        each = stack.pop()
-        yield each
-        stack += [_typed(file.grammar, each.type, child) for child in reversed(each.element.elements)]
+        typed = stack.pop()
+        yield typed
+        stack += [_typed(file.grammar, typed.type, child) for child in reversed(typed.element.elements)]
 
 
 def path_at(file: XmlFile, offset: int) -> list[Typed]:
     """The elements around an offset, outermost first."""
-    found: list[Typed] = []
+    path: list[Typed] = []
     for element in file.document.path_at(offset):
-        found.append(_typed(file.grammar, found[-1].type if found else None, element))
-    return found
+        path.append(_typed(file.grammar, path[-1].type if path else None, element))
+    return path
 
 
-def expression_sources(document: Document, each: Typed) -> Iterator[Decoded]:
+def expression_sources(document: Document, typed: Typed) -> Iterator[Decoded]:
     """The expressions in the attributes and in the text of an element, in the order of the text."""
-    element, type_ = each
+    element, type_ = typed
     if type_ is None:
         return
     for attribute in element.attributes:
@@ -65,9 +65,9 @@ def expression_sources(document: Document, each: Typed) -> Iterator[Decoded]:
         yield source
 
 
-def expressions(document: Document, each: Typed) -> Iterator[Expression]:
+def expressions(document: Document, typed: Typed) -> Iterator[Expression]:
     """The expressions of an element, in the order of the text."""
-    return (expression_from(source) for source in expression_sources(document, each))
+    return (expression_from(source) for source in expression_sources(document, typed))
 
 
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
@@ -76,9 +76,9 @@ def expression_at(file: XmlFile, offset: int) -> Expression | None:
     return expression_in(file.document, around[-1], offset) if around else None
 
 
-def expression_in(document: Document, each: Typed, offset: int) -> Expression | None:
-    """The expression around an offset, which is in the element `each` and none of its children."""
-    sources = expression_sources(document, each)
+def expression_in(document: Document, typed: Typed, offset: int) -> Expression | None:
+    """The expression around an offset, which is in the element `typed` and in none of its children."""
+    sources = expression_sources(document, typed)
     source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
     return None if source is None else expression_from(source)
 

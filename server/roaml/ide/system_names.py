@@ -18,7 +18,7 @@ def system_names(paths: Iterable[str]) -> dict[str, str]:
 
     def name(path: str) -> str:
         own = parts[path]
-        others = [other for each, other in parts.items() if each != path]
+        others = [other for system, other in parts.items() if system != path]
         for count in range(1, len(own)):
             if all(other[-count:] != own[-count:] for other in others):
                 return "/".join(own[-count:])
@@ -38,11 +38,11 @@ def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
     """
     names = system_names(said)
     groups: dict[T, list[str]] = {}
-    for path, each in said.items():
-        groups.setdefault(each, []).append(names[path])
+    for path, text in said.items():
+        groups.setdefault(text, []).append(names[path])
     if len(groups) == 1:
         return [(next(iter(groups)), "")]
-    return [(each, _listed(found)) for each, found in groups.items()]
+    return [(text, _listed(systems)) for text, systems in groups.items()]
 
 
 def _listed(names: list[str]) -> str:

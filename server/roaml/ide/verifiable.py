@@ -30,12 +30,16 @@ class Verifiable:
 
 def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
     """The properties of the system file at `system`, in their order, without those that contain errors."""
-    files = (each.path for each in analysis.listed(system) if each.wanted is FileKind.PROPERTIES and each.usable)
-    return tuple(each for path in dict.fromkeys(files) for each in _in_file(analysis, path))
+    files = (
+        listed_file.path
+        for listed_file in analysis.listed(system)
+        if listed_file.required_kind is FileKind.PROPERTIES and listed_file.usable
+    )
+    return tuple(prop for path in dict.fromkeys(files) for prop in _in_file(analysis, path))
 
 
 def _in_file(analysis: Analysis, path: str) -> Iterator[Verifiable]:
-    understood = {each.name for each in analysis.properties(path)[0]}
+    understood = {prop.name for prop in analysis.properties(path)[0]}
     for symbol in document_symbols(analysis, path):
         if symbol.kind is DocumentSymbolKind.PROPERTY and symbol.name in understood:
             yield Verifiable(symbol.name, symbol.detail, path, symbol.span, symbol.name_span)

@@ -40,7 +40,7 @@ class Reason(enum.Enum):
 class NotFound:
     """A requested type that was not found.
 
-    `wanted` is the requested name. `close` are similar names of the same kind, `package/Name`, the nearest first.
+    `type_name` is the requested name. `close` are similar names of the same kind, `package/Name`, the nearest first.
     `other_kind` is set if the type exists but is of another kind, such as a service instead of a message. `looked_in`
     are phrases for the places that were searched. `path` is the file that could not be read. `size` is a phrase for the
     size of a type that is too large.
@@ -48,7 +48,7 @@ class NotFound:
 
     reason: Reason
     kind: Kind
-    wanted: str
+    type_name: str
     close: tuple[str, ...] = ()
     other_kind: Kind | None = None
     looked_in: tuple[str, ...] = ()
@@ -60,20 +60,20 @@ class NotFound:
         """The error and the correction, as a sentence."""
         kind = KIND_NAMES[self.kind]
         hint = did_you_mean(self.close, _MAX_CLOSE)
-        package, _, name = self.wanted.partition("/")
+        package, _, name = self.type_name.partition("/")
         match self.reason:
             case Reason.MALFORMED_NAME:
-                return f"`{self.wanted}` is not the name of a {kind} type, `package/Name`{hint}"
+                return f"`{self.type_name}` is not the name of a {kind} type, `package/Name`{hint}"
             case Reason.UNKNOWN_PACKAGE:
                 return f"there is no package `{package}`{hint or '; searched ' + ', '.join(self.looked_in)}"
             case Reason.UNKNOWN_TYPE if self.other_kind:
-                return f"`{self.wanted}` is {_a(self.other_kind)}, not {_a(self.kind)}{hint}"
+                return f"`{self.type_name}` is {_a(self.other_kind)}, not {_a(self.kind)}{hint}"
             case Reason.UNKNOWN_TYPE:
                 return f"the package `{package}` has no {kind} `{name}`{hint}"
             case Reason.UNREADABLE:
-                return f"the definition of `{self.wanted}` cannot be read: {self.path}"
+                return f"the definition of `{self.type_name}` cannot be read: {self.path}"
             case Reason.TOO_LARGE:
-                return f"`{self.wanted}` is too large: with all nested messages, it has {self.size}"
+                return f"`{self.type_name}` is too large: with all nested messages, it has {self.size}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,23 +158,23 @@ class Registry:
 
     def _not_found(self, kind: Kind, package: str, name: str) -> NotFound:
         packages = self.search_path.packages()
-        wanted = f"{package}/{name}"
+        requested = f"{package}/{name}"
         looked_in = self.search_path.looked_in()
         if package not in packages:
             similar = close_names(package, packages)
             close = _first([f"{p}/{name}" for p in similar if name in packages[p][kind]], self._named(kind, name))
             if not close:
                 close = tuple(f"{p}/{n}" for p in similar for n in close_names(name, packages[p][kind])[:1])
-            return NotFound(Reason.UNKNOWN_PACKAGE, kind, wanted, close, None, looked_in)
+            return NotFound(Reason.UNKNOWN_PACKAGE, kind, requested, close, None, looked_in)
         other_kind = next((other for other in KINDS if name in packages[package][other]), None)
         similar_names = [f"{package}/{n}" for n in close_names(name, packages[package][kind])]
         close = _first(self._named(kind, name), similar_names)
-        return NotFound(Reason.UNKNOWN_TYPE, kind, wanted, close, other_kind, looked_in)
+        return NotFound(Reason.UNKNOWN_TYPE, kind, requested, close, other_kind, looked_in)
 
-    def _malformed(self, kind: Kind, wanted: str) -> NotFound:
+    def _malformed(self, kind: Kind, requested: str) -> NotFound:
         """The intended type of a malformed name such as `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare
         `Int32`."""
-        words = [word for word in _WORD_BREAKS.split(wanted[:_MAX_NAME_LENGTH]) if word and word not in KINDS]
+        words = [word for word in _WORD_BREAKS.split(requested[:_MAX_NAME_LENGTH]) if word and word not in KINDS]
         close: tuple[str, ...] = ()
         if words:
             packages = self.search_path.packages()
@@ -182,7 +182,7 @@ class Registry:
             if package in packages:
                 close = tuple(f"{package}/{n}" for n in close_names(name, packages[package][kind]))
             close = close or _first(self._named(kind, name))
-        return NotFound(Reason.MALFORMED_NAME, kind, wanted, close, None, self.search_path.looked_in())
+        return NotFound(Reason.MALFORMED_NAME, kind, requested, close, None, self.search_path.looked_in())
 
     def _named(self, kind: Kind, name: str) -> Iterator[str]:
         """All types with this name, in any package."""

@@ -73,9 +73,9 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
     elif base is REAL and _REAL.fullmatch(text) and math.isfinite(float(text)):
         value = Real(float(text))
     if value is None:
-        wanted = _WANTED.get(base) if isinstance(base, BasicType) else None
+        type_phrase = _WANTED.get(base) if isinstance(base, BasicType) else None
         raise ValueError(
-            f"the constant {constant.name} must be {wanted or 'of a type that cannot be given'}, not '{text}'"
+            f"the constant {constant.name} must be {type_phrase or 'of a type that cannot be given'}, not '{text}'"
         )
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):

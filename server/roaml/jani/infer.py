@@ -111,13 +111,13 @@ class Inference:
         self.scope = scope
         self.notes = Notes()
 
-    def expect(self, node: Formula, found: Kind, target: Type, what: str) -> None:
-        """Report `node`, of type `found`, if a `target` is required."""
-        if isinstance(found, PathKind):
-            self.notes.type(span_of(node), f"{what} cannot be a formula about paths; use it in `Pmin` or `Pmax`")
-        elif not fits(found, target):
+    def expect(self, node: Formula, kind: Kind, target: Type, subject: str) -> None:
+        """Report `node`, of type `kind`, unless it fits `target`."""
+        if isinstance(kind, PathKind):
+            self.notes.type(span_of(node), f"{subject} cannot be a formula about paths; use it in `Pmin` or `Pmax`")
+        elif not fits(kind, target):
             needed = "true or false" if target is BOOL else "a number" if target is REAL else describe(target)
-            self.notes.type(span_of(node), f"{what} must be {needed}, not {describe(found)}")
+            self.notes.type(span_of(node), f"{subject} must be {needed}, not {describe(kind)}")
 
     # ---------------------------------------------------------------- expressions
 
@@ -166,8 +166,8 @@ class Inference:
                 return UNKNOWN
             case Sample(distribution, arguments):
                 for argument in arguments:
-                    what = f"an argument of `{distribution.symbol}`"
-                    self.expect(argument, (yield self.type(argument, bound)), REAL, what)
+                    subject = f"an argument of `{distribution.symbol}`"
+                    self.expect(argument, (yield self.type(argument, bound)), REAL, subject)
                 return INT if distribution.is_discrete else REAL
             case Derivative(variable):
                 self.name(node, variable, {})
@@ -178,9 +178,9 @@ class Inference:
                 return never(node)
 
     def name(self, node: Node, identifier: str, bound: Bound) -> Type:
-        found = bound.get(identifier) or self.scope.variables.get(identifier)
-        if found is not None:
-            return found
+        type_ = bound.get(identifier) or self.scope.variables.get(identifier)
+        if type_ is not None:
+            return type_
         if identifier:
             self.notes.unknown("variable", identifier, span_of(node), (*bound, *self.scope.variables))
         return UNKNOWN
@@ -192,9 +192,9 @@ class Inference:
         if signature is Signature.EQUALITY:
             self.joined(node, *types)
             return BOOL
-        wanted = BOOL if signature is Signature.LOGICAL else REAL
+        operand_type = BOOL if signature is Signature.LOGICAL else REAL
         for operand, type_ in operands:
-            self.expect(operand, type_, wanted, f"an operand of `{operator.symbol}`")
+            self.expect(operand, type_, operand_type, f"an operand of `{operator.symbol}`")
         match signature:
             case Signature.LOGICAL | Signature.ORDER:
                 return BOOL
@@ -257,9 +257,9 @@ class Inference:
                 if declared is None and datatype:
                     self.notes.unknown("datatype", datatype, span_of(node), self.scope.datatypes, fix=False)
                 for name, value in members:
-                    wanted = self.member(node, datatype, name)
-                    found: Type = yield self.type(value, bound)
-                    self.expect(value, found, wanted, f"the member `{name}`")
+                    member_type = self.member(node, datatype, name)
+                    value_type_: Type = yield self.type(value, bound)
+                    self.expect(value, value_type_, member_type, f"the member `{name}`")
                 given = {name for name, _ in members}
                 for part in declared.members if declared else ():
                     if part.name not in given:
@@ -320,8 +320,8 @@ class Inference:
                 kind: Kind = yield self.formula(values)
                 return self.filtered(function, values, kind)
             case Probability(path=path) | Quantified(path=path):
-                found: Kind = yield self.formula(path)
-                if not isinstance(found, (PathKind, UnknownType)):
+                path_kind: Kind = yield self.formula(path)
+                if not isinstance(path_kind, (PathKind, UnknownType)):
                     name = node.operator.value if isinstance(node, Probability) else node.quantifier.value
                     self.notes.type(span_of(path), f"`{name}` needs a formula about paths, with `F`, `G` or `U`")
                 return REAL if isinstance(node, Probability) else BOOL

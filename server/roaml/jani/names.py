@@ -15,8 +15,8 @@ from roaml.text import Span, TextEdit
 class DeclaredNames:
     """Names of one kind; reports names that are declared twice or do not exist."""
 
-    def __init__(self, what: str, notes: Notes, outer: DeclaredNames | None = None) -> None:
-        self.what = what
+    def __init__(self, kind: str, notes: Notes, outer: DeclaredNames | None = None) -> None:
+        self._kind = kind
         self._notes = notes
         self._outer = outer
         self._first: dict[str, Span] = {}
@@ -27,14 +27,14 @@ class DeclaredNames:
         if first is not span:
             new = next(n for i in itertools.count(2) if (n := f"{text}_{i}") not in self._first)
             rename = Fix(f"Rename this one to `{new}`", (TextEdit(span, quote(new)[1:-1]),), preferred=False)
-            self._report(name, f"{self.what} `{text}` is declared twice", first, None, rename)
+            self._report(name, f"{self._kind} `{text}` is declared twice", first, None, rename)
         elif self._outer and text in self._outer._first:
-            message = f"{self.what} `{text}` hides the one of the model"
+            message = f"{self._kind} `{text}` hides the one of the model"
             self._report(name, message, self._outer._first[text], Severity.WARNING)
 
     def use(self, name: JsonString) -> None:
         if name.value not in self._first:
-            self._notes.unknown(self.what, name.value, name.content_span, self._first)
+            self._notes.unknown(self._kind, name.value, name.content_span, self._first)
 
     def _report(
         self, name: JsonString, message: str, first: Span, severity: Severity | None = None, *fixes: Fix

@@ -43,7 +43,7 @@ class Notes:
 
     def unknown(
         self,
-        what: str,
+        kind: str,
         name: str,
         span: Span,
         known: Iterable[str],
@@ -57,16 +57,16 @@ class Notes:
 
         With `fix`, `span` is exactly the text of the name. `owner` is a phrase for what lacks the name.
         """
-        message = f"{owner} has no {what} `{name[:80]}`" if owner else f"there is no {what} `{name[:80]}`"
+        message = f"{owner} has no {kind} `{name[:80]}`" if owner else f"there is no {kind} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()
-        if guess := self._guess(f"{owner} {what}", name, known):
+        if guess := self._guess(f"{owner} {kind}", name, known):
             message += did_you_mean((guess,))
         if guess and fix:
             fixes = (Fix(f"Change to `{guess}`", (TextEdit(span, quote(guess)[1:-1]),)),)
         self.add(Finding(code, span, message, severity, fixes))
 
-    def _guess(self, what: str, name: str, known: Iterable[str]) -> str | None:
-        key = (what, name)
+    def _guess(self, kind: str, name: str, known: Iterable[str]) -> str | None:
+        key = (kind, name)
         if key not in self._guesses:
             if len(self._guesses) >= _MAX_GUESSES or len(name) > _LONGEST_GUESSED:
                 return None

@@ -186,15 +186,15 @@ class FormulaReader(ValueSource):
             parts.append((yield self._expression(item)))
         return tuple(parts)
 
-    def choice(self, value: JsonValue | None, what: str, choices: type[E]) -> E | None:
+    def choice(self, value: JsonValue | None, kind: str, choices: type[E]) -> E | None:
         """The member of `choices` that `value` names."""
         if not isinstance(value, JsonString):
-            self.wrong_kind(value, f"a {what} must be a string")
+            self.wrong_kind(value, f"a {kind} must be a string")
             return None
         try:
             return choices(value.value)
         except ValueError:
-            self.notes.unknown(what, value.value, value.content_span, [c.value for c in choices], code=SYNTAX)
+            self.notes.unknown(kind, value.value, value.content_span, [c.value for c in choices], code=SYNTAX)
             return None
 
     # ---------------------------------------------------------------- expressions
@@ -431,8 +431,8 @@ def _root(target: LValue) -> Expression:
     inner: Expression = target
     while True:
         match inner:
-            case ArrayAccess(whole, _) | DatatypeAccess(whole, _) | OptionAccess(whole):
-                inner = whole
+            case ArrayAccess(composite, _) | DatatypeAccess(composite, _) | OptionAccess(composite):
+                inner = composite
             case _:
                 return inner
 

@@ -59,8 +59,8 @@ def read_properties(value: JsonValue, path: str = "") -> tuple[tuple[Property, .
     if not isinstance(value, JsonObject):
         reader.wrong_kind(value, "a property file must be an object `{ }`")
         return (), notes.findings
-    wanted = JsonObject(value.start, value.end, tuple(m for m in value.members if m.key == "properties"))
-    return reader.properties(Members(wanted, _PROPERTY_FILE, reader)), notes.findings
+    only_properties = JsonObject(value.start, value.end, tuple(m for m in value.members if m.key == "properties"))
+    return reader.properties(Members(only_properties, _PROPERTY_FILE, reader)), notes.findings
 
 
 _PROPERTY_FILE = shape("a property file", "properties")

@@ -28,10 +28,10 @@ def _rewritten(node: Any, change: Callable[[Node], Node]) -> Steps[Any]:
         value = getattr(node, field.name)
         if isinstance(value, Node):
             new: Any = yield _rewritten(value, change)
-        elif isinstance(value, tuple) and any(isinstance(each, Node) for each in value):
+        elif isinstance(value, tuple) and any(isinstance(item, Node) for item in value):
             parts = []
-            for each in value:
-                parts.append((yield _rewritten(each, change)))
+            for item in value:
+                parts.append((yield _rewritten(item, change)))
             new = value if all(a is b for a, b in zip(parts, value, strict=True)) else tuple(parts)
         else:
             continue

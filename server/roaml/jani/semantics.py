@@ -217,8 +217,8 @@ class _Evaluation:
         if function is None:
             raise EvaluationError(f"there is no function `{node.function}`", node.origin)
         if len(node.arguments) != len(function.parameters):
-            wanted, given = len(function.parameters), len(node.arguments)
-            raise EvaluationError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
+            needed, given = len(function.parameters), len(node.arguments)
+            raise EvaluationError(f"`{node.function}` takes {needed} arguments, not {given}", node.origin)
         self.calls += 1
         if self.calls > MAX_CALLS:
             raise EvaluationError(f"the calls of `{node.function}` do not terminate", node.origin)

@@ -134,9 +134,9 @@ class _Checker(Inference):
             for parameter in function.parameters:
                 self.declared(parameter.type, parameter)
             parameters = {parameter.name: parameter.type for parameter in function.parameters}
-            found = run(self.type(function.body, parameters))
-            if not fits(found, function.type):
-                message = f"`{function.name}` must return {describe(function.type)}, not {describe(found)}"
+            body_type = run(self.type(function.body, parameters))
+            if not fits(body_type, function.type):
+                message = f"`{function.name}` must return {describe(function.type)}, not {describe(body_type)}"
                 self.notes.type(span_of(function.body), message)
 
     def declared(self, type_: Type, declaration: Node) -> None:
@@ -149,19 +149,19 @@ class _Checker(Inference):
             for bound in (type_.lower, type_.upper):
                 self.store(bound, type_.base, "a bound of this type")
 
-    def store(self, value: Expression | None, target: Type, what: str) -> None:
+    def store(self, value: Expression | None, target: Type, subject: str) -> None:
         """Check that `value` can be stored in something of type `target`."""
         if value is None:
             return
-        found = run(self.type(value, {}))
-        if not fits(found, target):
-            is_rounding = (value_type(target), value_type(found)) == (INT, REAL)
+        given = run(self.type(value, {}))
+        if not fits(given, target):
+            is_rounding = (value_type(target), value_type(given)) == (INT, REAL)
             advice = "; use `floor` or `ceil` for an int" if is_rounding else ""
-            self.notes.type(span_of(value), f"{what} must be {describe(target)}, not {describe(found)}{advice}")
+            self.notes.type(span_of(value), f"{subject} must be {describe(target)}, not {describe(given)}{advice}")
 
-    def clause(self, clause: Clause | None, target: Type, what: str) -> None:
+    def clause(self, clause: Clause | None, target: Type, subject: str) -> None:
         if clause is not None:
-            self.expect(clause.exp, run(self.type(clause.exp, {})), target, what)
+            self.expect(clause.exp, run(self.type(clause.exp, {})), target, subject)
 
     def property(self, property_: Property) -> None:
         kind = run(self.formula(property_.expression))

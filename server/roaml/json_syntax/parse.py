@@ -361,10 +361,10 @@ class _Parser:
         bracket = Span(self.start, self.start + 1)
         end = self.end_before(at)
         missing = self.close_all()
-        what = f"`{self.text[bracket.start]}` is never closed"
+        message = f"`{self.text[bracket.start]}` is never closed"
         if len(missing) > 1:
-            what += f"; `{missing[:20]}` is missing at the end"
-        self.report(bracket, what, _insertion(end, missing))
+            message += f"; `{missing[:20]}` is missing at the end"
+        self.report(bracket, message, _insertion(end, missing))
         return at
 
     def colon(self, span: Span, comma: int) -> int:
@@ -472,8 +472,8 @@ def _number(text: str) -> str | None:
     match = _SLOPPY_NUMBER.match(text)
     if match is None or not (match[2] or match[3]):
         return None
-    sign, whole, fraction, exponent = match.groups()
-    number = ("-" if sign == "-" else "") + (whole.lstrip("0") or "0")
+    sign, integer, fraction, exponent = match.groups()
+    number = ("-" if sign == "-" else "") + (integer.lstrip("0") or "0")
     if fraction is not None:
         number += "." + (fraction or "0")
     return number + (f"e{exponent}" if exponent else "")

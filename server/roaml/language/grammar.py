@@ -76,7 +76,7 @@ class AttributeType:
         refers: kinds of symbols that the value may name.
         value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
             child-index, script), or "".
-        value_type: the type wanted of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
+        value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
         ignored: None, or whether a tool should keep quiet about the attribute having no effect.
         use: the successor, if the attribute is deprecated.
         port: what port of a tree node the attribute is, if any.

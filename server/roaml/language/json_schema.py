@@ -113,8 +113,8 @@ class JsonGrammar:
 
     def is_a(self, schema: Schema, definition: str) -> bool:
         """Whether a definition describes a place."""
-        wanted = self.definition(definition)
-        return any(part is wanted for part in self.applying(schema, None))
+        target = self.definition(definition)
+        return any(part is target for part in self.applying(schema, None))
 
     def matches(self, schema: Schema, value: JsonValue | None) -> bool:
         """Whether a value satisfies a condition (of an `if`)."""
@@ -147,18 +147,18 @@ JSON_STRUCTS = JsonGrammar("structs.schema.json")
 
 
 def _has_type(value: JsonValue | None, types: str | list[str]) -> bool:
-    wanted = [types] if isinstance(types, str) else types
+    allowed = [types] if isinstance(types, str) else types
     match value:
         case JsonObject():
-            return "object" in wanted
+            return "object" in allowed
         case JsonArray():
-            return "array" in wanted
+            return "array" in allowed
         case JsonString():
-            return "string" in wanted
+            return "string" in allowed
         case JsonNumber():
-            return "number" in wanted
+            return "number" in allowed
         case JsonBool():
-            return "boolean" in wanted
+            return "boolean" in allowed
     return False
 
 

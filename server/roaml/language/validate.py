@@ -84,13 +84,13 @@ class MissingAttribute:
 
 @dataclass(frozen=True, slots=True)
 class InvalidValue:
-    """The value of an attribute is not one that the grammar allows; `wanted` is a noun phrase for the allowed
+    """The value of an attribute is not one that the grammar allows; `required` is a noun phrase for the allowed
     values."""
 
     element: Element
     attribute: Attribute
     type: AttributeType
-    wanted: str
+    required: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,8 +213,8 @@ def _attributes(element: Element, type_: ElementType) -> Iterator[Violation]:
         present.add(name)
         known = type_.attributes.get(name)
         if known is not None:
-            if attribute.has_value and (wanted := unmet(known.simple, attribute.value)):
-                yield InvalidValue(element, attribute, known, wanted)
+            if attribute.has_value and (required := unmet(known.simple, attribute.value)):
+                yield InvalidValue(element, attribute, known, required)
         elif not type_.any_attribute and ":" not in name and name != "xmlns":
             yield UnknownAttribute(element, attribute, type_)
     if element.complete or element.self_closing or element.close_span:

@@ -87,11 +87,11 @@ class LoweringContext:
 
 def variables_of(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
     """The variables of a chart with their types; if ids are equal, the first declaration is used."""
-    found: dict[str, Type] = {}
+    types: dict[str, Type] = {}
     for data in chart.data:
         if data.id is not None:
-            found.setdefault(data.id.value, type_of(data, program))
-    return found
+            types.setdefault(data.id.value, type_of(data, program))
+    return types
 
 
 def type_of(data: Data, program: TranslatableSystem) -> Type:

@@ -21,9 +21,9 @@ def topic_event(topic: str) -> ScxmlEvent:
     return ScxmlEvent(f"topic_{sanitise(topic)}_msg")
 
 
-def tree_event(node: int, what: str) -> ScxmlEvent:
+def tree_event(node: int, kind: str) -> ScxmlEvent:
     """The tick or halt of a node of the tree, or its answer: `tick`, `halt`, `response` or `halt_response`."""
-    return ScxmlEvent(f"bt_{node}_{what}", EventRole.BLOCKING)
+    return ScxmlEvent(f"bt_{node}_{kind}", EventRole.BLOCKING)
 
 
 @dataclass(frozen=True, slots=True)

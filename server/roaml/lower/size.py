@@ -297,14 +297,14 @@ class _Counter:
         draws = sum(map(is_draw, walk(statement.value.tree)))
         location = _nodes(statement.location.tree) if statement.location else 1
         stored = self.padding(statement, handler)
-        one = location + 1 + self.value(statement.value, handler)
+        read_and_written = location + 1 + self.value(statement.value, handler)
         if draws == 0:
-            return one + stored
+            return read_and_written + stored
         values = self.program.parameters.random_values
         at_once = combinations(statement.value.tree, values)
         if at_once is not None:
-            return _EDGE + at_once * (one + stored + _EDGE)
-        return draws * _EDGE * (values + 1) + one + stored
+            return _EDGE + at_once * (read_and_written + stored + _EDGE)
+        return draws * _EDGE * (values + 1) + read_and_written + stored
 
     def padding(self, statement: Assign, handler: Handler | None) -> int:
         """Literals are padded to the capacity of the array in which they are stored."""

@@ -124,16 +124,16 @@ class _Builder:
     # ------------------------------------------------------------------ data
 
     def datamodel(self, element: Element) -> list[Data]:
-        found = []
+        declarations = []
         comment: Comment | None = None
         for node in element.nodes:
             if isinstance(node, Comment):
                 comment = node
             elif isinstance(node, Element):
                 if node.name == "data":
-                    found.append(self.data(node, comment))
+                    declarations.append(self.data(node, comment))
                 comment = None
-        return found
+        return declarations
 
     def data(self, element: Element, comment: Comment | None) -> Data:
         id_, type_ = name_of(element.get("id")), type_of(element.get("type"))

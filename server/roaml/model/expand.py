@@ -171,8 +171,8 @@ def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
 
 def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
     """The node of a file that `source` names."""
-    found = nodes_of(file, source.tree)
-    return found[source.position] if source.position < len(found) else None
+    tree_nodes = nodes_of(file, source.tree)
+    return tree_nodes[source.position] if source.position < len(tree_nodes) else None
 
 
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
@@ -181,10 +181,10 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
     The first file decides by `main_tree_to_execute`; without it, it is the only tree that no other tree uses.
     """
     trees = [tree for file in files for tree in file.trees]
-    wanted = files[0].main if files else ""
-    if wanted:
+    main = files[0].main if files else ""
+    if main:
         for tree in trees:
-            if tree.id == wanted:
+            if tree.id == main:
                 return tree
         # A file with one tree needs no names: its tree is executed whatever its name is (docs/spec/trees.md#main-tree).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
@@ -276,7 +276,7 @@ def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Ite
     stack = [(main.id, _used(main, trees))]
     while stack:
         name, left = stack[-1]
-        inner = next((each for each in left if each not in entered), None)
+        inner = next((name for name in left if name not in entered), None)
         if inner is None:
             stack.pop()
             if name not in done:
@@ -300,7 +300,7 @@ def _largest(
         uses = [n for n in _walk(tree.root) if n.is_subtree and n.plugin in sizes and n.plugin not in seen]
         if not uses:
             return largest
-        node = max(uses, key=lambda each: sizes[each.plugin])
+        node = max(uses, key=lambda use: sizes[use.plugin])
         largest = NodeSource(tree.path, tree.id, node.position)
         nodes, depth = sizes[node.plugin]
         if nodes <= MAX_NODES and depth <= MAX_SUBTREES:
@@ -602,12 +602,12 @@ def _is_autoremapped(node: NodeOutline) -> bool:
 def _words(tree: TreeOutline) -> frozenset[str]:
     """Every name in the values of a tree's attributes: variables, and names in scripts; `{=}` is the name of the
     attribute."""
-    found: set[str] = set()
+    words: set[str] = set()
     for node in _walk(tree.root):
         for key, text in node.attributes:
             if key not in _OWN_ATTRIBUTES and key not in _AUTOREMAP:
-                found |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
-    return frozenset(found)
+                words |= {key} if text.strip() == "{=}" else set(_WORD.findall(text))
+    return frozenset(words)
 
 
 _NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}

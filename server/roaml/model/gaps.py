@@ -61,9 +61,9 @@ class Gap:
     port: str = ""
 
 
-def answers(act: str, wanted: str) -> bool:
-    """Whether a gap with `act` may also do `wanted`: a machine that may declare a publisher may also publish."""
-    return act in (ANYTHING, wanted) or wanted.startswith(f"{act} ")
+def answers(act: str, fact: str) -> bool:
+    """Whether a gap with `act` may also do `fact`: a machine that may declare a publisher may also publish."""
+    return act in (ANYTHING, fact) or fact.startswith(f"{act} ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class _Search:
         """The kind of declaration that a misfit may be, if any."""
         type_ = HL_SCXML.find(element.name)
         types = [type_] if type_ is not None else self._resembling(element, parent)
-        return next((kind for each in types if (kind := _kind(each))), None)
+        return next((kind for type_ in types if (kind := _kind(type_))), None)
 
     def _unread(self, top: Element, parent: ElementType) -> Iterator[Gap]:
         """The facts that a misfit and its content may contain."""
@@ -136,8 +136,8 @@ class _Search:
             element, outer = stack.pop()
             type_ = HL_SCXML.find(element.name)
             types = [type_] if type_ is not None else self._resembling(element, outer)
-            for each in types:
-                yield from self._said(element, each)
+            for candidate in types:
+                yield from self._said(element, candidate)
             stack += [(child, types[0] if types else None) for child in element.elements]
 
     def _resembling(self, element: Element, parent: ElementType | None) -> list[ElementType]:
@@ -146,8 +146,8 @@ class _Search:
         allowed = list(parent.children) if parent is not None else []
         close = close_names(element.name, allowed, 1) or close_names(element.name, HL_SCXML.elements, 1)
         if close:
-            found = HL_SCXML.find(close[0])
-            return [found] if found is not None else []
+            nearest = HL_SCXML.find(close[0])
+            return [nearest] if nearest is not None else []
         names = {attribute.name for attribute in element.attributes}
         types = [t for name in allowed if (t := HL_SCXML.find(name)) is not None]
         return [t for t in types if any(self._gives_name(t, name, element) for name in names)]
@@ -256,7 +256,7 @@ class _Search:
         # A field of unknown type does not exist in the ROS type, or the ROS type is unknown.
         for value in self.typed.values:
             owner = owners.get(value.element) if value.use is ValueUse.FIELD else None
-            if owner is not None and (value.wanted is None or value.wanted == UNKNOWN):
+            if owner is not None and (value.required is None or value.required == UNKNOWN):
                 yield from (PlacedGap(g, value.element.name_span) for g in self._fields(owner))
 
     def _send(self, send: Send) -> Iterator[PlacedGap]:

@@ -101,11 +101,11 @@ def _field(field: SentField) -> tuple[str, Type]:
 
 def _declared(use: InterfaceUse, part: str, interface: FindInterface) -> list[tuple[str, Type]]:
     """The fields of a part as parameters, with the types of the ROS definition."""
-    found = interface(INTERFACE_KINDS[use.kind], use.type)
-    if found is None:
+    interface_type = interface(INTERFACE_KINDS[use.kind], use.type)
+    if interface_type is None:
         return []
-    required = set(found.required(part))
-    struct: Struct = found.part(part)
+    required = set(interface_type.required(part))
+    struct: Struct = interface_type.part(part)
     return [(FIELD_PREFIX + "__".join(path), type_) for path, type_ in leaves(struct) if ".".join(path) in required]
 
 

@@ -35,7 +35,7 @@ class ExtraMember:
 class WrongType:
     span: Span
     given: Type
-    wanted: Type
+    required: Type
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,54 +50,54 @@ class TooLong:
 InitialProblem: TypeAlias = MissingMembers | ExtraMember | WrongType | TooLong | infer.Problem
 
 
-def check_initial(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
-    """Why `expr` cannot be an initial value of type `wanted`. Names are not constants."""
+def check_initial(expr: Expr, target: Type) -> tuple[InitialProblem, ...]:
+    """Why `expr` cannot be an initial value of type `target`. Names are not constants."""
     problems: list[InitialProblem] = []
-    _check(expr, wanted, problems)
+    _check(expr, target, problems)
     return tuple(problems)
 
 
-def check_bound(expr: Expr, wanted: Type) -> tuple[InitialProblem, ...]:
+def check_bound(expr: Expr, target: Type) -> tuple[InitialProblem, ...]:
     """Why `expr` cannot be a bound of a variable: unlike for a value, an int is not allowed for a real."""
-    problems = check_initial(expr, wanted)
+    problems = check_initial(expr, target)
     given, _ = infer.infer(expr, lambda _: None)
-    if not problems and is_kind(wanted, "real") and is_kind(given, "int"):
-        return (WrongType(expr.span, given, wanted),)
+    if not problems and is_kind(target, "real") and is_kind(given, "int"):
+        return (WrongType(expr.span, given, target),)
     return problems
 
 
-def _check(expr: Expr, wanted: Type, problems: list[InitialProblem]) -> None:
-    match expr, wanted:
+def _check(expr: Expr, target: Type, problems: list[InitialProblem]) -> None:
+    match expr, target:
         case ObjectLiteral(), Struct():
-            _check_object(expr, wanted, problems)
+            _check_object(expr, target, problems)
         case ArrayLiteral(), Array():
-            if wanted.bound is not None and len(expr.elements) > wanted.bound:
-                problems.append(TooLong(expr.span, len(expr.elements), wanted))
+            if target.bound is not None and len(expr.elements) > target.bound:
+                problems.append(TooLong(expr.span, len(expr.elements), target))
             for element in expr.elements:
-                _check(element, wanted.element, problems)
+                _check(element, target.element, problems)
         case ObjectLiteral(), Unknown():
             pass
         case ArrayLiteral(), Unknown():  # possibly of structs: then its elements may be objects
             for element in expr.elements:
-                _check(element, wanted, problems)
+                _check(element, target, problems)
         case ObjectLiteral(), _:
-            problems.append(WrongType(expr.span, Struct("object", ()), wanted))
+            problems.append(WrongType(expr.span, Struct("object", ()), target))
         case _:
-            type_, found = infer.infer(expr, lambda _: None)
-            problems.extend(found)
-            if not fits(type_, wanted):
-                problems.append(WrongType(expr.span, type_, wanted))
+            type_, type_problems = infer.infer(expr, lambda _: None)
+            problems.extend(type_problems)
+            if not fits(type_, target):
+                problems.append(WrongType(expr.span, type_, target))
 
 
-def _check_object(expr: ObjectLiteral, wanted: Struct, problems: list[InitialProblem]) -> None:
+def _check_object(expr: ObjectLiteral, target: Struct, problems: list[InitialProblem]) -> None:
     given: set[str] = set()
     for member in expr.members:
-        type_ = wanted.member(member.key)
+        type_ = target.member(member.key)
         if type_ is None or member.key in given:
-            problems.append(ExtraMember(member.key_span, wanted, member.key, member.key in given))
+            problems.append(ExtraMember(member.key_span, target, member.key, member.key in given))
         else:
             _check(member.value, type_, problems)
         given.add(member.key)
-    missing = tuple(name for name, _ in wanted.members if name not in given)
+    missing = tuple(name for name, _ in target.members if name not in given)
     if missing:
-        problems.append(MissingMembers(expr.span, wanted, missing))
+        problems.append(MissingMembers(expr.span, target, missing))

@@ -34,12 +34,12 @@ def extents(members: Mapping[str, Sequence[str]]) -> dict[str, TypeExtent]:
     Args:
         members: name -> the types of its members; names that are not keys are plain fields.
     """
-    found: dict[str, TypeExtent] = {}
+    extent_of: dict[str, TypeExtent] = {}
     for name in _inner_first(members):
-        inner = [found[member] for member in members[name] if member in found]
-        fields = len(members[name]) - len(inner) + sum(each.fields for each in inner)
-        found[name] = TypeExtent(fields, 1 + max((each.depth for each in inner), default=0))
-    return found
+        inner = [extent_of[member] for member in members[name] if member in extent_of]
+        fields = len(members[name]) - len(inner) + sum(extent.fields for extent in inner)
+        extent_of[name] = TypeExtent(fields, 1 + max((extent.depth for extent in inner), default=0))
+    return extent_of
 
 
 def _inner_first(members: Mapping[str, Sequence[str]]) -> Iterator[str]:
@@ -51,7 +51,7 @@ def _inner_first(members: Mapping[str, Sequence[str]]) -> Iterator[str]:
         stack = [(start, iter(members[start]))]
         while stack:
             name, left = stack[-1]
-            inner = next((each for each in left if each in members and each not in entered), None)
+            inner = next((name for name in left if name in members and name not in entered), None)
             if inner is None:
                 stack.pop()
                 yield name

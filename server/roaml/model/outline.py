@@ -385,12 +385,12 @@ def _index(child: Name | None) -> int | None:
 
 def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
     """Per handler of a plain event, the parameters `_event.data.NAME` that it reads."""
-    found: defaultdict[Handler, set[str]] = defaultdict(set)
+    reads: defaultdict[Handler, set[str]] = defaultdict(set)
     for value in typed.values:
         handler = value.place.handler
         if handler is not None and handler.trigger is ProtocolPart.EVENT and isinstance(value.value, Expression):
-            found[handler].update(event_parameters(value.value.tree))
-    return found
+            reads[handler].update(event_parameters(value.value.tree))
+    return reads
 
 
 def event_parameters(tree: Expr) -> Iterator[str]:

@@ -156,7 +156,7 @@ def _variable(document: Document, element: Element) -> PortVariable:
 
 def _property(document: Document, element: Element, section: str) -> WrittenProperty:
     holders = [child for child in element.elements if child.name in ("event", "events")]
-    events = [each for h in holders for each in ([h] if h.name == "event" else h.elements) if each.name == "event"]
+    events = [child for h in holders for child in ([h] if h.name == "event" else h.elements) if child.name == "event"]
     contents = (document.content(event) for event in events)
     scopes = tuple(
         WrittenScope(

@@ -91,8 +91,8 @@ class LinkedFile:
 
 def clock_step(system: System) -> int | None:
     """The step of the clock in ns; `None` if the system has no timer."""
-    found = [period.nanoseconds for period in periods(system, system.parameters)]
-    return math.gcd(*found) if found else None
+    periods_ns = [period.nanoseconds for period in periods(system, system.parameters)]
+    return math.gcd(*periods_ns) if periods_ns else None
 
 
 def link(
@@ -145,7 +145,7 @@ class _Linker:
         self._check_names()
         properties = [self._property(written) for written in self.file.properties]
         self._check_use()
-        kept = tuple(each for each in properties if each is not None)
+        kept = tuple(linked for linked in properties if linked is not None)
         return LinkedFile(self.file, self.linked_ports, kept, tuple(self.problems))
 
     # ------------------------------------------------------------ variables
@@ -207,12 +207,12 @@ class _Linker:
             else:
                 message = "`expr` is missing: the formula"
             self.report(ProblemKind.FORM, written.element.name_span, message)
-        found = self._pattern(written) if written.pattern is not None else self._formula(written)
+        expressions = self._pattern(written) if written.pattern is not None else self._formula(written)
         errors = [problem for problem in self.problems[before:] if problem.kind not in _HINTS]
-        if found is None or errors or written.id is None:
+        if expressions is None or errors or written.id is None:
             return None
-        property_, conditions = found
-        names = {each.name for c in conditions.values() for each in walk(c.tree) if isinstance(each, Name)}
+        property_, conditions = expressions
+        names = {node.name for c in conditions.values() for node in walk(c.tree) if isinstance(node, Name)}
         ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
         is_assumption = written.section == ASSUMES
         return LinkedProperty(written.id.value, is_assumption, property_, conditions, ports, written, self.path)
@@ -223,7 +223,7 @@ class _Linker:
                 self.report(ProblemKind.CONDITION, finding.span, finding.message)
             return
         type_, problems = infer(condition.tree, self._type_of)
-        self.used |= {each.name for each in walk(condition.tree) if isinstance(each, Name)}
+        self.used |= {node.name for node in walk(condition.tree) if isinstance(node, Name)}
         reported = False
         for problem in problems:
             if isinstance(problem, IntegerDivision):
@@ -252,8 +252,8 @@ class _Linker:
                     self.report(ProblemKind.NEVER_TOGETHER, part.span, message)
 
     def _event(self, tree: object) -> tuple[LinkedPort, LinkedVariable] | None:
-        found = self.by_id.get(tree.name) if isinstance(tree, Name) else None
-        return found if found is not None and found[1].kind == EVENT else None
+        linked = self.by_id.get(tree.name) if isinstance(tree, Name) else None
+        return linked if linked is not None and linked[1].kind == EVENT else None
 
     def _pattern(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
         assert written.pattern is not None
@@ -286,8 +286,10 @@ class _Linker:
         needed = 2 if pattern.is_binary else 1
         given = len(written.conditions)
         if given != needed:
-            wanted = "two `<event>` in `<events>`" if needed == 2 else "one `<event>`"
-            message = f"`{pattern.value}` needs {wanted}; there {'is' if given == 1 else 'are'} {given or 'none'}"
+            needed_events = "two `<event>` in `<events>`" if needed == 2 else "one `<event>`"
+            message = (
+                f"`{pattern.value}` needs {needed_events}; there {'is' if given == 1 else 'are'} {given or 'none'}"
+            )
             self.report(ProblemKind.FORM, written.element.name_span, message)
             return None
         return dict(zip((LEFT, RIGHT), written.conditions, strict=False))
@@ -425,8 +427,8 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
             return f"no port of this file has a variable `{name}`{hint}"
         case UnknownMember(name=name):
             return f"there is no member `{name}`; name the field at the port, in a `<state_var>`"
-        case BadOperand(operator=operator, given=given, wanted=wanted):
-            return f"`{operator}` takes {wanted}, not a value of type `{given}`"
+        case BadOperand(operator=operator, given=given, required=required):
+            return f"`{operator}` takes {required}, not a value of type `{given}`"
         case BadComparison(operator=operator, left=left, right=right):
             return f"`{operator}` cannot compare `{left}` with `{right}`"
         case UnknownFunction(name=name):

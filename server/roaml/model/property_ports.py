@@ -134,8 +134,8 @@ class PortLinker:
             part = Struct("", (), "answer to a goal")
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete():
-            what = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
-            who = what.get(event, "answers")
+            verbs = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
+            who = verbs.get(event, "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this is never sent")
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
@@ -234,7 +234,7 @@ class PortLinker:
             return endpoints
         chosen = [endpoint for endpoint in endpoints if name.value in _names_of(endpoint.automaton)]
         if not chosen and self._is_complete():
-            known = [each for endpoint in endpoints for each in _names_of(endpoint.automaton)]
+            known = [name_of for endpoint in endpoints for name_of in _names_of(endpoint.automaton)]
             close = close_names(name.value, known) or tuple(known[:1])
             hint = f"; did you mean `{close[0]}`?" if close else ""
             message = f"no machine `{name.value}` {does} `{channel.name}`{hint}"
@@ -256,15 +256,15 @@ class PortLinker:
         matches = [automaton for automaton in automata if self._is_called(automaton, name.value)]
         if len(matches) != 1:
             if matches:
-                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(self._path(each) for each in matches))
+                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(self._path(automaton) for automaton in matches))
                 message = f"{len(matches)} nodes of the tree are called `{name.value}`: {paths}; use the path of one"
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message)
             elif self._is_complete():
                 known = dict.fromkeys(
-                    each
+                    candidate
                     for automaton in automata
                     if automaton.instance
-                    for each in (automaton.instance.name, automaton.instance.plugin)
+                    for candidate in (automaton.instance.name, automaton.instance.plugin)
                 )
                 close = close_names(name.value, known)
                 hint = f"; did you mean `{close[0]}`?" if close else ""
@@ -293,7 +293,9 @@ class PortLinker:
         return True
 
     def _has_name(self, text: str) -> bool:
-        return any(each.instance is not None and each.instance.name == text for each in self.system.automata)
+        return any(
+            automaton.instance is not None and automaton.instance.name == text for automaton in self.system.automata
+        )
 
     def _above(self, automaton: SystemAutomaton) -> list[str]:
         """The names of the ancestors of a node and of the trees that contain them, outermost first."""

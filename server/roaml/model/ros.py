@@ -72,18 +72,18 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
     parts, optional = [], []
     reader = _Reader(find)
     for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
-        what = name if definition.kind == "msg" else f"{name} of {definition.full_name}"
+        label = name if definition.kind == "msg" else f"{name} of {definition.full_name}"
         title = definition.full_name if definition.kind == "msg" else f"{definition.full_name} {name}"
         if definition.kind == "msg":
             reader.inside.append(definition.full_name)
-        parts.append((name, Struct(title, reader.members(section), what, StructKind.ROS)))
+        parts.append((name, Struct(title, reader.members(section), label, StructKind.ROS)))
         optional.append((name, frozenset(_optional(section, (), parts[-1][1], find))))
     return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
 
 
 def extent_of(definitions: Iterable[Definition]) -> TypeExtent:
     """The size of the first definition; the others are the messages in it."""
-    fields = {each.full_name: [f.type.name for s in each.sections for f in s.fields] for each in definitions}
+    fields = {message.full_name: [f.type.name for s in message.sections for f in s.fields] for message in definitions}
     return extents(fields)[next(iter(fields))]
 
 

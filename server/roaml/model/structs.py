@@ -54,7 +54,9 @@ def structs_in_xml(document: Document) -> tuple[StructDeclaration, ...]:
     """The declarations in a `<types>` file. An unknown element in place of a `<struct>` declares a struct as well."""
     if document.root is None:
         return ()
-    return tuple(_struct(each) for each in document.root.elements if each.name == "struct" or not each.prefix)
+    return tuple(
+        _struct(element) for element in document.root.elements if element.name == "struct" or not element.prefix
+    )
 
 
 def _struct(element: Element) -> StructDeclaration:
@@ -102,7 +104,7 @@ def _graph(by_name: Mapping[str, StructOutline]) -> dict[str, list[str]]:
 def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:
     """The members by which structs contain themselves: struct and member -> the names of the cycle, beginning and
     ending with the same name. For each cycle it is the member that leads back to the struct that was declared first."""
-    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    cycles: dict[tuple[str, str], tuple[str, ...]] = {}
     done: set[str] = set()
     for start in outlines:
         path = [] if start in done else [start]
@@ -114,9 +116,9 @@ def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, s
                 stack.pop()
                 done.add(path.pop())
             elif type_ is not None and type_.base in places and type_.base not in done:
-                found[path[-1], member] = (*path[places[type_.base] :], type_.base)
+                cycles[path[-1], member] = (*path[places[type_.base] :], type_.base)
             elif type_ is not None and type_.base in outlines and type_.base not in done:
                 places[type_.base] = len(path)
                 path.append(type_.base)
                 stack.append(iter(outlines[type_.base].members))
-    return found
+    return cycles

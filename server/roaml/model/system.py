@@ -196,12 +196,14 @@ class System:
     @cached_property
     def automata(self) -> tuple[SystemAutomaton, ...]:
         """In processing order: nodes, then the tree in pre-order (docs/spec/systems.md#processing-order)."""
-        found = [SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)]
+        all_automata = [
+            SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)
+        ]
         for instance in self.instances:
             path, outline = self.plugin(instance.plugin)
             if outline is not None:
-                found.append(SystemAutomaton(instance.automaton, path, outline, instance))
-        return tuple(found)
+                all_automata.append(SystemAutomaton(instance.automaton, path, outline, instance))
+        return tuple(all_automata)
 
     @property
     def complete(self) -> bool:
@@ -211,17 +213,17 @@ class System:
     @cached_property
     def possible(self) -> frozenset[Fact]:
         """All facts that unreadable parts may contain."""
-        found: set[Fact] = set()
+        facts: set[Fact] = set()
         for gap in self.gaps:
-            found |= self.facts(gap)
+            facts |= self.facts(gap)
         if self.ticked_nodes or self.idle_plugins:
-            found.add((ANYTHING, None))  # another file was probably meant
+            facts.add((ANYTHING, None))  # another file was probably meant
         for automaton in self.automata:
-            found |= self.facts_of(automaton)
+            facts |= self.facts_of(automaton)
         for instance in self.instances:
             if self.plugin(instance.plugin)[1] is None:
-                found |= self.facts_of_unknown(instance)
-        return frozenset(found)
+                facts |= self.facts_of_unknown(instance)
+        return frozenset(facts)
 
     def may(self, act: str, name: str, automaton: SystemAutomaton | None = None) -> bool:
         """Whether an automaton, or this automaton, may do this in an unreadable part. `name` is as for channels and
@@ -252,11 +254,11 @@ class System:
 
     def facts_of(self, automaton: SystemAutomaton) -> set[Fact]:
         """The facts of an automaton in the unreadable parts of its machine, or of its node in the tree."""
-        found = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
+        facts = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
         for use in automaton.outline.interfaces:
             if use.port and automaton.interface_name(use) is None:
-                found |= self.facts_of_name(automaton, use)
-        return found
+                facts |= self.facts_of_name(automaton, use)
+        return facts
 
     @cached_property
     def partly_read(self) -> frozenset[int]:
@@ -275,30 +277,30 @@ class System:
 
     def facts_of_unknown(self, instance: Instance) -> set[Fact]:
         """The facts of a tree node without a plugin: those of the plugin that was probably meant."""
-        found: set[Fact] = {(VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
+        facts: set[Fact] = {(VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
         element = BEHAVIOR_TREE.elements.get(instance.plugin)
         if element is not None and element.node:
-            return {*found, (TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
+            return {*facts, (TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
         names = [outline.name for _, outline in (*self.plugins, *self.nodes)]
         close = close_names(instance.plugin, [*names, *builtin_plugins()], 1)
-        found |= {(NODE, name) for name in close} or {(NODE, None)}
+        facts |= {(NODE, name) for name in close} or {(NODE, None)}
         if not close or not self.plugins_known:
-            return {*found, (ANYTHING, None)}
+            return {*facts, (ANYTHING, None)}
         for path, outline in (*self.plugins, *self.nodes):
             if outline.name in close:
                 meant = SystemAutomaton(instance.automaton, path, outline, instance)
-                found |= set(_said(meant)) | self.facts_of(meant)
-        return {*found, (TREE, None)}
+                facts |= set(_said(meant)) | self.facts_of(meant)
+        return {*facts, (TREE, None)}
 
     def _facts_of_any_node(self) -> set[Fact]:
         """The facts of a tree node with any plugin."""
         if not self.plugins_known:
             return {(ANYTHING, None)}
-        found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
+        facts: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
         for path, outline in self.plugins:
-            found |= set(_said(SystemAutomaton(outline.name, path, outline)))
-            found |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
-        return found
+            facts |= set(_said(SystemAutomaton(outline.name, path, outline)))
+            facts |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
+        return facts
 
     @cached_property
     def ticked_nodes(self) -> frozenset[str]:
@@ -372,14 +374,14 @@ class System:
         raise ValueError(f"{kind} is not a kind of channel")
 
     def _channels(self, source: SymbolKind, user: SymbolKind, key: Callable[[str], str]) -> Mapping[str, Channel]:
-        found: dict[str, Channel] = {}
+        channels: dict[str, Channel] = {}
         for automaton in self.automata:
             for use in automaton.outline.interfaces:
                 name = automaton.interface_name(use) if use.kind in (source, user) else None
                 if name is not None:
-                    channel = found.setdefault(key(name), Channel(key(name)))
+                    channel = channels.setdefault(key(name), Channel(key(name)))
                     (channel.sources if use.kind is source else channel.users).append(ChannelEndpoint(automaton, use))
-        return found
+        return channels
 
     def channel(self, automaton: SystemAutomaton, use: InterfaceUse) -> Channel | None:
         """The topic, service or action of a declaration of an automaton."""
@@ -397,13 +399,13 @@ class System:
 
     @cached_property
     def events(self) -> Mapping[str, PlainEvent]:
-        found: dict[str, PlainEvent] = {}
+        events: dict[str, PlainEvent] = {}
         for automaton in self.automata:
             for sent in automaton.outline.sent:
-                found.setdefault(sent.event, PlainEvent(sent.event)).senders.append((automaton, sent))
+                events.setdefault(sent.event, PlainEvent(sent.event)).senders.append((automaton, sent))
             for received in automaton.outline.received:
-                found.setdefault(received.event, PlainEvent(received.event)).receivers.append((automaton, received))
-        return found
+                events.setdefault(received.event, PlainEvent(received.event)).receivers.append((automaton, received))
+        return events
 
     def is_observed(self, event: str) -> bool:
         """Whether a property observes the event: its flag or a parameter."""
@@ -425,13 +427,13 @@ class System:
     @cached_property
     def blackboard(self) -> Mapping[str, tuple[BoundPort, ...]]:
         """Every blackboard variable with the ports that are bound to it."""
-        found: dict[str, list[BoundPort]] = {}
+        bound_ports: dict[str, list[BoundPort]] = {}
         for automaton in self.automata:
             for port in automaton.outline.ports:
                 value = automaton.port(port.key)
                 if isinstance(value, Reference):
-                    found.setdefault(value.variable, []).append(BoundPort(automaton, port))
-        return {name: tuple(ports) for name, ports in found.items()}
+                    bound_ports.setdefault(value.variable, []).append(BoundPort(automaton, port))
+        return {name: tuple(ports) for name, ports in bound_ports.items()}
 
     @property
     def reads_blackboard(self) -> bool:

@@ -45,15 +45,15 @@ class ListedFile:
     Attributes:
         path: "" if no file is named.
         problem: why the file cannot be read; None if it can, or if none is named.
-        wanted: what the system takes it for, None if its type says nothing that is known.
-        found: what it is.
+        required_kind: the kind that the section and the type of the `<input>` require; `None` if the type is unknown.
+        kind: the kind of the file itself.
     """
 
     input: SystemInput
     path: str
     problem: UnreadableReason | None
-    wanted: FileKind | None
-    found: FileKind
+    required_kind: FileKind | None
+    kind: FileKind
 
     @property
     def span(self) -> Span:
@@ -62,10 +62,10 @@ class ListedFile:
 
     @property
     def usable(self) -> bool:
-        return bool(self.path) and self.problem is None and self.found is self.wanted
+        return bool(self.path) and self.problem is None and self.kind is self.required_kind
 
 
-_WANTED = {
+_REQUIRED_KINDS = {
     **dict.fromkeys(TREE_TYPES, FileKind.TREE),
     **dict.fromkeys((*PLUGIN_TYPES, *NODE_TYPES), FileKind.MACHINE),
     "xml": FileKind.STRUCTS,
@@ -74,14 +74,18 @@ _WANTED = {
 }
 
 
-def wanted_kind(entry: SystemInput) -> FileKind | None:
+def required_kind(entry: SystemInput) -> FileKind | None:
     """The kind of file that a system expects; if its type is misspelled, that of the intended type."""
     if entry.type is None:
         return None
     if entry.type.value == "xml" and entry.section == "properties":
         return FileKind.XML_PROPERTIES
-    close = close_names(entry.type.value, _WANTED, 1) if entry.type.value not in _WANTED else (entry.type.value,)
-    return _WANTED[close[0]] if close else None
+    close = (
+        close_names(entry.type.value, _REQUIRED_KINDS, 1)
+        if entry.type.value not in _REQUIRED_KINDS
+        else (entry.type.value,)
+    )
+    return _REQUIRED_KINDS[close[0]] if close else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +148,9 @@ class SystemFile:
     def parameter(self, name: str) -> Element | None:
         """The element that sets a parameter; if there are several, the last one (docs/spec/systems.md#parameters)."""
         section = _parameter_section(self.element)
-        return next((each for each in reversed(section.elements) if each.name == name), None) if section else None
+        return (
+            next((element for element in reversed(section.elements) if element.name == name), None) if section else None
+        )
 
 
 def _parameter_section(root: Element) -> Element | None:
@@ -187,13 +193,13 @@ def _is_input(element: Element) -> bool:
 
 
 def _unread(root: Element) -> frozenset[str]:
-    found: set[str] = set()
+    sections: set[str] = set()
     for child in root.elements:
         section = _section(child)
-        hidden = [each for part in child.elements if not (section and _is_input(part)) for each in part.walk()]
-        if any(each.get("src") for each in (hidden if section else (child, *hidden))):
-            found |= {section} if section else set(SECTIONS)  # whatever element or parent was meant
-    return frozenset(found)
+        hidden = [element for part in child.elements if not (section and _is_input(part)) for element in part.walk()]
+        if any(element.get("src") for element in (hidden if section else (child, *hidden))):
+            sections |= {section} if section else set(SECTIONS)  # whatever element or parent was meant
+    return frozenset(sections)
 
 
 def _parameters(root: Element) -> Parameters:

@@ -43,9 +43,9 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
         yield period(Fraction(str(parameters.tick_rate)))
     for automaton in system.automata:
         for timer in automaton.outline.timers:
-            found = rate(automaton, timer.rate, timer.port)
-            if found is not None:
-                yield period(found)
+            hertz = rate(automaton, timer.rate, timer.port)
+            if hertz is not None:
+                yield period(hertz)
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
@@ -54,7 +54,7 @@ def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
     if not isinstance(value, PortConstant):
         return None
     try:
-        found = Fraction(value.text.strip())
+        hertz = Fraction(value.text.strip())
     except (ValueError, ZeroDivisionError):
         return None
-    return found if 0 < found <= NANOSECONDS_PER_SECOND else None
+    return hertz if 0 < hertz <= NANOSECONDS_PER_SECOND else None

@@ -121,7 +121,7 @@ class ValuePlace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TypedValue:
-    """A value with its type and problems. `wanted` is the required type; `None` if any type is allowed.
+    """A value with its type and problems. `required` is the required type; `None` if any type is allowed.
 
     `target` is a phrase for the field, parameter, location or variable that receives the value ("" if there is none).
     `sent` is the type that the value has in the translation if it is sent: there `2.0` is an int
@@ -131,7 +131,7 @@ class TypedValue:
     use: ValueUse
     value: Value
     type: Type
-    wanted: Type | None
+    required: Type | None
     problems: tuple[Problem | InitialProblem, ...]
     element: Element
     place: ValuePlace
@@ -168,7 +168,9 @@ def type_machine(
     for chart in machine.charts:
         typer.chart(chart)
     sent = (s for chart in machine.charts for s in chart.statements if isinstance(s, RosSend))
-    unset = {each.element: fields for each in sent if (fields := unset_fields(each, machine, environment))}
+    unset = {
+        statement.element: fields for statement in sent if (fields := unset_fields(statement, machine, environment))
+    }
     return TypedMachine(tuple(typer.values), typer.variables, unset)
 
 
@@ -249,9 +251,9 @@ def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None
     the name."""
     if user.handle is None:
         return None
-    wanted = user.type.attributes["name"].refers
+    kinds = user.type.attributes["name"].refers
     named = machine.declarations_by_handle.get(user.handle.value, ())
-    right = [d for d in named if d.kind in wanted]
+    right = [d for d in named if d.kind in kinds]
     return right[0] if right else (named[0] if named else None)
 
 
@@ -334,21 +336,21 @@ class _Typer:
         return resolve_type(data.type.name, self.environment.struct) or UNKNOWN
 
     def data(self, data: Data, place: ValuePlace) -> None:
-        wanted = self.declared(data)
+        required = self.declared(data)
         target = data.id.value if data.id else ""
         for value, use in ((data.value, ValueUse.INITIAL), (data.lower, ValueUse.BOUND), (data.upper, ValueUse.BOUND)):
             if isinstance(value, Expression):
                 check = check_bound if use is ValueUse.BOUND else check_initial
-                problems = () if value.broken else check(value.tree, wanted)
-                self.values.append(TypedValue(use, value, wanted, wanted, problems, data.element, place, target))
+                problems = () if value.broken else check(value.tree, required)
+                self.values.append(TypedValue(use, value, required, required, problems, data.element, place, target))
             elif value is not None:
-                self.port(use, value, wanted, data.element, place, target)
+                self.port(use, value, required, data.element, place, target)
 
     def port(
-        self, use: ValueUse, value: PortRead, wanted: Type | None, element: Element, place: ValuePlace, target: str
+        self, use: ValueUse, value: PortRead, required: Type | None, element: Element, place: ValuePlace, target: str
     ) -> None:
         type_ = port_type(self.machine, value)
-        self.values.append(TypedValue(use, value, type_, wanted, (), element, place, target, type_))
+        self.values.append(TypedValue(use, value, type_, required, (), element, place, target, type_))
 
     def handler(self, handler: Handler, chart: Chart, state: State, variables: Mapping[str, Type], late: bool) -> None:
         if not handler.effective:
@@ -427,7 +429,7 @@ class _Body:
             self.place = replace(self.place, late=True)
 
     def value(
-        self, use: ValueUse, value: Value | None, wanted: Type | None, element: Element, target: str = ""
+        self, use: ValueUse, value: Value | None, required: Type | None, element: Element, target: str = ""
     ) -> None:
         if isinstance(value, Expression):
             type_, problems = infer(value.tree, self.scope)
@@ -436,41 +438,43 @@ class _Body:
             sent = type_
             if use in _SENT and any(isinstance(node, Number) and node.is_real for node in walk(value.tree)):
                 sent, _ = infer(value.tree, self.scope, reprinted=True)
-            self.typer.values.append(TypedValue(use, value, type_, wanted, problems, element, self.place, target, sent))
+            self.typer.values.append(
+                TypedValue(use, value, type_, required, problems, element, self.place, target, sent)
+            )
         elif value is not None:
-            self.typer.port(use, value, wanted, element, self.place, target)
+            self.typer.port(use, value, required, element, self.place, target)
 
     def assign(self, statement: Assign) -> None:
-        wanted: Type | None = None
+        required: Type | None = None
         target = ""
         if statement.location is not None:
             self.value(ValueUse.LOCATION, statement.location, None, statement.element)
-            wanted, target = self.typer.values[-1].type, statement.location.text
-        self.value(ValueUse.ASSIGNED, statement.value, wanted, statement.element, target)
+            required, target = self.typer.values[-1].type, statement.location.text
+        self.value(ValueUse.ASSIGNED, statement.value, required, statement.element, target)
 
-    def param(self, use: ValueUse, param: Param, wanted: Type | None) -> None:
-        self.late_value(use, param.value, wanted, param.element, param.name.value if param.name else "")
+    def param(self, use: ValueUse, param: Param, required: Type | None) -> None:
+        self.late_value(use, param.value, required, param.element, param.name.value if param.name else "")
 
     def late_value(
-        self, use: ValueUse, value: Value | None, wanted: Type | None, element: Element, target: str
+        self, use: ValueUse, value: Value | None, required: Type | None, element: Element, target: str
     ) -> None:
         """A value that is sent: it is evaluated in the step of the sending, after the event arrived."""
         self.later()
-        self.value(use, value, wanted, element, target)
+        self.value(use, value, required, element, target)
 
     def communicate(self, statement: RosSend) -> None:
         declaration = find_handle(self.typer.machine, statement)
         part = interface_part(statement.part, declaration, self.typer.environment)
         for param in statement.fields:
-            wanted = _leaf(part, param.name.value) if param.name else None
-            self.param(ValueUse.FIELD, param, wanted)
+            required = _leaf(part, param.name.value) if param.name else None
+            self.param(ValueUse.FIELD, param, required)
         for expression, name in ((statement.goal_id, "goal_id"), (statement.thread_id, "thread_id")):
             self.late_value(ValueUse.ARGUMENT, expression, INT, statement.element, name)
 
     def output(self, statement: SetOutput) -> None:
-        wanted = port_type(self.typer.machine, PortRead(statement.key, statement.element.span))
+        required = port_type(self.typer.machine, PortRead(statement.key, statement.element.span))
         target = statement.key.value if statement.key else ""
-        self.late_value(ValueUse.OUTPUT, statement.value, wanted, statement.element, target)
+        self.late_value(ValueUse.OUTPUT, statement.value, required, statement.element, target)
 
     def choice(self, statement: If) -> None:
         """The first condition is evaluated in a step of its own, so even it is late."""

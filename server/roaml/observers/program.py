@@ -199,21 +199,21 @@ def negation(operand: Expression) -> Expression:
 
 
 def conjunction(*terms: Expression) -> Expression:
-    whole: Expression = TRUE
+    result: Expression = TRUE
     for term in terms:
-        if FALSE in (whole, term):
+        if FALSE in (result, term):
             return FALSE
-        whole = term if whole == TRUE else whole if term == TRUE else Binary(BinaryOperator.AND, whole, term)
-    return whole
+        result = term if result == TRUE else result if term == TRUE else Binary(BinaryOperator.AND, result, term)
+    return result
 
 
 def disjunction(*terms: Expression) -> Expression:
-    whole: Expression = FALSE
+    result: Expression = FALSE
     for term in terms:
-        if TRUE in (whole, term):
+        if TRUE in (result, term):
             return TRUE
-        whole = term if whole == FALSE else whole if term == FALSE else Binary(BinaryOperator.OR, whole, term)
-    return whole
+        result = term if result == FALSE else result if term == FALSE else Binary(BinaryOperator.OR, result, term)
+    return result
 
 
 def choice(test: Expression, then: Expression, otherwise: Expression) -> Expression:

@@ -50,7 +50,7 @@ from roaml.model.system_file import (
     SystemFile,
     SystemInput,
     build_system_file,
-    wanted_kind,
+    required_kind,
 )
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
@@ -167,7 +167,7 @@ class Analysis:
         kind = self.kind(path)
         if kind is not FileKind.UNKNOWN or system is None:
             return kind
-        listed = (file.found for file in self.listed(system) if file.path == path)
+        listed = (file.kind for file in self.listed(system) if file.path == path)
         return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
 
     def document(self, path: str) -> Document | None:
@@ -228,9 +228,12 @@ class Analysis:
             if not listed.usable:
                 continue
             file = f"`{listed.input.src.value}`" if listed.input.src else "another file"
-            if listed.wanted is FileKind.PROPERTIES:
+            if listed.required_kind is FileKind.PROPERTIES:
                 yield from ((property_.name, file) for property_ in self.properties(listed.path)[0])
-            elif listed.wanted is FileKind.XML_PROPERTIES and (before := self.property_file(listed.path)) is not None:
+            elif (
+                listed.required_kind is FileKind.XML_PROPERTIES
+                and (before := self.property_file(listed.path)) is not None
+            ):
                 yield from ((written.id.value, file) for written in before.properties if written.id is not None)
 
     def system_file(self, path: str) -> SystemFile | None:
@@ -333,25 +336,25 @@ class Analysis:
         return all(listed.usable for listed in self.listed(system) if listed.input.section == section)
 
     def _listed_file(self, base: str, entry: SystemInput) -> ListedFile:
-        wanted = wanted_kind(entry)
+        kind_required = required_kind(entry)
         if entry.src is None:
-            return ListedFile(entry, "", None, wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, "", None, kind_required, FileKind.UNKNOWN)
         path = resolve(base, entry.src.value)
         source = self.files.read(path)
         if isinstance(source, UnreadableReason):
-            return ListedFile(entry, path, source, wanted, FileKind.UNKNOWN)
+            return ListedFile(entry, path, source, kind_required, FileKind.UNKNOWN)
         if len(source.text) > MAX_CHARACTERS:
-            return ListedFile(entry, path, UnreadableReason.TOO_LONG, wanted, self.kind(path))
+            return ListedFile(entry, path, UnreadableReason.TOO_LONG, kind_required, self.kind(path))
         kind = self.kind(path)
         if kind is FileKind.MACHINE and self.machine(path) is None:
             kind = FileKind.UNKNOWN
-        if wanted is FileKind.JSON_STRUCTS and kind is FileKind.UNKNOWN and path.endswith(".json"):
+        if kind_required is FileKind.JSON_STRUCTS and kind is FileKind.UNKNOWN and path.endswith(".json"):
             kind = FileKind.JSON_STRUCTS
-        return ListedFile(entry, path, None, wanted, kind)
+        return ListedFile(entry, path, None, kind_required, kind)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
         """The tree files of a system: the listed one, then the included ones, without duplicates."""
-        first = next((f.path for f in self.listed(path) if f.wanted is FileKind.TREE and f.usable), None)
+        first = next((f.path for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable), None)
         return self.trees_from(first) if first else ()
 
     def trees_from(self, path: str) -> tuple[str, ...]:
@@ -398,8 +401,8 @@ class Analysis:
         more: list[str] = list(projects)
         while True:
             known = {name for tree_path in (*own, *more) for name in self._tree_names(tree_path)}
-            wanted = {name for tree_path in (*own, *more) for name in self._subtrees(tree_path)} - known
-            new = next((p for p in listed if p not in (*own, *more) and wanted & self._tree_names(p)), None)
+            missing = {name for tree_path in (*own, *more) for name in self._subtrees(tree_path)} - known
+            new = next((p for p in listed if p not in (*own, *more) and missing & self._tree_names(p)), None)
             if new is None:
                 return tuple(more)
             more += [p for p in self._with_included([new]) if p not in (*own, *more)]
@@ -555,7 +558,7 @@ class Analysis:
         listed = self.listed(path)
         structs = self.structs(path)
         trees = self.tree_outlines(path)
-        machines = [f for f in listed if f.wanted is FileKind.MACHINE and f.usable]
+        machines = [f for f in listed if f.required_kind is FileKind.MACHINE and f.usable]
         gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
@@ -589,7 +592,7 @@ class Analysis:
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
-        paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
+        paths = [f.path for f in listed if f.required_kind is FileKind.PROPERTIES and f.usable]
         properties = [declared for path in paths for declared in self.properties(path)[0]]
         return frozenset(name for declared in properties for name, _ in identifiers(declared.expression))
 
@@ -643,7 +646,7 @@ class Analysis:
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why some nodes of the executed tree are unknown, if the system should have a tree: file and place."""
-        listed_trees = [f for f in listed if f.wanted is FileKind.TREE]
+        listed_trees = [f for f in listed if f.required_kind is FileKind.TREE]
         section = file.element.find("behavior_tree")
         if not listed_trees:
             if section is not None:
@@ -692,8 +695,8 @@ class Analysis:
         if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
             return False
         for entry in listed:
-            if entry.input.section == "behavior_tree" and entry.wanted is not FileKind.TREE:
-                machine = self.machine(entry.path) if entry.wanted is FileKind.MACHINE and entry.usable else None
+            if entry.input.section == "behavior_tree" and entry.required_kind is not FileKind.TREE:
+                machine = self.machine(entry.path) if entry.required_kind is FileKind.MACHINE and entry.usable else None
                 if machine is None or machine.name is None or not self._is_well_formed(entry.path):
                     return False
         return True
@@ -748,7 +751,9 @@ class Analysis:
         if system not in self._published_types:
             types_by_topic: dict[str, dict[str, None]] = {}
             for listed in self.listed(system):
-                machine = self.machine(listed.path) if listed.wanted is FileKind.MACHINE and listed.usable else None
+                machine = (
+                    self.machine(listed.path) if listed.required_kind is FileKind.MACHINE and listed.usable else None
+                )
                 for declaration in machine.declarations if machine else ():
                     topic, type_ = declaration.interface, declaration.type
                     if declaration.kind is SymbolKind.PUBLISHER and isinstance(topic, Name) and type_ is not None:

@@ -234,7 +234,7 @@ class _Run:
                 repeated = self.analysis.repeated_types(machine)
                 return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete)
             case FileKind.SYSTEM:
-                listed = tuple((f.path, f.problem, f.found) for f in self.analysis.listed(self.path))
+                listed = tuple((f.path, f.problem, f.kind) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 forest = None if self.system_path else self.analysis.forest(self.path)

@@ -22,13 +22,13 @@ from roaml.text import Location
 
 def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     """The properties in the files that a system lists, in their order."""
-    files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.PROPERTIES and f.usable)
+    files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.PROPERTIES and f.usable)
     return tuple(declared for file in files for declared in analysis.properties(file)[0])
 
 
 def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedProperty, ...]:
     """The properties in XML in the files that a system lists, in their order."""
-    files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.XML_PROPERTIES and f.usable)
+    files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.XML_PROPERTIES and f.usable)
     linked = (analysis.linked_properties(file, path) for file in files)
     return tuple(_observed(property_) for file in linked if file is not None for property_ in file.properties)
 

@@ -145,16 +145,16 @@ class _Parser:
     # ------------------------------------------------------------ statements
 
     def script(self) -> tuple[Script, tuple[ScriptProblem, ...]]:
-        whole = self.source.span(0, len(self.source.text))
+        span = self.source.span(0, len(self.source.text))
         statements: list[Expr] = []
         if self.token.kind == "end":
-            self.problems.append(ScriptProblem(whole, "the script is empty"))
+            self.problems.append(ScriptProblem(span, "the script is empty"))
         elif self.token.text == ";":
             self.problems.append(ScriptProblem(self.span(self.token), "a script cannot begin with `;`"))
         while self.token.kind != "end":
             if not self.takes(";"):
                 statements.append(self.statement())
-        return Script(whole, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
+        return Script(span, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
 
     def statement(self) -> Expr:
         start = self.token
@@ -321,9 +321,9 @@ class _Parser:
         token = self.next()
         follows = self.token
         if follows.start == token.end and follows.kind in ("name", "number", "junk") and follows.text[0] != '"':
-            whole = token._replace(text=token.text + follows.text, end=follows.end)
+            word = token._replace(text=token.text + follows.text, end=follows.end)
             self.at += 1
-            raise _MistakeError(whole, f"`{whole.text}` is neither a number nor a name")
+            raise _MistakeError(word, f"`{word.text}` is neither a number nor a name")
         text = token.text
         if text[:2] in ("0x", "0X"):
             value: int | float = int(text, 16)

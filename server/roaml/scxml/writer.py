@@ -51,13 +51,13 @@ def write_lines(network: Network) -> Iterator[tuple[Automaton, Lines]]:
 
 def _receivers(network: Network) -> dict[str, list[str]]:
     """Event -> names of the automata that wait for it somewhere, in order."""
-    found: dict[str, dict[str, None]] = {}
+    receivers: dict[str, dict[str, None]] = {}
     for automaton in network.automata:
         for state in automaton.states:
             for transition in state.transitions:
                 if transition.event:
-                    found.setdefault(transition.event.name, {})[automaton.name] = None
-    return {event: list(names) for event, names in found.items()}
+                    receivers.setdefault(transition.event.name, {})[automaton.name] = None
+    return {event: list(names) for event, names in receivers.items()}
 
 
 class _Writer:
@@ -176,11 +176,11 @@ def _cond(transition: Transition) -> str:
     return "" if transition.cond is None else format_expr(transition.cond)
 
 
-def _fresh(wanted: str, taken: Iterable[str]) -> str:
+def _fresh(name: str, taken: Iterable[str]) -> str:
     known = set(taken)
-    while wanted in known:
-        wanted += "_"
-    return wanted
+    while name in known:
+        name += "_"
+    return name
 
 
 def _element(

@@ -235,7 +235,7 @@ class ExpressionAssembler:
                 self.tape.jump(Op.JUMP, label)
             return
         kind = REAL if REAL in (shapes.kind(node.left, names), shapes.kind(node.right, names)) else INT
-        left, right = (self.materialized(each, kind, shape, names) for each in (node.left, node.right))
+        left, right = (self.materialized(operand, kind, shape, names) for operand in (node.left, node.right))
         unequal = Label()
         goes = label if equal is not when else unequal
         code = Op.JUMP_NE_REAL if kind == REAL else Op.JUMP_NE
@@ -255,14 +255,14 @@ class ExpressionAssembler:
             indexes.append(inner)
             inner = inner.array
         indexes.reverse()
-        whole = self.region(inner, names)
-        if len(indexes) > len(whole.shape):
+        array = self.region(inner, names)
+        if len(indexes) > len(array.shape):
             raise FaultError("this is not an array", node.origin)
-        return self.indexed(whole, indexes, names)
+        return self.indexed(array, indexes, names)
 
-    def indexed(self, whole: Region, accesses: Sequence[ArrayAccess], names: StorageNames) -> Region:
-        offset = whole.offset
-        base, shape = whole.base, whole.shape
+    def indexed(self, array: Region, accesses: Sequence[ArrayAccess], names: StorageNames) -> Region:
+        offset = array.offset
+        base, shape = array.base, array.shape
         fixed = 0
         for access in accesses:
             length, shape = shape[0], shape[1:]
@@ -285,7 +285,7 @@ class ExpressionAssembler:
             if offset >= 0:
                 self.tape.emit(Op.ADD, step, step, offset)
             offset = step
-        return Region(whole.kind, shape, base + fixed, offset)
+        return Region(array.kind, shape, base + fixed, offset)
 
     def region(self, node: Expression, names: StorageNames) -> Region:
         """The registers of an array; an array that is not in registers is copied there."""

@@ -105,7 +105,7 @@ def look_at_choices(
         if not solution.has_choices:
             return Choices(f"there is only one choice in each of {states}", *_of_answer(answer))
         if solution.minimum is not None and solution.maximum is not None:
-            least, greatest = (_exact(each) for each in (solution.minimum, solution.maximum))
+            least, greatest = (_exact(exact) for exact in (solution.minimum, solution.maximum))
             if least is not None and greatest is not None:
                 return Choices(f"all {states} were explored" if solution.agrees else "", least, greatest)
     question, tally = answer.question, answer.tally
@@ -116,17 +116,17 @@ def look_at_choices(
     budget = max(_LEAST_STEPS, min(most, tally.steps // _SHARE))
     length = tally.steps / tally.traces
     some = candidates(len(automata), each=1, memoryless=16, memory=16)
-    found = probe(payload, question, answer.options, pool, some, budget, length, pulse)
+    extremes = probe(payload, question, answer.options, pool, some, budget, length, pulse)
     own_least, own_greatest = _of_answer(answer)
-    if found is None:
+    if extremes is None:
         return Choices("", own_least, own_greatest)
     sampled = [
-        Extreme(each.value, each.bounds, SAMPLING, described(by, automata), each.tally.traces)
-        for each, by in ((found.least, found.least_by), (found.greatest, found.greatest_by))
+        Extreme(extreme.value, extreme.bounds, SAMPLING, described(by, automata), extreme.tally.traces)
+        for extreme, by in ((extremes.least, extremes.least_by), (extremes.greatest, extremes.greatest_by))
     ]
     least = sampled[0] if sampled[0].bounds.upper < own_least.bounds.lower else own_least
     greatest = sampled[1] if sampled[1].bounds.lower > own_greatest.bounds.upper else own_greatest
-    return Choices("", least, greatest, found.tried)
+    return Choices("", least, greatest, extremes.tried)
 
 
 def _exact(bounds: Bounds) -> Extreme | None:

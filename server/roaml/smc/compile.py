@@ -179,7 +179,10 @@ class Compilation:
                 for assignment in group:
                     self.assignments.assign(assignment.target, assignment.value, names, assignment.origin)
                 continue
-            for later in [self.assignments.early(each.target, each.value, names, each.origin) for each in group]:
+            for later in [
+                self.assignments.early(assignment.target, assignment.value, names, assignment.origin)
+                for assignment in group
+            ]:
                 self.assignments.finish(later)
         self.cells.end()
         return start
@@ -197,7 +200,10 @@ class Compilation:
         for group in _by_index(assignments):
             self.phase_index.append(group[0].index)
             self.phase_read.append(self.tape.begin(origin))
-            computed = [self.assignments.early(each.target, each.value, names, each.origin) for each in group]
+            computed = [
+                self.assignments.early(assignment.target, assignment.value, names, assignment.origin)
+                for assignment in group
+            ]
             self.cells.end()
             self.phase_write.append(self.tape.begin(origin))
             for later in computed:
@@ -226,12 +232,12 @@ class Compilation:
 
     def _counts(self, location: int) -> dict[int, int]:
         """For each slot the number of enabled edges, or -1 - group if that depends on guards."""
-        found = {}
+        counts = {}
         for group in range(self.group_start[location], self.group_start[location + 1]):
             steps = self.group_steps[group]
             is_guarded = any(step.guard is not None for step in steps)
-            found[self.group_slot[group]] = -1 - group if is_guarded else len(steps)
-        return found
+            counts[self.group_slot[group]] = -1 - group if is_guarded else len(steps)
+        return counts
 
     # ------------------------------------------------------------ the end
 
@@ -384,8 +390,8 @@ def _ints(values: Iterable[int]) -> Ints:
 
 def _ranges(lists: Iterable[list[int]]) -> tuple[Ints, Ints]:
     starts, items = [0], list[int]()
-    for each in lists:
-        items += each
+    for numbers in lists:
+        items += numbers
         starts.append(len(items))
     return _ints(starts), _ints(items)
 

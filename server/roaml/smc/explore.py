@@ -84,7 +84,7 @@ class Explorer:
             for picks in itertools.product(*(range(len(edges)) for edges in slots)):
                 ways = [slots[i][pick] for i, pick in enumerate(picks)]
                 branches = []
-                for taken in itertools.product(*(range(len(each)) for each in ways)):
+                for taken in itertools.product(*(range(len(options)) for options in ways)):
                     probability = 1.0
                     for i, way in enumerate(taken):
                         probability *= ways[i][way]
@@ -102,20 +102,20 @@ class Explorer:
             TooManyStatesError: there are more than `limit`.
             TooManyChoicesError, StateFaultError: see `choices`.
         """
-        found = {self.initial: self.verdict(self.initial)}
-        waiting = deque(found)
+        verdicts = {self.initial: self.verdict(self.initial)}
+        waiting = deque(verdicts)
         while waiting:
             state = waiting.popleft()
-            if found[state] in (TRUE, FALSE):
+            if verdicts[state] in (TRUE, FALSE):
                 continue
             for _, branches in self.choices(state):
                 for _, successor in branches:
-                    if successor not in found:
-                        if len(found) >= limit:
+                    if successor not in verdicts:
+                        if len(verdicts) >= limit:
                             raise TooManyStatesError
-                        found[successor] = self.verdict(successor)
+                        verdicts[successor] = self.verdict(successor)
                         waiting.append(successor)
-        return found
+        return verdicts
 
     def _state(self) -> ExploredState:
         ints, reals = self._kernel.snapshot()

@@ -53,9 +53,9 @@ _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, Fil
 
 def faults_in(property_: Property) -> Iterator[FaultError]:
     """Why sampling cannot decide a property of this form, with the positions of the unsupported parts."""
-    for what, node in _faults(property_.expression):
-        code = BOUNDS if what in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
-        yield FaultError(f"{what}; {ANSWERED}", node.origin or property_.origin, code=code)
+    for fault, node in _faults(property_.expression):
+        code = BOUNDS if fault in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
+        yield FaultError(f"{fault}; {ANSWERED}", node.origin or property_.origin, code=code)
 
 
 def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:

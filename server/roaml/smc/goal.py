@@ -183,8 +183,8 @@ class _Writer:
         return CompiledProperty(self.property, question, goal)
 
     def variables(self) -> tuple[str, ...]:
-        found = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))
-        return tuple(name for name in found if not isinstance(self.names.values.get(name), Operand))
+        names = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))
+        return tuple(name for name in names if not isinstance(self.names.values.get(name), Operand))
 
     def opened(self, formula: Formula) -> tuple[Formula, Threshold | None]:
         """The probability or reward inside of filters and comparisons."""

@@ -153,7 +153,7 @@ def _storages(
     functions: Mapping[str, Function],
     initial: dict[int, Value],
 ) -> tuple[Storage, ...]:
-    found = []
+    storages = []
     for variable in variables:
         try:
             kind_of(variable.type)
@@ -175,8 +175,8 @@ def _storages(
             if (low is not None and value < low) or (high is not None and value > high):
                 raise FaultError(f"the initial value of `{variable.name}` is outside of its bounds", variable.origin)
         initial[id(storage)] = value
-        found.append(storage)
-    return tuple(found)
+        storages.append(storage)
+    return tuple(storages)
 
 
 def _storage(name: str, type_: Type, value: Value) -> Storage:
@@ -231,5 +231,5 @@ def _fill(cells: MutableSequence[Any], base: int, shape: tuple[int, ...], value:
         return
     assert isinstance(value, tuple)
     size = product(shape[1:])
-    for position, each in enumerate(value):
-        _fill(cells, base + position * size, shape[1:], each)
+    for position, element in enumerate(value):
+        _fill(cells, base + position * size, shape[1:], element)

@@ -224,12 +224,12 @@ def probe(
             break
     if not shares:
         return None
-    found = []
+    answers = []
     for best in (min(shares, key=shares.__getitem__), max(shares, key=shares.__getitem__)):
-        wanted = max(20, min(400, int(budget / 2 / max(1.0, lengths[best]))))
-        fixed = replace(options, method=FIXED, max_traces=wanted, max_steps=longest)
-        found.append((answer(payload, question, fixed, pool, pulse=pulse, scheduler=best), best))
-    (least, least_by), (greatest, greatest_by) = found
+        max_traces = max(20, min(400, int(budget / 2 / max(1.0, lengths[best]))))
+        fixed = replace(options, method=FIXED, max_traces=max_traces, max_steps=longest)
+        answers.append((answer(payload, question, fixed, pool, pulse=pulse, scheduler=best), best))
+    (least, least_by), (greatest, greatest_by) = answers
     return Extremes(least, greatest, least_by, greatest_by, len(shares))
 
 

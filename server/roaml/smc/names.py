@@ -65,35 +65,35 @@ class StorageNames:
         if node.function in self.calls:
             raise FaultError(f"`{node.function}` calls itself, which is not supported", node.origin)
         if len(node.arguments) != len(function.parameters):
-            wanted, given = len(function.parameters), len(node.arguments)
-            raise FaultError(f"`{node.function}` takes {wanted} arguments, not {given}", node.origin)
+            needed, given = len(function.parameters), len(node.arguments)
+            raise FaultError(f"`{node.function}` takes {needed} arguments, not {given}", node.origin)
         return function
 
 
 def variables_in(expression: Expression, functions: Mapping[str, Function]) -> set[str]:
     """The names on which the value of an expression depends."""
-    found: set[str] = set()
+    identifiers: set[str] = set()
     called: set[str] = set()
     stack = [expression]
     while stack:
         for node in walk(stack.pop()):
             if isinstance(node, Name):
-                found.add(node.identifier)
+                identifiers.add(node.identifier)
             elif isinstance(node, Call) and node.function not in called:
                 called.add(node.function)
                 if node.function in functions:
                     stack.append(functions[node.function].body)
-    return found
+    return identifiers
 
 
 def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[str]:
     """The names on which an assignment depends: its value, and its target."""
-    found = variables_in(assignment.value, functions)
+    read_names = variables_in(assignment.value, functions)
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):
-        found |= variables_in(target.index, functions)
+        read_names |= variables_in(target.index, functions)
         target = target.array
-    return found
+    return read_names
 
 
 def unsupported(node: Node) -> str:

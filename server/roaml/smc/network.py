@@ -189,9 +189,9 @@ class CompiledNetwork:
         if not syncs and len(self.layout.instances) == 1:
             actions = dict.fromkeys(slot.action for slot in self.slots if slot.action is not None)
             syncs = [([(0, action)], action) for action in actions]
-        found = [([self._slot_of.get((i, action, 0), -1) for i, action in parts], result) for parts, result in syncs]
+        vectors = [([self._slot_of.get((i, action, 0), -1) for i, action in parts], result) for parts, result in syncs]
         silent = [([number], None) for number, slot in enumerate(self.slots) if slot.action is None]
-        for slots, result in (*found, *silent):
+        for slots, result in (*vectors, *silent):
             if slots and -1 not in slots:
                 for slot in slots:
                     self.slots[slot].vectors.append(len(self.vectors))
@@ -208,7 +208,7 @@ def root(assignment: Assignment) -> str:
 
 def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:
     """Loops that accept an action wherever no edge for it is enabled, as `input-enable` requires."""
-    found = []
+    loops = []
     for action in actions:
         for location in instance.automaton.locations:
             there = [e for e in instance.automaton.edges if e.action == action and e.source == location.name]
@@ -221,8 +221,8 @@ def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Ed
                 guard = closed if guard is None else _both(guard, closed)
             clause = None if guard is None else replace(there[0].guard, exp=guard)  # type: ignore[type-var]
             loop = Destination(location.name)
-            found.append(Edge(location.name, (loop,), action, clause, origin=location.origin))
-    return found
+            loops.append(Edge(location.name, (loop,), action, clause, origin=location.origin))
+    return loops
 
 
 def _both(left: Expression, right: Expression) -> Expression:

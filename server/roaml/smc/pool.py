@@ -112,17 +112,17 @@ class Pool:
                         raise WorkersLostError(f"worker processes end repeatedly: {error}") from error
                     if self.is_own:
                         self._stop()
-                    again = [each for each, _ in running]
+                    again = [task for task, _ in running]
                     running.clear()
-                    running.extend((each, self._submit(each)) for each in again)
+                    running.extend((task, self._submit(task)) for task in again)
                     continue
                 lost = 0
                 running.popleft()
                 yield task, outcome
         finally:
-            for _, each in running:
-                if each is not None:
-                    each.cancel()
+            for _, future in running:
+                if future is not None:
+                    future.cancel()
 
     def _submit(self, task: Task) -> Future[BatchOutcome] | None:
         """Submit a batch; `None` if workers are being lost right now."""

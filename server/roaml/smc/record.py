@@ -121,12 +121,12 @@ class StepReader:
     ) -> tuple[VariableChange, ...]:
         changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
         changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
-        found = []
+        changes = []
         for position in sorted(changed):
             variable, storage = self.variables[position]
             before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
-            found.append(VariableChange(variable, _value(storage, before), _value(storage, after)))
-        return tuple(found)
+            changes.append(VariableChange(variable, _value(storage, before), _value(storage, after)))
+        return tuple(changes)
 
     def standstill(self, system: System) -> Standstill:
         """The present state, for those who ask who waits for whom."""
@@ -206,11 +206,11 @@ class Recorder:
     def reads(self, part: AutomatonStep) -> set[RecordedVariable]:
         """The variables on which a part of a step depends."""
         layout = self.legend.layout.instances[part.instance]
-        found = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
+        read_names = set() if part.edge.guard is None else variables_in(part.edge.guard.exp, layout.names.functions)
         for assignment in part.destination.assignments:
-            found |= read_by(assignment, layout.names.functions)
+            read_names |= read_by(assignment, layout.names.functions)
         own = {storage.name for storage in layout.own}
-        return {RecordedVariable(part.instance if name in own else -1, name) for name in found}
+        return {RecordedVariable(part.instance if name in own else -1, name) for name in read_names}
 
 
 def _value(storage: Storage, cells: Sequence[int] | Sequence[float]) -> Plain:

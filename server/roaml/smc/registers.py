@@ -96,11 +96,11 @@ class Tape:
         """A register that always has this value."""
         # The sign distinguishes -0.0 from 0.0, which are equal.
         key = (f"{kind}{str(value)[0]}", value)
-        found = self._constants.get(key)
-        if found is None:
-            found = Operand(kind, self.room(kind, 1, value), value)
-            self._constants[key] = found
-        return found
+        register = self._constants.get(key)
+        if register is None:
+            register = Operand(kind, self.room(kind, 1, value), value)
+            self._constants[key] = register
+        return register
 
     def room(self, kind: str, size: int, value: Number = 0) -> int:
         """New consecutive registers that nothing else uses."""
@@ -137,12 +137,12 @@ class Tape:
 
     def origin_of(self, at: int) -> Origin | None:
         """The origin of the instruction at an index of the code."""
-        found = None
+        origin_at = None
         for place, origin in self.origins:
             if place > at:
                 break
-            found = origin
-        return found
+            origin_at = origin
+        return origin_at
 
 
 assert WIDTH == 5

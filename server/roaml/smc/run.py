@@ -143,8 +143,8 @@ class Tally:
             accepted=value["accepted"],
             is_finished=bool(value["finished"]),
             is_revised=bool(value["revised"]),
-            examples={int(v): [Seen(*each) for each in seen] for v, seen in value["examples"].items()},
-            shortest={int(v): Seen(*each) for v, each in value["shortest"].items()},
+            examples={int(v): [Seen(*example) for example in seen] for v, seen in value["examples"].items()},
+            shortest={int(v): Seen(*example) for v, example in value["shortest"].items()},
             ends={
                 End[name.upper()]: Ended(int(count), Seen(int(trace), int(steps)))
                 for name, (count, trace, steps) in value["ends"].items()

@@ -80,7 +80,7 @@ def kind(node: Expression, names: StorageNames) -> str:
         case ArrayAccess(array, _):
             return kind(array, names)
         case ArrayValue(elements):
-            inside = {kind(each, names) for each in elements}
+            inside = {kind(element, names) for element in elements}
             return REAL if REAL in inside else min(inside, default=INT)
         case ArrayConstructor(variable, _, body):
             return kind(body, names.bound({variable: Operand(INT, -1)}))
@@ -100,8 +100,8 @@ def shape(node: Expression, names: StorageNames) -> tuple[int, ...]:
             return shape(array, names)[1:]
         case ArrayValue(elements):
             inner: tuple[int, ...] = ()
-            for each in elements:
-                inner = larger(inner, shape(each, names))
+            for element in elements:
+                inner = larger(inner, shape(element, names))
             return (len(elements), *inner)
         case ArrayConstructor(variable, _, body):
             return (length(node, names), *shape(body, names.bound({variable: Operand(INT, -1, 0)})))
@@ -176,8 +176,8 @@ def shape_of(value: Value) -> tuple[int, ...]:
     if not isinstance(value, tuple):
         return ()
     inner: tuple[int, ...] = ()
-    for each in value:
-        inner = larger(inner, shape_of(each))
+    for element in value:
+        inner = larger(inner, shape_of(element))
     return (len(value), *inner)
 
 

@@ -57,7 +57,7 @@ def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
             name = stack[-1]
             body = list(walk(functions[name].body))
             calls = [node.function for node in body if isinstance(node, Call) and node.function in functions]
-            inner = [each for each in dict.fromkeys(calls) if each not in entered] if name not in entered else []
+            inner = [callee for callee in dict.fromkeys(calls) if callee not in entered] if name not in entered else []
             entered.add(name)
             if inner:
                 stack += inner
@@ -65,7 +65,7 @@ def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
             stack.pop()
             if name in sizes:
                 continue
-            sizes[name] = len(body) + sum(sizes.get(each, 1) for each in calls)
+            sizes[name] = len(body) + sum(sizes.get(callee, 1) for callee in calls)
             if sizes[name] > MAX_OPERATIONS:
                 words = f"`{name}` expands to {sizes[name]:,} operations with all calls in it"
                 raise FaultError(f"{words}; at most {MAX_OPERATIONS:,} are compiled", functions[name].origin)

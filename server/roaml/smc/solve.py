@@ -76,7 +76,7 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
     if graph is None:
         return None
     verdicts, choices = graph
-    has_choices = any(len(set(each)) > 1 for each in choices)
+    has_choices = any(len(set(options)) > 1 for options in choices)
     if not is_solvable:
         return Solution(None, None, len(verdicts), has_choices)
     is_negated = goal.formula.count(NOT) % 2 == 1
@@ -106,7 +106,7 @@ def _explored(
         if stops and verdicts[len(choices)] in (TRUE, FALSE):
             choices.append(())
             continue
-        found: dict[_Choice, None] = {}
+        different: dict[_Choice, None] = {}
         for _, branches in explorer.choices(state):
             work -= size * (1 + len(branches))
             if work < 0:
@@ -121,8 +121,8 @@ def _explored(
                     waiting.append(successor)
                 to = number[successor]
                 reached[to] = reached.get(to, 0.0) + probability
-            found[tuple((probability, to) for to, probability in sorted(reached.items()))] = None
-        choices.append(tuple(found))
+            different[tuple((probability, to) for to, probability in sorted(reached.items()))] = None
+        choices.append(tuple(different))
     return verdicts, choices
 
 
@@ -184,7 +184,7 @@ def _components(choices: list[tuple[_Choice, ...]]) -> list[list[int]]:
     lowest = [0] * len(choices)
     open_ = [False] * len(choices)
     path: list[int] = []
-    found: list[list[int]] = []
+    components: list[list[int]] = []
     count = 0
     for root in range(len(choices)):
         if index[root] >= 0:
@@ -202,7 +202,7 @@ def _components(choices: list[tuple[_Choice, ...]]) -> list[list[int]]:
                     count += 1
                     path.append(to)
                     open_[to] = True
-                    work.append((to, iter([each for choice in choices[to] for _, each in choice])))
+                    work.append((to, iter([target for choice in choices[to] for _, target in choice])))
                     break
                 if open_[to]:
                     lowest[state] = min(lowest[state], index[to])
@@ -219,5 +219,5 @@ def _components(choices: list[tuple[_Choice, ...]]) -> list[list[int]]:
                         component.append(last)
                         if last == state:
                             break
-                    found.append(component)
-    return found
+                    components.append(component)
+    return components

@@ -31,22 +31,22 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
         _expect(isinstance(shape.get(key), bool), key)
     _expect(shape.get("accepted") in (None, True, False), "accepted")
     mean = shape.get("mean")
-    if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(each, str) for each in mean[1:]):
+    if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(term, str) for term in mean[1:]):
         raise ValueError("`mean` is not possible")
     _whole(mean[0], "mean")
     for row in _row(shape.get("ends"), "ends").values():
         _expect(isinstance(row, list) and len(row) == 3, "ends")
-        for each in row:
-            _whole(each, "ends")
+        for number in row:
+            _whole(number, "ends")
     examples, shortest = _row(shape.get("examples"), "examples"), _row(shape.get("shortest"), "shortest")
     _expect(set(examples) == {str(verdict) for verdict in _VERDICTS}, "examples")
     _expect(set(shortest) <= set(examples), "shortest")
     for seen in examples.values():
         _expect(isinstance(seen, list) and len(seen) <= KEPT, "examples")
-        for each in seen:
-            _pair(each, "examples")
-    for each in shortest.values():
-        _pair(each, "shortest")
+        for example in seen:
+            _pair(example, "examples")
+    for example in shortest.values():
+        _pair(example, "shortest")
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
@@ -72,16 +72,18 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     for verdict, count in counts.items():
         seen = tally.examples[verdict]
         _expect(len(seen) == min(count, KEPT), "examples")
-        _expect([each.trace for each in seen] == sorted({each.trace for each in seen}), "examples")
-        numbers.update(each.trace for each in seen)
-        total += sum(each.steps for each in seen)
+        _expect([example.trace for example in seen] == sorted({example.trace for example in seen}), "examples")
+        numbers.update(example.trace for example in seen)
+        total += sum(example.steps for example in seen)
         _expect((verdict in tally.shortest) == (count > 0), "shortest")
         if count:
             least: Seen = tally.shortest[verdict]
-            first = min(seen, key=lambda each: (each.steps, each.trace))
+            first = min(seen, key=lambda example: (example.steps, example.trace))
             _expect(least == first if count <= KEPT else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.traces, "shortest")
-        _expect(all(each.trace < tally.traces and each.steps <= options.max_steps for each in seen), "examples")
+        _expect(
+            all(example.trace < tally.traces and example.steps <= options.max_steps for example in seen), "examples"
+        )
     _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
     _expect(total == tally.steps if tally.traces == len(numbers) else total <= tally.steps, "steps")
 
@@ -106,5 +108,5 @@ def _whole(value: Any, key: str) -> None:
 
 def _pair(value: Any, key: str) -> None:
     _expect(isinstance(value, list) and len(value) == 2, key)
-    for each in value:
-        _whole(each, key)
+    for number in value:
+        _whole(number, key)

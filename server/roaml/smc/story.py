@@ -120,9 +120,9 @@ def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) 
 
 
 def _before(places: list[int] | tuple[int, ...], i: int) -> int | None:
-    found = None
+    before = None
     for k in places:
         if k >= i:
             break
-        found = k
-    return found
+        before = k
+    return before

@@ -121,9 +121,9 @@ class _FlowBuilder:
             self.scopes[event] = JaniScope(self.variables, event, params)
         return self.scopes[event]
 
-    def location(self, wanted: str, origin: Origin) -> str:
-        """A new location, named `wanted` unless a state of the user has that name."""
-        name = wanted
+    def location(self, stem: str, origin: Origin) -> str:
+        """A new location, named `stem` unless a state of the user has that name."""
+        name = stem
         while name in self.locations:
             name += "'"
         self.locations[name] = origin
@@ -210,9 +210,9 @@ class _FlowBuilder:
         ways = []
         for numbers in itertools.product(range(self.random_values), repeat=draws):
             drawn = _with_numbers(statement.value, (number / self.random_values for number in numbers))
-            one = _Way(chance, origin, after)
-            one.store(assigned(statement.location, drawn, scope), origin)
-            ways.append(one)
+            drawn_way = _Way(chance, origin, after)
+            drawn_way.store(assigned(statement.location, drawn, scope), origin)
+            ways.append(drawn_way)
         self.drafts.append(_Draft(before, before, None, ways, origin))
         return self.next_way(after, "after-draw", origin)
 

@@ -95,7 +95,7 @@ def _assignments(model: Model) -> Iterator[Assignment]:
 
 def _prefix(name: str, taken: set[str]) -> str:
     prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", name)
-    while any(each.startswith((f"{prefix}__", f"{prefix}.")) or each == prefix for each in taken):
+    while any(other.startswith((f"{prefix}__", f"{prefix}.")) or other == prefix for other in taken):
         prefix += "_"
     return prefix
 
@@ -205,23 +205,23 @@ class _Writer:
 
     def _needed(self) -> set[str]:
         """The registers that the outputs depend on."""
-        wanted = {self.outputs.violated.name}
+        needed = {self.outputs.violated.name}
         if self._is_existence():
             assert self.outputs.satisfied is not None
-            wanted = {self.outputs.satisfied.name}
+            needed = {self.outputs.satisfied.name}
         else:
             for output in (self.outputs.pending, self.outputs.due if self.is_timed else program.FALSE):
-                wanted |= _registers(output)
+                needed |= _registers(output)
         while True:
             more = {
                 name
                 for assignment in self.observer.assignments
-                if assignment.register.name in wanted
+                if assignment.register.name in needed
                 for name in _registers(assignment.value)
             }
-            if more <= wanted:
-                return wanted
-            wanted |= more
+            if more <= needed:
+                return needed
+            needed |= more
 
     def _is_existence(self) -> bool:
         """Whether the property is that something happens at some time, which needs no more than reachability."""

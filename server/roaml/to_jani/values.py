@@ -81,10 +81,10 @@ def all_of(terms: Sequence[Expression]) -> Expression | None:
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
         assert second is not None
         return both(first, second)
-    found: Expression | None = None
+    result: Expression | None = None
     for term in terms:
-        found = both(found, term)
-    return found
+        result = both(result, term)
+    return result
 
 
 def negated(expression: Expression) -> Expression:
@@ -181,7 +181,7 @@ def lengths_as(array: ArrayForm, shape: ArrayShape, dimension: int) -> Expressio
         case Stored():
             return array.lengths(dimension)
         case Chosen():
-            then, otherwise = (lengths_as(each, shape, dimension) for each in (array.then, array.otherwise))
+            then, otherwise = (lengths_as(branch, shape, dimension) for branch in (array.then, array.otherwise))
             return jani.Conditional(array.test, then, otherwise)
         case Listed():
             if dimension == 1:
@@ -255,10 +255,10 @@ class JaniScope:
                     return None
                 return Chosen(self.scalar(expr.test), then, otherwise)
             case Name() | Member() | Index():
-                found = self.stored(expr)
-                if found is not None and found.dimensions > 0:
-                    return found
-                if found is None and isinstance(expr, Index):
+                stored = self.stored(expr)
+                if stored is not None and stored.dimensions > 0:
+                    return stored
+                if stored is None and isinstance(expr, Index):
                     return self.part(expr)
         return None
 
@@ -295,16 +295,16 @@ class JaniScope:
             case Unary():
                 return self.unary(expr)
             case Conditional():
-                test, then, otherwise = (self.scalar(each) for each in (expr.test, expr.then, expr.otherwise))
+                test, then, otherwise = (self.scalar(part) for part in (expr.test, expr.then, expr.otherwise))
                 return jani.Conditional(test, then, otherwise)
             case Call():
                 return self.call(expr)
         raise AssertionError(f"no scalar: {expr!r}")
 
     def read(self, expr: Expr) -> Expression:
-        found = self.stored(expr)
-        if found is not None:
-            return found.value
+        stored = self.stored(expr)
+        if stored is not None:
+            return stored.value
         if isinstance(expr, Index):
             array = self.array(expr.object)
             if array is not None:
@@ -379,9 +379,9 @@ def _equals_literal(stored: ArrayForm, literal: Listed) -> Expression:
 
 def _certain(terms: Sequence[Expression]) -> Expression:
     """The conjunction of at least one term."""
-    found = all_of(terms)
-    assert found is not None
-    return found
+    result = all_of(terms)
+    assert result is not None
+    return result
 
 
 def _equal_literals(left: Listed, right: Listed) -> Expression:
@@ -402,6 +402,6 @@ def _equal_stored(left: Stored, right: Stored) -> Expression:
     for i in range(capacity):
         mine, other = left.element(Integer(i)), right.element(Integer(i))
         unused = jani.Binary(BinaryOperator.LESS_EQUAL, left.lengths(1), Integer(i))
-        each = _equal_stored(mine, other) if mine.dimensions > 0 else equal(mine.value, other.value)
-        same.append(jani.Binary(BinaryOperator.OR, unused, each))
+        is_equal = _equal_stored(mine, other) if mine.dimensions > 0 else equal(mine.value, other.value)
+        same.append(jani.Binary(BinaryOperator.OR, unused, is_equal))
     return _certain(same)

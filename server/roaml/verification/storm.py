@@ -82,8 +82,8 @@ def _value(stormpy: Any, document: dict[str, Any], expression: dict[str, Any]) -
     Raises:
         ExactError: Storm cannot answer.
     """
-    whole = {"op": "filter", "fun": "values", "values": expression, "states": {"op": "initial"}}
-    asked = {**document, "properties": [{"name": "asked", "expression": whole}]}
+    values_formula = {"op": "filter", "fun": "values", "values": expression, "states": {"op": "initial"}}
+    asked = {**document, "properties": [{"name": "asked", "expression": values_formula}]}
     try:
         model, properties = stormpy.parse_jani_model_from_string(json.dumps(asked))
         built = stormpy.build_model(model, properties)
@@ -98,14 +98,14 @@ def _value(stormpy: Any, document: dict[str, Any], expression: dict[str, Any]) -
 def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
     """Whether the value that a property asks for, the minimum or the maximum, satisfies an expectation."""
     threshold = expectation.threshold
-    what, value = ("least", exact.least) if asks_for_minimum(question) else ("greatest", exact.greatest)
+    bound, value = ("least", exact.least) if asks_for_minimum(question) else ("greatest", exact.greatest)
     if threshold.relation is BinaryOperator.EQUAL:
         met = abs(value - threshold.number) <= _SLACK
     else:
         is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
         slack = 0.0 if is_strict else _SLACK
         met = threshold.met(value + slack) or threshold.met(value - slack)
-    return Verdict(expectation, met, True, under="" if met else f"by the {what} value, which is {value:.6g}")
+    return Verdict(expectation, met, True, under="" if met else f"by the {bound} value, which is {value:.6g}")
 
 
 def _inner(formula: dict[str, Any]) -> dict[str, Any]:

@@ -113,8 +113,8 @@ class Turn:
     def _answers(self, message: Message) -> bool:
         return bool(self.protocol) and message.event in (f"{self.protocol}response", f"{self.protocol}halt_response")
 
-    def _hears(self, what: str) -> bool:
-        return self.heard is not None and bool(self.protocol) and self.heard.event == self.protocol + what
+    def _hears(self, kind: str) -> bool:
+        return self.heard is not None and bool(self.protocol) and self.heard.event == self.protocol + kind
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,13 +67,13 @@ class _Link:
     """An automaton, and what it waits for: that each of `others` takes the event, or sends it.
 
     Attributes:
-        wanted: the action that the one before waits for; "" for the first one.
-        event: "" if it waits for a condition; None if it will never do what is wanted.
+        action: the action that the one before waits for; "" for the first one.
+        event: "" if it waits for a condition; None if it never takes the action.
         others: who comes next, and the action that it must do.
     """
 
     automaton: int
-    wanted: str
+    action: str
     event: str | None
     origin: Origin | None
     is_taken: bool = False
@@ -111,8 +111,8 @@ def advice(waiting: Sequence[Wait]) -> str:
 
 def help_line(waiting: Sequence[Wait]) -> str:
     """How to fix it, with the rule that documents it; "" if unknown."""
-    what, code = advice(waiting), rule(waiting)
-    return f"help: {what}{f' [{code}]' if code else ''}" if what else ""
+    text, code = advice(waiting), rule(waiting)
+    return f"help: {text}{f' [{code}]' if code else ''}" if text else ""
 
 
 class _Chain:
@@ -150,10 +150,10 @@ class _Chain:
         """All links from an automaton on, each automaton once, depth first."""
         stack = [(first, action)]
         while stack:
-            number, wanted = stack.pop()
+            number, action = stack.pop()
             if number in self.links:
                 continue
-            self.links[number] = list(self.blocked(number, wanted)) or list(self.waiting(number, wanted))
+            self.links[number] = list(self.blocked(number, action)) or list(self.waiting(number, action))
             stack += reversed([other for link in self.links[number] for other in link.others])
 
     def edges(self, number: int) -> list[Edge]:
@@ -167,7 +167,7 @@ class _Chain:
         action = on_receive(named(event))
         return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
 
-    def blocked(self, number: int, wanted: str) -> Iterator[_Link]:
+    def blocked(self, number: int, awaited_action: str) -> Iterator[_Link]:
         """What an automaton waits for that would send something, or let time pass."""
         links: dict[tuple[str, int], _Link] = {}
         for edge in self.edges(number):
@@ -184,25 +184,27 @@ class _Chain:
                     if event not in self.events:
                         late = [(received_by(action), other)]
                     for name, busy in late:
-                        link = _Link(number, wanted, name, edge.origin, True, ((busy, on_receive(named(name))),))
+                        link = _Link(
+                            number, awaited_action, name, edge.origin, True, ((busy, on_receive(named(name))),)
+                        )
                         links.setdefault((name, busy), link)
         yield from links.values()
 
-    def waiting(self, number: int, wanted: str) -> Iterator[_Link]:
+    def waiting(self, number: int, action: str) -> Iterator[_Link]:
         """What an automaton waits for that stays in a state until it receives something."""
-        best = self.awaited(number, wanted)
+        best = self.awaited(number, action)
         if not best:
             automaton, here = self.automata[number], self.locations[number]
             origin = next((location.origin for location in automaton.locations if location.name == here), None)
-            yield _Link(number, wanted, None, origin)
+            yield _Link(number, action, None, origin)
         active = {event: edge for event, edge in best.items() if not self.is_asleep(event, number)}
         for event, edge in (active or best).items():
             if self.is_pending(event):
                 others = tuple((other, on_receive(named(event))) for other in self.not_taking(event) if other != number)
-                yield _Link(number, wanted, event, edge.origin, True, others)
+                yield _Link(number, action, event, edge.origin, True, others)
             else:
                 others = tuple((sender, on_send(named(event))) for sender in self.senders(event))
-                yield _Link(number, wanted, event, edge.origin, others=others)
+                yield _Link(number, action, event, edge.origin, others=others)
 
     def senders(self, event: str) -> list[int]:
         return self.does.get(on_send(named(event)), []) if event else []
@@ -218,9 +220,9 @@ class _Chain:
             for sender in senders
         )
 
-    def awaited(self, number: int, wanted: str) -> dict[str, Edge]:
+    def awaited(self, number: int, action: str) -> dict[str, Edge]:
         """The events that lead an automaton in the fewest steps to what is required; "" for a condition."""
-        distances = self.distances(number, wanted)
+        distances = self.distances(number, action)
         here = self.locations[number]
         ways: list[tuple[tuple[int, int], Edge]] = []
         for edge in self.edges(number):
@@ -232,12 +234,12 @@ class _Chain:
         least = min((cost for cost, _ in ways), default=None)
         return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
 
-    def distances(self, number: int, wanted: str) -> dict[str, int]:
+    def distances(self, number: int, action: str) -> dict[str, int]:
         """Location -> the number of events that lead the automaton from there to one where it can do what is
         required."""
         edges = self.automata[number].edges
         distances: dict[str, int] = {}
-        queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == wanted)]
+        queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == action)]
         before: dict[str, list[Edge]] = {}
         for edge in edges:
             for way in edge.destinations:
@@ -258,16 +260,16 @@ class _Chain:
         if automaton.name.startswith(TREE_ROOT_PREFIX) or all(not link.others for link in self.links[number]):
             return True
         if automaton.name.startswith((SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX)):
-            return any(received_by(link.wanted) for link in self.links[number])
+            return any(received_by(link.action) for link in self.links[number])
         return not is_inner(automaton)
 
     def who(self, number: int) -> str:
         name = self.automata[number].name
         if name.startswith(TREE_ROOT_PREFIX):
             return THE_TREE
-        for prefix, what in ((SERVICE_HANDLER_PREFIX, "service"), (ACTION_HANDLER_PREFIX, "action")):
+        for prefix, kind in ((SERVICE_HANDLER_PREFIX, "service"), (ACTION_HANDLER_PREFIX, "action")):
             if name.startswith(prefix):
-                return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
+                return f"the {kind} `/{name.removeprefix(prefix).replace('__', '/')}`"
         return {CLOCK: THE_CLOCK, BLACKBOARD: THE_BLACKBOARD}.get(name, name_of(name))
 
     def shown_from(self, number: int, event: str) -> tuple[str, str]:
@@ -292,24 +294,24 @@ class _Chain:
         them = " and ".join(others)
         unanswered, origin, for_timer = "", link.origin, False
         if link.event is None:
-            does = "takes" if received_by(link.wanted) else "sends"
-            event = received_by(link.wanted) or sent_by(link.wanted)
-            what = f"stays{where} and never {does} {said(event, who, self.clients())}"
+            does = "takes" if received_by(link.action) else "sends"
+            event = received_by(link.action) or sent_by(link.action)
+            text = f"stays{where} and never {does} {said(event, who, self.clients())}"
         elif not link.event:
-            what = f"waits{where} for a condition that can never become true"
+            text = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
-            what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
+            text = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
         elif _is_answer(link.event):
             unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
             origin = self.place_in_tree(shown[0][1]) or origin
-            what = f"waits{where} for {them} to answer its {unanswered}"
+            text = f"waits{where} for {them} to answer its {unanswered}"
         else:
             senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
-            what = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
+            text = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
-                what += ", which ticks when the clock goes on"
-        return Wait(who, what, origin, self.automata[number].name, here, them, unanswered, for_timer)
+                text += ", which ticks when the clock goes on"
+        return Wait(who, text, origin, self.automata[number].name, here, them, unanswered, for_timer)
 
     def place_in_tree(self, answer: str) -> Origin | None:
         """The place in the tree of the node that sends an answer: the node that ticks it is there."""

@@ -334,11 +334,11 @@ class _Parser:
                 self.close_unclosed(at)
             self.close(tag, name_span)
         elif resemble(name, self.names[-1]):
-            wanted = self.names[-1]
+            open_name = self.names[-1]
             self.report(
                 name_span,
-                f"`</{shown(name)}>` does not match `<{shown(wanted)}>`",
-                Fix(f"Write `{shown(wanted)}`", (TextEdit(name_span, wanted),)),
+                f"`</{shown(name)}>` does not match `<{shown(open_name)}>`",
+                Fix(f"Write `{shown(open_name)}`", (TextEdit(name_span, open_name),)),
                 related=(Related(self.stack[-1].name_span, "opened here"),),
             )
             self.close(tag, name_span)
@@ -356,9 +356,9 @@ class _Parser:
         if not self.stack:
             self.stray(tag, "the end tag has no name", Fix("Remove it", (TextEdit(tag, ""),)))
             return tag.end
-        wanted = self.names[-1]
-        write = Fix(f"Write `</{shown(wanted)}>`", (TextEdit(tag, f"</{wanted}>"),))
-        self.report(tag, f"the end tag has no name; the open element is `<{shown(wanted)}>`", write)
+        open_name = self.names[-1]
+        write = Fix(f"Write `</{shown(open_name)}>`", (TextEdit(tag, f"</{open_name}>"),))
+        self.report(tag, f"the end tag has no name; the open element is `<{shown(open_name)}>`", write)
         self.close(tag, Span(tag.start + 2, tag.start + 2))
         return tag.end
 
@@ -627,11 +627,11 @@ def document_type_end(text: str, at: int) -> int:
     return len(text) if end < 0 else end + 1
 
 
-def resemble(name: str, wanted: str) -> bool:
-    """Whether the end tag `name` was probably meant to close `wanted`."""
-    if name.rpartition(":")[2] == wanted.rpartition(":")[2]:
+def resemble(name: str, open_name: str) -> bool:
+    """Whether the end tag `name` was probably meant to close `open_name`."""
+    if name.rpartition(":")[2] == open_name.rpartition(":")[2]:
         return True
-    return are_similar(name, wanted)
+    return are_similar(name, open_name)
 
 
 def shown(name: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from roaml.diagnostics import Diagnostic, Fix
-from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, CodeAction, WorkspaceEdit, whole
+from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, CodeAction, WorkspaceEdit, text_edits
 from roaml.ide.code_actions.quick_fixes import repairs
 from roaml.ide.code_actions.refactorings import refactorings
 from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
@@ -26,13 +26,13 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str
     """
     if is_wanted(QUICK_FIX):
         everything = snapshot.checker.diagnostics(path)
-        found = [d for d in everything if d.span.start <= place.end and place.start <= d.span.end]
-        for diagnostic in found:
+        diagnostics = [d for d in everything if d.span.start <= place.end and place.start <= d.span.end]
+        for diagnostic in diagnostics:
             yield from quick_fixes(snapshot, path, diagnostic)
-        for code in dict.fromkeys(diagnostic.code for diagnostic in found):
+        for code in dict.fromkeys(diagnostic.code for diagnostic in diagnostics):
             yield from _fix_all_of(snapshot, path, everything, code)
     if is_wanted(EXTRACT) or is_wanted(REWRITE):
-        yield from (each for each in refactorings(snapshot, path, place) if is_wanted(each.kind))
+        yield from (action for action in refactorings(snapshot, path, place) if is_wanted(action.kind))
     if is_wanted(FIX_ALL):
         yield from _fix_file(snapshot, path)
 
@@ -51,9 +51,9 @@ def _made(path: str, fix: Fix) -> WorkspaceEdit:
     return WorkspaceEdit({path: fix.edits})
 
 
-def _fix_all_of(snapshot: Snapshot, path: str, found: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
+def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
     """A fix of all findings of a rule in the file, if more than one has an obvious fix."""
-    mendable = [diagnostic for diagnostic in found if diagnostic.code == code and preferred_fix(diagnostic)]
+    mendable = [diagnostic for diagnostic in diagnostics if diagnostic.code == code and preferred_fix(diagnostic)]
     if len(mendable) > 1:
 
         def choose(diagnostic: Diagnostic) -> Fix | None:
@@ -77,4 +77,4 @@ def _fix_file(snapshot: Snapshot, path: str) -> Iterator[CodeAction]:
 def _all(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> WorkspaceEdit:
     source = snapshot.analysis.source(path)
     after = fix_all(snapshot, (path,), choose, careful=careful)
-    return WorkspaceEdit({path: whole(source.text, after[path])}) if source and path in after else WorkspaceEdit()
+    return WorkspaceEdit({path: text_edits(source.text, after[path])}) if source and path in after else WorkspaceEdit()

@@ -58,7 +58,7 @@ def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
     return lambda: change
 
 
-def whole(before: str, after: str) -> tuple[TextEdit, ...]:
+def text_edits(before: str, after: str) -> tuple[TextEdit, ...]:
     """One edit that changes `before` to `after` and keeps their common beginning and end."""
     if before == after:
         return ()

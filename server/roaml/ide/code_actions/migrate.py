@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit, whole
+from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit, text_edits
 from roaml.project.migrate import CODES, migrate
 from roaml.project.workspace import Snapshot
 from roaml.text import Span
@@ -17,10 +17,10 @@ def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
     """Offered at spellings of the older dialect, in a file of a system of that dialect."""
     analysis = snapshot.analysis
     systems = analysis.memberships.get(path, ())
-    if not any((system := analysis.system(each)) is not None and system.older for each in systems):
+    if not any((system := analysis.system(owner)) is not None and system.older for owner in systems):
         return
-    found = (d for d in snapshot.checker.diagnostics(path) if d.code in CODES)
-    if any(d.span.start <= place.end and place.start <= d.span.end for d in found):
+    older_spellings = (d for d in snapshot.checker.diagnostics(path) if d.code in CODES)
+    if any(d.span.start <= place.end and place.start <= d.span.end for d in older_spellings):
         yield CodeAction(TITLE, REWRITE, lambda: _convert(snapshot, path), resources=("rename",))
 
 
@@ -30,9 +30,9 @@ def _convert(snapshot: Snapshot, path: str) -> WorkspaceEdit:
     systems = list(analysis.memberships.get(path, ()))
     for system in systems:
         for file in analysis.files_of(system):
-            systems += [each for each in analysis.memberships.get(file, ()) if each not in systems]
-    found = migrate(systems, snapshot.with_texts)
+            systems += [owner for owner in analysis.memberships.get(file, ()) if owner not in systems]
+    migrated = migrate(systems, snapshot.with_texts)
     return WorkspaceEdit(
-        {each.path: edits for each in found if (edits := whole(each.before, each.after))},
-        renamed={each.path: each.new_path for each in found if each.new_path != each.path},
+        {file.path: edits for file in migrated if (edits := text_edits(file.before, file.after))},
+        renamed={file.path: file.new_path for file in migrated if file.new_path != file.path},
     )

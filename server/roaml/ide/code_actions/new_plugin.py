@@ -47,7 +47,7 @@ def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target
     ports = [(*port_of(linked, setting),) for setting in node.ports]
     text = new_file.plugin(node.plugin.value, ports, child=bool(node.children))
     edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", target) for s in systems}
-    return WorkspaceEdit({s: each for s, each in edits.items() if each}, {target: text})
+    return WorkspaceEdit({s: changes for s, changes in edits.items() if changes}, {target: text})
 
 
 def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
@@ -57,8 +57,8 @@ def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]
     if variable is None:
         return "in", setting.key.value, _type_of(setting.value.value)
     bound = system.blackboard.get(variable.removeprefix("@"), ()) if system else ()
-    types = [each.port.type for each in bound if each.port.type != "any"]
-    direction = "in" if any(each.port.written for each in bound) else "out"
+    types = [use.port.type for use in bound if use.port.type != "any"]
+    direction = "in" if any(use.port.written for use in bound) else "out"
     return direction, setting.key.value, types[0] if types else "int32"
 
 

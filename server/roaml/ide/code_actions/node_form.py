@@ -30,12 +30,14 @@ def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[CodeActio
     if not any(tag.open_span.start <= place.start and place.end <= tag.open_span.end for tag in tags):
         return
     for compact in (True, False):
-        found = [n for tree in file.trees for n in nodes(tree) if n.compact is not compact]
-        if any(_other_form(analysis, path, node) for node in found):
+        convertible = [n for tree in file.trees for n in nodes(tree) if n.compact is not compact]
+        if any(_other_form(analysis, path, node) for node in convertible):
             form = "compact" if compact else "explicit"
 
-            def make(found: list[TreeNode] = found) -> WorkspaceEdit:
-                return _change(analysis, path, [edit for node in found for edit in _other_form(analysis, path, node)])
+            def make(convertible: list[TreeNode] = convertible) -> WorkspaceEdit:
+                return _change(
+                    analysis, path, [edit for node in convertible for edit in _other_form(analysis, path, node)]
+                )
 
             yield CodeAction(f"Write all nodes in their {form} form", REWRITE, make)
 
@@ -69,8 +71,8 @@ def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]
 def _category(analysis: Analysis, path: str, node: TreeNode) -> str:
     """The category of the node: as `<TreeNodesModel>` declares, otherwise by the number of its children."""
     name = node.plugin.value if node.plugin else ""
-    for each in analysis.trees_from(path):
-        file = analysis.tree(each)
+    for tree_path in analysis.trees_from(path):
+        file = analysis.tree(tree_path)
         for model in file.models if file else ():
             if model.id is not None and model.id.value == name and model.kind in EXPLICIT:
                 return model.kind

@@ -71,7 +71,7 @@ def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAc
     if listed is None:
         return
     there = {f.path for f in analysis.listed(system)}
-    of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.wanted)
+    of_kind = (p for p in snapshot.listed if p not in there and analysis.kind(p) is listed.required_kind)
     yield from _other_files(analysis, diagnostic, listed.path, of_kind)
     text = _NEW.get(listed.input.type.value if listed.input.type else "")
     is_missing = diagnostic.facts == UnusableFile(UnreadableReason.MISSING)
@@ -118,8 +118,8 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
             by_name.setdefault(name_of(other), []).append(other)
     name = name_of(path)
     close = dict.fromkeys((*([name] if name in by_name else []), *close_names(name, by_name)))
-    found = [other for each in close for other in by_name[each]]
-    for number, other in enumerate(found[:_MAX_FILES]):
+    similar = [other for file_name in close for other in by_name[file_name]]
+    for number, other in enumerate(similar[:_MAX_FILES]):
         new = new_file.relative(other, diagnostic.path, [written])
         change = WorkspaceEdit({diagnostic.path: (TextEdit(diagnostic.span, _attribute(new)),)})
         yield _action(diagnostic, f"Change to `{new}`", known(change), preferred=number == 0)
@@ -355,12 +355,12 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     if not new:
         return
     new = new if not new[0].isdigit() else f"n{new}"
-    found = rename(analysis, diagnostic.path, diagnostic.span.start, new)
-    if not isinstance(found, Renaming):
+    renaming = rename(analysis, diagnostic.path, diagnostic.span.start, new)
+    if not isinstance(renaming, Renaming):
         new = f"{new}_value"
-        found = rename(analysis, diagnostic.path, diagnostic.span.start, new)
-    if isinstance(found, Renaming):
-        change = WorkspaceEdit(found.edits)
+        renaming = rename(analysis, diagnostic.path, diagnostic.span.start, new)
+    if isinstance(renaming, Renaming):
+        change = WorkspaceEdit(renaming.edits)
         yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
 
 

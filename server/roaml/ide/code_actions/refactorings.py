@@ -115,8 +115,8 @@ def _nodes(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
 
 
 def _is_unknown(analysis: Analysis, path: str, node: TreeNode) -> bool:
-    systems = [system for each in analysis.memberships.get(path, ()) if (system := analysis.system(each))]
-    trees = [tree.id for each in analysis.trees_from(path) if (f := analysis.tree(each)) for tree in f.trees]
+    systems = [system for owner in analysis.memberships.get(path, ()) if (system := analysis.system(owner))]
+    trees = [tree.id for tree_path in analysis.trees_from(path) if (f := analysis.tree(tree_path)) for tree in f.trees]
     name = node.plugin.value if node.plugin else ""
     is_tree = any(tree is not None and tree.value == name for tree in trees)
     return bool(systems) and not is_tree and all(system.plugin(name)[1] is None for system in systems)

@@ -48,8 +48,8 @@ def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> C
     place = place_at(file, offset)
     if place is None or (trigger == " " and not isinstance(place, AttributeName)):
         return None
-    found = _at(Request(snapshot, path, offset, file), place)
-    return None if found is None else _shortened(file.document.text, offset, *found)
+    span_and_items = _at(Request(snapshot, path, offset, file), place)
+    return None if span_and_items is None else _shortened(file.document.text, offset, *span_and_items)
 
 
 def _at(request: Request, place: Place) -> tuple[Span, Iterable[CompletionItem]] | None:
@@ -65,10 +65,10 @@ def _at(request: Request, place: Place) -> tuple[Span, Iterable[CompletionItem]]
             return (place.span, [CompletionItem(name, ItemKind.ELEMENT, f"{escaped(name)}{close}")]) if name else None
         case AttributeName():
             bare = place.attribute is None or not place.attribute.has_value
-            found = attributes(request, place.parents, place.each, bare=bare)
+            attribute_items = attributes(request, place.parents, place.typed, bare=bare)
             if place.attribute is None and request.file.document.text[request.offset : request.offset + 1].isalnum():
-                return place.span, [_with(item, f"{item.snippet} ") for item in found]
-            return place.span, found
+                return place.span, [_with(item, f"{item.snippet} ") for item in attribute_items]
+            return place.span, attribute_items
         case AttributeValue():
             return _value(request, place)
         case Content():
@@ -81,19 +81,19 @@ def _end(parent: Typed, lead: str) -> CompletionItem:
 
 
 def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[CompletionItem]] | None:
-    if place.each.type is None and not any(each.element.name == "BehaviorTree" for each in place.parents):
+    if place.typed.type is None and not any(typed.element.name == "BehaviorTree" for typed in place.parents):
         return None
-    type_ = place.each.type or request.file.grammar.elements["Action"]
-    subject = Subject(place.each.element, type_, place.parents)
-    found = in_attribute(request, subject, place.attribute.name, place.span)
-    if found is None:
+    type_ = place.typed.type or request.file.grammar.elements["Action"]
+    subject = Subject(place.typed.element, type_, place.parents)
+    span_and_items = in_attribute(request, subject, place.attribute.name, place.span)
+    if span_and_items is None:
         return None
-    span, items = found
+    span, items = span_and_items
     if not place.quote:
         return span, [_with(item, f'"{item.snippet}"') for item in items]
     if place.quote == "'":
         return span, [_with(item, item.snippet.replace("'", '"')) for item in items]
-    return found
+    return span_and_items
 
 
 def _with(item: CompletionItem, insert: str) -> CompletionItem:
@@ -110,10 +110,10 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
         if not span.contains(request.offset):
             span = Span(request.offset, request.offset)
         subject = Subject(parent.element, parent.type, place.parents[:-1])
-        found = in_text(request, subject, span)
-        if found is not None and (text.strip() or not parent.type.children):
-            return found
-        inner = [*(found[1] if found else ()), *_tags(request, place)]
+        in_content = in_text(request, subject, span)
+        if in_content is not None and (text.strip() or not parent.type.children):
+            return in_content
+        inner = [*(in_content[1] if in_content else ()), *_tags(request, place)]
         return Span(request.offset, request.offset), inner
     if parent is None and not request.file.document.text.strip():
         return place.span, [*documents(request.path), *_tags(request, place)]
@@ -122,14 +122,14 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
 
 def _tags(request: Request, place: Content) -> list[CompletionItem]:
     """Whole elements, where not even the `<` has been typed."""
-    found = [
+    items = [
         CompletionItem(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
         for i in elements(request, place.parents, bare=True)
     ]
     if place.parents and not place.parents[-1].element.complete:
         end = _end(place.parents[-1], "</")
-        found.append(end)
-    return found
+        items.append(end)
+    return items
 
 
 def _tag(item: CompletionItem) -> str:

@@ -17,13 +17,13 @@ from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
 
 
-def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bare: bool) -> Iterator[CompletionItem]:
+def attributes(request: Request, parents: tuple[Typed, ...], typed: Typed, *, bare: bool) -> Iterator[CompletionItem]:
     """The attributes that may be inserted in a start tag.
 
     Args:
         bare: insert the name with `=` and a value; otherwise only the name.
     """
-    element, type_ = each
+    element, type_ = typed
     is_node = request.file.grammar is BEHAVIOR_TREE and any(p.element.name == "BehaviorTree" for p in parents)
     if type_ is None and is_node:
         type_ = _plugin_type()

@@ -40,10 +40,10 @@ def document(analysis: Analysis, about: Symbol) -> str:
             type_ = _element(grammar, parent, element)
             attribute = type_.attributes.get(name) if type_ else None
             choices = attribute.simple.choices if attribute else ()
-            return next((describe_language.choice(each) for each in choices if each.value == about.name), "")
+            return next((describe_language.choice(choice) for choice in choices if choice.value == about.name), "")
         case SymbolKind.FUNCTION:
-            found = FUNCTIONS.get(about.name)
-            return describe_language.function(found) if found else ""
+            math_function = FUNCTIONS.get(about.name)
+            return describe_language.function(math_function) if math_function else ""
         case SymbolKind.EVENT_VARIABLE:
             return describe_language.EVENT_VARIABLES.get(about.name, "")
         case SymbolKind.BASE_TYPE:

@@ -39,7 +39,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
         return
     parent = parents[-1]
     if parent.type is None:
-        if request.forest is not None and any(each.element.name == "BehaviorTree" for each in parents):
+        if request.forest is not None and any(typed.element.name == "BehaviorTree" for typed in parents):
             yield from _tree_nodes(request, parents, bare=bare)  # in a node that only a library or a model knows
         return
     if bare and "field" in parent.type.children:
@@ -91,8 +91,8 @@ def likely(request: Request, subject: Subject, attribute: AttributeType) -> list
     """The likely value of an attribute, if it has only a few choices."""
     if attribute.value == "ros-type":
         return []
-    found = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
-    return found if len(found) <= _MAX_CHOICES else []
+    labels = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
+    return labels if len(labels) <= _MAX_CHOICES else []
 
 
 def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
@@ -130,9 +130,9 @@ def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
 def _has_no_handle(request: Request, type_: ElementType) -> bool:
     """Whether an element uses a ROS interface or timer and the machine declares none."""
     name = type_.attributes.get("name")
-    wanted = set(name.refers) & HANDLES if name else set()
+    required_kinds = set(name.refers) & HANDLES if name else set()
     declared = {declaration.kind for declaration in request.machine.declarations} if request.machine else set()
-    return bool(wanted) and not wanted & declared
+    return bool(required_kinds) and not required_kinds & declared
 
 
 # ------------------------------------------------------------------------ trees
@@ -147,7 +147,7 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
         insert = _plugin(request, name, grammar, has_children=has_children) if bare else ""
         yield CompletionItem(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
     for name in request.trees.trees if bare else ():
-        around = next((each.element.get("ID") for each in parents if each.element.name == "BehaviorTree"), None)
+        around = next((typed.element.get("ID") for typed in parents if typed.element.name == "BehaviorTree"), None)
         if name and (around is None or around.value != name):
             about = request.trees.tree_symbol(request.path, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))

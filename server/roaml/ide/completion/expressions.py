@@ -49,13 +49,17 @@ def beginning(text: str, start: int, offset: int) -> Beginning | None:
     before = text[start:offset]
     if _in_string(before):
         return None
-    found = _NAME.search(before)
+    last_name = _NAME.search(before)
     behind = _BEHIND.match(text, offset)
     assert behind is not None
-    if found is None or before[: found.start()].endswith("&") or before[found.start() - 1 : found.start()].isdigit():
+    if (
+        last_name is None
+        or before[: last_name.start()].endswith("&")
+        or before[last_name.start() - 1 : last_name.start()].isdigit()
+    ):
         return None
-    span = Span(start + found.start(), behind.end())
-    lead = before[: found.start()].rstrip()
+    span = Span(start + last_name.start(), behind.end())
+    lead = before[: last_name.start()].rstrip()
     if not lead.endswith("."):
         return Beginning(span, None)
     object_ = _object(lead[:-1].rstrip())
@@ -108,8 +112,8 @@ def in_expression(
         return begun.span, list(_members(request, begun.object, scope))
     if part == "location":
         return begun.span, [_variable(request, name, type_, None) for name, type_ in variables.items()]
-    wanted = _wanted(request, subject, part)
-    items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
+    required_type = _wanted(request, subject, part)
+    items = [_variable(request, name, type_, required_type) for name, type_ in variables.items()]
     items += [
         CompletionItem(
             name,
@@ -127,7 +131,8 @@ def in_expression(
         if name in STATUSES
     ]
     items += [
-        CompletionItem(word, ItemKind.VALUE, detail="bool", rank=_fitting(BOOL, wanted)) for word in ("true", "false")
+        CompletionItem(word, ItemKind.VALUE, detail="bool", rank=_fitting(BOOL, required_type))
+        for word in ("true", "false")
     ]
     items.append(CompletionItem("Math", ItemKind.FUNCTION, detail="functions", rank=Rank.LATE))
     items += [_function(function, "Math.", Rank.LATE) for function in FUNCTIONS.values()]
@@ -179,17 +184,17 @@ def _event_variables(request: Request, part: str) -> Mapping[str, Type]:
     return known
 
 
-def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> CompletionItem:
+def _variable(request: Request, name: str, type_: Type, required_type: Type | None) -> CompletionItem:
     scope = request.chart.scope if request.chart else ""
     about = variable(request.path, name, scope)
-    return CompletionItem(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, wanted))
+    return CompletionItem(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, required_type))
 
 
-def _fitting(type_: Type, wanted: Type | None) -> Rank:
+def _fitting(type_: Type, required_type: Type | None) -> Rank:
     """Values of the required type first; those that contain it, or can be compared, keep their order."""
-    if wanted is None or UNKNOWN in (wanted, type_):
+    if required_type is None or UNKNOWN in (required_type, type_):
         return Rank.USUAL
-    return Rank.BEST if fits(type_, wanted) else Rank.USUAL
+    return Rank.BEST if fits(type_, required_type) else Rank.USUAL
 
 
 def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Iterator[CompletionItem]:
@@ -232,7 +237,7 @@ def _wanted(request: Request, subject: Subject, part: str) -> Type | None:
     known = subject.type.attributes.get(part)
     if known is not None and known.value_type in ("bool", "int"):
         return BOOL if known.value_type == "bool" else INT
-    around = [each.element for each in subject.parents]
+    around = [typed.element for typed in subject.parents]
     if known is not None and subject.element is not None:
         around.append(subject.element)  # otherwise the `<expr>` inside of the element is meant
     if not around:

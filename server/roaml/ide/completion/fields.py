@@ -95,13 +95,13 @@ def _fields(request: Request, statement: RosSend) -> Mapping[str, tuple[Type, st
     """The dotted paths of all leaf fields, with their types and the message that contains them."""
     declaration = find_handle(request.machine, statement) if request.machine else None
     part = _part(request, declaration, statement.type)
-    found: dict[str, tuple[Type, str]] = {}
+    types_by_path: dict[str, tuple[Type, str]] = {}
     for path, type_ in leaves(part) if part else ():
         owner: Type | None = part
         for name in path[:-1]:
             owner = owner.member(name) if isinstance(owner, Struct) else None
-        found[".".join(path)] = (type_, owner.name if isinstance(owner, Struct) else "")
-    return found
+        types_by_path[".".join(path)] = (type_, owner.name if isinstance(owner, Struct) else "")
+    return types_by_path
 
 
 def _interface(request: Request, declaration: Declaration | None) -> InterfaceType | None:

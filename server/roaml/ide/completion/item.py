@@ -88,7 +88,7 @@ _STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\
 
 def plain(snippet: str) -> str:
     """The text of a snippet for editors without snippets: the first choice, the default, or nothing."""
-    return _STOP.sub(lambda found: found[1] or _unescaped(found[2] or found[3] or ""), snippet)
+    return _STOP.sub(lambda stop: stop[1] or _unescaped(stop[2] or stop[3] or ""), snippet)
 
 
 def _unescaped(text: str) -> str:

@@ -124,7 +124,7 @@ def _keys(place: _Place) -> Iterator[CompletionItem]:
 def _with_value(grammar: JsonGrammar, name: str, schema: Schema) -> str:
     made = Snippet().text(f'"{name}": ')
     choices = grammar.choices(schema)
-    types = {each["type"] for each in grammar.applying(schema, None) if isinstance(each.get("type"), str)}
+    types = {applying["type"] for applying in grammar.applying(schema, None) if isinstance(applying.get("type"), str)}
     if len(choices) == 1:
         return str(made.text(f'"{choices[0]}"'))
     if choices or "string" in types:

@@ -42,12 +42,12 @@ def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[
     else:
         defined: set[Symbol] = set()
         used: dict[Symbol, None] = {}
-        for each in uses(request.analysis, request.path, request.system_path).all:
-            if each.symbol.kind is kind:
-                if each.defines:
-                    defined.add(each.symbol)
+        for occurrence in uses(request.analysis, request.path, request.system_path).all:
+            if occurrence.symbol.kind is kind:
+                if occurrence.defines:
+                    defined.add(occurrence.symbol)
                 else:
-                    used[each.symbol] = None
+                    used[occurrence.symbol] = None
         for symbol in used:
             if symbol not in defined:
                 yield CompletionItem(
@@ -92,9 +92,9 @@ def _ports(request: Request, subject: Subject) -> Iterator[CompletionItem]:
                 about = Symbol(path, SymbolKind.PORT, declared.key)
                 yield CompletionItem(declared.key, ItemKind.PORT, detail=declared.type, about=about)
         return
-    wanted = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
+    direction = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
     for port in request.machine.ports:
-        if port.key is not None and wanted in (None, port.direction):
+        if port.key is not None and direction in (None, port.direction):
             detail = port.type.text if port.type else ""
             yield CompletionItem(
                 port.key.value,
@@ -113,7 +113,9 @@ def _machine_names(request: Request) -> Iterator[CompletionItem]:
 
 
 def _unknown_plugins(system: System) -> Iterator[str]:
-    yield from dict.fromkeys(each.plugin for each in system.instances if system.plugin(each.plugin)[1] is None)
+    yield from dict.fromkeys(
+        instance.plugin for instance in system.instances if system.plugin(instance.plugin)[1] is None
+    )
 
 
 def _missing_ports(request: Request) -> Iterator[CompletionItem]:
@@ -206,29 +208,29 @@ def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[Completi
 
 def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
     """The plugins that the systems of a tree file list: name -> file and outline."""
-    found: dict[str, tuple[str, MachineOutline]] = {}
+    by_name: dict[str, tuple[str, MachineOutline]] = {}
     for system in request.systems:
         for path, outline in system.plugins:
             if outline.name:
-                found.setdefault(outline.name, (path, outline))
-    return found
+                by_name.setdefault(outline.name, (path, outline))
+    return by_name
 
 
 def _plugin_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
         yield CompletionItem(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
-    wanted = subject.type.name.lower()
+    category = subject.type.name.lower()
     if request.forest is not None:
         for name in dict.fromkeys(request.forest.names):
             known = request.forest.node(name)
-            if known is not None and known.kind.value == wanted:
+            if known is not None and known.kind.value == category:
                 about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
                 yield CompletionItem(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
         return
     for name in builtin_plugins():
         type_ = request.file.grammar.elements[name]
-        if type_.node == wanted:
+        if type_.node == category:
             yield CompletionItem(
                 name,
                 ItemKind.PLUGIN,

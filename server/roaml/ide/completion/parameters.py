@@ -15,7 +15,7 @@ from roaml.roles import SymbolKind
 def parameter_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """For the name of a `<param>`: the parameters that the `<send>` around the caret does not send yet."""
     for statement in request.chart.statements if request.chart else ():
-        if isinstance(statement, Send) and any(each.element is statement.element for each in subject.parents):
+        if isinstance(statement, Send) and any(typed.element is statement.element for typed in subject.parents):
             yield from _missing(request, statement, subject)
 
 

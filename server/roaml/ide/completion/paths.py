@@ -32,13 +32,13 @@ _BY_TYPE = {
 def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """The files that may be meant; those that this file does not refer to yet, first."""
     analysis = request.analysis
-    wanted, plugin = _wanted(subject)
+    kinds, plugin = _wanted(subject)
     named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}
     for path in request.snapshot.candidates():
-        if path == request.path or analysis.kind(path) not in wanted:
+        if path == request.path or analysis.kind(path) not in kinds:
             continue
         rank = Rank.LATE if path in named else Rank.USUAL
-        if FileKind.MACHINE in wanted and path.endswith(MACHINE_EXTENSIONS):
+        if FileKind.MACHINE in kinds and path.endswith(MACHINE_EXTENSIONS):
             machine = analysis.machine(path)
             fitting = plugin is None or machine is None or _is_plugin(machine) == plugin
             rank = Rank.LAST if not fitting else Rank.LIKELY if rank is Rank.USUAL else rank

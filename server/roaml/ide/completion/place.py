@@ -41,10 +41,10 @@ class EndTag:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttributeName:
-    """The name of an attribute of the element `each`; `attribute` is what stands there already."""
+    """The name of an attribute of the element `typed`; `attribute` is the attribute that is already there."""
 
     parents: tuple[Typed, ...]
-    each: Typed
+    typed: Typed
     span: Span
     attribute: Attribute | None
 
@@ -54,7 +54,7 @@ class AttributeValue:
     """The value of an attribute; `quote` is "" if it has none yet."""
 
     parents: tuple[Typed, ...]
-    each: Typed
+    typed: Typed
     attribute: Attribute
     span: Span
     quote: str
@@ -78,8 +78,8 @@ def place_at(file: XmlFile, offset: int) -> Place | None:
     path = tuple(path_at(file, offset))
     if _is_skipped(document, path, offset):
         return None
-    if path and (found := _in_start_tag(document.text, path, offset)) is not None:
-        return found[0]
+    if path and (in_start_tag := _in_start_tag(document.text, path, offset)) is not None:
+        return in_start_tag[0]
     if tag := _TAG.search(document.text, max(0, offset - 200), offset):
         return _tag(document, path, tag, offset)
     if path and _in_end_tag(path[-1].element, offset):
@@ -99,8 +99,8 @@ def _is_skipped(document: Document, path: tuple[Typed, ...], offset: int) -> boo
 
 def _in_start_tag(text: str, path: tuple[Typed, ...], offset: int) -> tuple[Place | None] | None:
     """The place in the start tag at the caret; `None` if the caret is not in it."""
-    each, parents = path[-1], path[:-1]
-    element = each.element
+    typed, parents = path[-1], path[:-1]
+    element = typed.element
     end = element.open_span.end
     is_ended = text[:end].endswith(">")
     if not element.open_span.start < offset or (offset >= end if is_ended else offset > end):
@@ -111,16 +111,16 @@ def _in_start_tag(text: str, path: tuple[Typed, ...], offset: int) -> tuple[Plac
         return (StartTag(parents, element.name_span, bare),)
     for attribute in element.attributes:
         if attribute.name_span.start < offset <= attribute.name_span.end:
-            return (AttributeName(parents, each, attribute.name_span, attribute),)
+            return (AttributeName(parents, typed, attribute.name_span, attribute),)
         if attribute.has_value and attribute.value_span.start <= offset <= attribute.value_span.end:
             before = text[attribute.value_span.start - 1]
             quote = before if before in "\"'" else ""
-            return (AttributeValue(parents, each, attribute, attribute.value_span, quote),)
+            return (AttributeValue(parents, typed, attribute, attribute.value_span, quote),)
         if offset == attribute.span.end and text[offset - 1] == "=":
-            return (AttributeValue(parents, each, attribute, Span(offset, offset), ""),)
+            return (AttributeValue(parents, typed, attribute, Span(offset, offset), ""),)
     if not text[offset - 1].isspace():
         return (None,)
-    return (AttributeName(parents, each, Span(offset, offset), None),)
+    return (AttributeName(parents, typed, Span(offset, offset), None),)
 
 
 def _tag(document: Document, path: tuple[Typed, ...], tag: re.Match[str], offset: int) -> Place:

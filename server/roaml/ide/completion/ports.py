@@ -45,13 +45,13 @@ def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[Se
     if known is not None:
         return tuple(_of_library(known))
     if type_ is not None and type_.node and type_.name == name:
-        found = []
+        ports = []
         for attribute in type_.ports:
             assert attribute.port is not None
             about = Symbol(f"/{type_.name}", SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
             port = attribute.port
-            found.append(SettablePort(attribute.name, port.type, port.direction, port.required, port.default, about))
-        return tuple(found)
+            ports.append(SettablePort(attribute.name, port.type, port.direction, port.required, port.default, about))
+        return tuple(ports)
     path, outline = plugins(request).get(name, ("", None))
     if outline is None:
         return ()
@@ -102,8 +102,8 @@ def port_values(request: Request, subject: Subject, key: str) -> list[Completion
         is_port = known is None
         port = None
     else:
-        found = {port.key: port for port in ports_of(request, name, _type_of(request, name))}
-        port = found.get(port_key(name, key))
+        by_key = {port.key: port for port in ports_of(request, name, _type_of(request, name))}
+        port = by_key.get(port_key(name, key))
         is_port = port is not None
     if not is_port:
         return []
@@ -114,7 +114,7 @@ def port_values(request: Request, subject: Subject, key: str) -> list[Completion
 
 
 def _in_tree(subject: Subject) -> bool:
-    return any(each.element.name == "BehaviorTree" for each in subject.parents)
+    return any(typed.element.name == "BehaviorTree" for typed in subject.parents)
 
 
 def _variables(request: Request, key: str, port: SettablePort | None) -> Iterator[CompletionItem]:

@@ -53,14 +53,14 @@ class Request:
     def systems(self) -> tuple[System, ...]:
         """The systems of the file; for a system file, itself."""
         paths = (self.path, *self.analysis.systems_of(self.path))
-        found = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
-        return tuple(system for system in found if system is not None)
+        owners = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
+        return tuple(system for system in owners if system is not None)
 
     @cached_property
     def sections(self) -> frozenset[str]:
         """The sections of system files that list the file."""
-        listed = (each for system in self.systems for each in self.analysis.listed(system.path))
-        return frozenset(each.input.section for each in listed if each.path == self.path)
+        listed = (listed_file for system in self.systems for listed_file in self.analysis.listed(system.path))
+        return frozenset(listed_file.input.section for listed_file in listed if listed_file.path == self.path)
 
     @cached_property
     def all_systems(self) -> tuple[System, ...]:
@@ -97,12 +97,15 @@ class Request:
         """The transition or callback around the caret."""
         states = self.chart.states if self.chart else ()
         handlers = (handler for state in states for handler in state.handlers)
-        return next((each for each in handlers if _is_around(each.element, self.offset)), None)
+        return next((handler for handler in handlers if _is_around(handler.element, self.offset)), None)
 
     def communicate(self, element: Element) -> RosSend | None:
         """The sending statement that an element is."""
         statements = self.chart.statements if self.chart else ()
-        return next((each for each in statements if isinstance(each, RosSend) and each.element is element), None)
+        return next(
+            (statement for statement in statements if isinstance(statement, RosSend) and statement.element is element),
+            None,
+        )
 
 
 def _is_around(element: Element, offset: int) -> bool:

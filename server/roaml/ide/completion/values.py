@@ -97,7 +97,7 @@ def types(request: Request) -> Iterator[CompletionItem]:
     names = [name for system in request.systems for name in system.structs] or list(structs)
     if request.analysis.kind(request.path) is FileKind.STRUCTS:
         declared = request.analysis.struct_declarations(request.path)
-        names += [each.outline.name for each in declared if each.outline is not None]
+        names += [declaration.outline.name for declaration in declared if declaration.outline is not None]
     for name in dict.fromkeys(names):
         owner = request.system_path or request.path
         yield CompletionItem(

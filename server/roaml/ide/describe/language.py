@@ -37,7 +37,7 @@ def element(type_: ElementType) -> str:
 
 def builtin_node(type_: ElementType) -> str:
     """A node of BehaviorTree.CPP: its ports and its behaviour."""
-    ports = "".join(f"\n  {port(each.name, each.port)}" for each in type_.ports if each.port)
+    ports = "".join(f"\n  {port(setting.name, setting.port)}" for setting in type_.ports if setting.port)
     cannot = "" if type_.translated else "It cannot be translated."
     kind = "node" if type_.node == "subtree" else f"{type_.node} node".strip()
     return paragraphs(
@@ -64,13 +64,13 @@ def attribute(type_: AttributeType) -> str:
             type_.documentation,
             " · ".join(filter(None, (must, constant))),
         )
-    facts = [f"{wanted}" if (wanted := _wanted(type_)) else "", "required" if type_.required else ""]
+    facts = [f"{phrase}" if (phrase := _wanted(type_)) else "", "required" if type_.required else ""]
     shown = " · ".join(filter(None, facts))
     return paragraphs(
         code(f'{type_.name}="…"', "xml"),
         type_.documentation,
         lines(
-            *(f"{name(each.value)}: {each.documentation}" for each in type_.simple.choices if not each.use),
+            *(f"{name(option.value)}: {option.documentation}" for option in type_.simple.choices if not option.use),
             shown[:1].upper() + shown[1:],
             _successor(type_.use),
         ),
@@ -81,15 +81,15 @@ def _wanted(type_: AttributeType) -> str:
     """A phrase for the value of an attribute."""
     if type_.value == "ros-type":
         return _ROS.get(type_.value_type, "")
-    wanted = _WANTED.get(type_.value, "")
+    phrase = _WANTED.get(type_.value, "")
     if type_.value == "expression" and type_.value_type not in ("", "any"):
-        wanted = f"{wanted} of type {name(type_.value_type)}"
+        phrase = f"{phrase} of type {name(type_.value_type)}"
     simple = type_.simple
     if simple.above is not None:
-        wanted = f"a number above {simple.above:g}"
+        phrase = f"a number above {simple.above:g}"
     if simple.least is not None and simple.most is not None:
-        wanted = f"a number from {simple.least:g} to {simple.most:g}"
-    return wanted
+        phrase = f"a number from {simple.least:g} to {simple.most:g}"
+    return phrase
 
 
 def choice(value: ValueChoice) -> str:
@@ -104,17 +104,17 @@ def _successor(use: str) -> str:
 # ----------------------------------------------------------------- expressions
 
 
-def function(found: Function) -> str:
+def function(math_function: Function) -> str:
     """A function of `Math`."""
-    return paragraphs(code(signature(found)), found.documentation)
+    return paragraphs(code(signature(math_function)), math_function.documentation)
 
 
-def signature(found: Function) -> str:
+def signature(math_function: Function) -> str:
     """A function of `Math` with its parameters, `?` after the optional ones, and its result."""
-    needed = len(found.parameters) - found.optional
-    parameters = (f"{each}{'?' if i >= needed else ''}" for i, each in enumerate(found.parameters))
-    result = {"same": "int or float", "real": "float"}.get(found.result, found.result)
-    return f"Math.{found.name}({', '.join(parameters)}) : {result}"
+    needed = len(math_function.parameters) - math_function.optional
+    parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
+    result = {"same": "int or float", "real": "float"}.get(math_function.result, math_function.result)
+    return f"Math.{math_function.name}({', '.join(parameters)}) : {result}"
 
 
 def math() -> str:
@@ -148,9 +148,9 @@ _OPERATORS: Mapping[Operator | UnaryOperator, tuple[str, str]] = {
 }
 
 
-def operator(found: Operator | UnaryOperator) -> str:
+def operator(token: Operator | UnaryOperator) -> str:
     """An operator of expressions: its operands and its result."""
-    head, text = _OPERATORS[found]
+    head, text = _OPERATORS[token]
     return paragraphs(code(head), text)
 
 
@@ -180,9 +180,9 @@ def event_variable(called: str, type_: Type) -> str:
     return paragraphs(code("\n".join((f"{called}{of}", *rows))), EVENT_VARIABLES.get(called, ""))
 
 
-def event_data(found: Struct) -> str:
+def event_data(struct: Struct) -> str:
     """`_event.data` with the parameters of the event."""
-    return paragraphs(code("\n".join(("_event.data", *_rows(found)))), "The parameters of the event.")
+    return paragraphs(code("\n".join(("_event.data", *_rows(struct)))), "The parameters of the event.")
 
 
 def status(called: str, value: int) -> str:
@@ -240,11 +240,11 @@ def members(struct: Struct, most: int = 24) -> str:
 
 
 def _rows(struct: Struct, most: int = 24) -> list[str]:
-    found = [f"  {key} : {type_}" for key, type_ in struct.members]
-    return [*found[:most], f"  … {len(found) - most} more"] if len(found) > most + 1 else found
+    rows = [f"  {key} : {type_}" for key, type_ in struct.members]
+    return [*rows[:most], f"  … {len(rows) - most} more"] if len(rows) > most + 1 else rows
 
 
 def base_type(written: str) -> str:
     """A base type by its name; "" if it is none."""
-    found = BASE_TYPES.get(written)
-    return type_(found) if found is not None else ""
+    known = BASE_TYPES.get(written)
+    return type_(known) if known is not None else ""

@@ -57,27 +57,29 @@ def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
     """The automata of a machine, or of one of its threads, in all its systems."""
     machine = analysis.machine(path)
     threads = [thread for thread in machine.threads if thread.chart.scope == scope] if machine and scope else []
-    found: dict[str, None] = {}
+    automata_names: dict[str, None] = {}
     for system in linked_systems(analysis, path):
         for automaton in system.automata_of(path):
             if not scope:
-                found[automaton.name] = None
+                automata_names[automaton.name] = None
             for thread in threads:
                 action = _action(automaton, thread.server.value if thread.server else "")
-                found.update((f"{sanitise(action)}_thread_{k}", None) for k in range(thread.count or 0) if action)
-    return tuple(found)
+                automata_names.update(
+                    (f"{sanitise(action)}_thread_{k}", None) for k in range(thread.count or 0) if action
+                )
+    return tuple(automata_names)
 
 
 def _action(automaton: SystemAutomaton, handle: str) -> str:
-    found = (
+    uses_of_handle = (
         use for use in automaton.outline.interfaces if (use.kind, use.handle) == (SymbolKind.ACTION_SERVER, handle)
     )
-    return next((automaton.interface_name(use) or "" for use in found), "")
+    return next((automaton.interface_name(use) or "" for use in uses_of_handle), "")
 
 
 def linked_systems(analysis: Analysis, path: str) -> Iterator[System]:
-    for each in analysis.systems_of(path):
-        system = analysis.system(each) if each else None
+    for owner in analysis.systems_of(path):
+        system = analysis.system(owner) if owner else None
         if system is not None:
             yield system
 
@@ -97,8 +99,10 @@ def _sentence(text: str) -> str:
 def variable(analysis: Analysis, symbol: Symbol) -> str:
     """A variable: type, range, initial value, assigned values, number of uses, names in the translation."""
     machine = analysis.machine(symbol.path)
-    found = {(c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id}
-    data = found.get((symbol.scope, symbol.name))
+    data_by_name = {
+        (c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id
+    }
+    data = data_by_name.get((symbol.scope, symbol.name))
     parts: dict[str, None] = {}
     for system in analysis.systems_of(symbol.path):
         typed = analysis.typed_in(symbol.path, system) if machine else None
@@ -127,14 +131,14 @@ def _variable(analysis: Analysis, symbol: Symbol, data: Data | None, typed: Type
 
 def inferred_type(typed: TypedMachine, scope: str, name: str) -> Type:
     """The type that the values assigned to a variable have; unknown if there are none or they differ."""
-    found: Type = UNKNOWN
+    result: Type = UNKNOWN
     for value in typed.values:
         if value.use is ValueUse.ASSIGNED and value.place.chart.scope == scope and value.target == name:
-            joined = join(found, value.type)
+            joined = join(result, value.type)
             if joined is None:
                 return UNKNOWN
-            found = joined
-    return UNKNOWN if isinstance(found, EmptyArray) else found
+            result = joined
+    return UNKNOWN if isinstance(result, EmptyArray) else result
 
 
 def _initial(value: Value | None) -> str:
@@ -150,7 +154,9 @@ def _short(text: str, most: int = 40) -> str:
 
 def _bounds(data: Data | None) -> str:
     lower, upper = (
-        (each.text if isinstance(each, Expression) else "" for each in (data.lower, data.upper)) if data else ("", "")
+        (limit.text if isinstance(limit, Expression) else "" for limit in (data.lower, data.upper))
+        if data
+        else ("", "")
     )
     if lower and upper:
         return f"intended range {name(lower)} to {name(upper)}"
@@ -159,7 +165,7 @@ def _bounds(data: Data | None) -> str:
 
 def _gets(typed: TypedMachine, symbol: Symbol) -> str:
     """The values that are assigned to a variable or to a part of it."""
-    found: dict[str, None] = {}
+    sources: dict[str, None] = {}
     target: Expression | None = None
     for value in typed.values:
         if value.place.chart.scope != symbol.scope:
@@ -169,9 +175,9 @@ def _gets(typed: TypedMachine, symbol: Symbol) -> str:
         elif value.use is ValueUse.ASSIGNED and target is not None:
             path = access_path(target.tree)
             if path is not None and path[0] == symbol.name:
-                found[_source(value.value)] = None
+                sources[_source(value.value)] = None
             target = None
-    return f"Gets {names(found, 4)}" if found else ""
+    return f"Gets {names(sources, 4)}" if sources else ""
 
 
 def _source(value: Value) -> str:
@@ -184,9 +190,9 @@ def _counted(analysis: Analysis, symbol: Symbol) -> str:
     reads: set[Span] = set()
     writes: set[Span] = set()
     for system in analysis.systems_of(symbol.path):
-        for each in uses(analysis, symbol.path, system).by_symbol.get(symbol, ()):
-            if not each.defines:
-                (writes if each.access is Access.WRITE else reads).add(each.span)
+        for use in uses(analysis, symbol.path, system).by_symbol.get(symbol, ()):
+            if not use.defines:
+                (writes if use.access is Access.WRITE else reads).add(use.span)
     counts = [f"{verb} {_times(len(places))}" for verb, places in (("read", reads), ("written", writes)) if places]
     return _sentence(", ".join(counts)) or "Never used"
 
@@ -209,20 +215,22 @@ def _becomes(analysis: Analysis, symbol: Symbol, type_: Type) -> str:
 def state(analysis: Analysis, symbol: Symbol) -> str:
     """A state: the transitions to it and from it, with their triggers."""
     machine = analysis.machine(symbol.path)
-    chart = next((each for each in machine.charts if each.scope == symbol.scope), None) if machine else None
+    chart = next((chart for chart in machine.charts if chart.scope == symbol.scope), None) if machine else None
     if machine is None or chart is None:
         return ""
-    found = next((each for each in chart.states if each.id and each.id.value == symbol.name), None)
+    definition = next(
+        (candidate for candidate in chart.states if candidate.id and candidate.id.value == symbol.name), None
+    )
     incoming, outgoing = _edges(chart, symbol.name, into=True), _edges(chart, symbol.name, into=False)
     initial = chart.initial is not None and chart.initial.value == symbol.name
     owners = automata(analysis, symbol.path, symbol.scope)
     return paragraphs(
         code(f"{'initial ' if initial else ''}state {symbol.name}"),
-        _remark(analysis, symbol.path, found.element) if found else "Not defined",
+        _remark(analysis, symbol.path, definition.element) if definition else "Not defined",
         lines(
             f"**From** {incoming}" if incoming else "" if initial else "No transition leads here",
             f"**To** {outgoing}" if outgoing else "No transition leads away",
-            f"In JANI location {name(symbol.name)} of {names(owners, 3)}" if owners and found else "",
+            f"In JANI location {name(symbol.name)} of {names(owners, 3)}" if owners and definition else "",
         ),
     )
 
@@ -230,15 +238,15 @@ def state(analysis: Analysis, symbol: Symbol) -> str:
 def _edges(chart: Chart, of: str, *, into: bool) -> str:
     """The other ends of a state's transitions, each with the triggers."""
     ends: dict[str, dict[str, None]] = {}
-    for each in chart.states:
-        source = each.id.value if each.id else ""
-        for handler in each.handlers:
+    for state in chart.states:
+        source = state.id.value if state.id else ""
+        for handler in state.handlers:
             for target in handler.targets:
                 to = target.state.value if target.state else ""
                 if (to if into else source) == of and source and to:
                     share = f" ({target.probability.value})" if target.probability else _rest(handler)
                     ends.setdefault(source if into else to, {})[f"{occasion(handler)}{share}"] = None
-    return " · ".join(f"{name(end)} on {_any(found)}" for end, found in ends.items()).replace(
+    return " · ".join(f"{name(end)} on {_any(triggers)}" for end, triggers in ends.items()).replace(
         " without an event", " by itself"
     )
 
@@ -248,8 +256,8 @@ def _rest(handler: Handler) -> str:
 
 
 def _any(occasions: Iterable[str]) -> str:
-    found = list(occasions)
-    return ", ".join(found[:3]) + (f" and {len(found) - 3} more" if len(found) > 3 else "")
+    triggers = list(occasions)
+    return ", ".join(triggers[:3]) + (f" and {len(triggers) - 3} more" if len(triggers) > 3 else "")
 
 
 def occasion(handler: Handler) -> str:
@@ -277,7 +285,7 @@ def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
     part = type_.receives or type_.sends
     end = _PROTOCOL.get(part) if part else None
     nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
-    events = names((f"{node_id(each)}_{end}" for each in nodes), 4)
+    events = names((f"{node_id(node)}_{end}" for node in nodes), 4)
     return f"In plain SCXML {events}" if events else ""
 
 
@@ -286,26 +294,32 @@ def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
 
 def handle(analysis: Analysis, symbol: Symbol) -> str:
     """A declared ROS interface or timer, and its connections in the systems of its machine."""
-    found = declaration(analysis, symbol)
-    if found is None:
+    declared = declaration(analysis, symbol)
+    if declared is None:
         return ""
     kind = _KINDS.get(symbol.kind, symbol.kind.value)
-    head = f"{kind} {symbol.name}" + (f" : {found.type.value}" if found.type else "")
-    return paragraphs(code(head), _remark(analysis, symbol.path, found.element), *_connections(analysis, symbol, found))
+    head = f"{kind} {symbol.name}" + (f" : {declared.type.value}" if declared.type else "")
+    return paragraphs(
+        code(head), _remark(analysis, symbol.path, declared.element), *_connections(analysis, symbol, declared)
+    )
 
 
 def declaration(analysis: Analysis, symbol: Symbol) -> Declaration | None:
     """The declaration of a handle."""
     machine = analysis.machine(symbol.path)
-    wanted = (each for each in machine.declarations if each.kind == symbol.kind) if machine else iter(())
-    return next((each for each in wanted if each.handle and each.handle.value == symbol.name), None)
+    of_kind = (
+        (candidate for candidate in machine.declarations if candidate.kind == symbol.kind) if machine else iter(())
+    )
+    return next(
+        (candidate for candidate in of_kind if candidate.handle and candidate.handle.value == symbol.name), None
+    )
 
 
-def _connections(analysis: Analysis, symbol: Symbol, found: Declaration) -> Iterator[str]:
-    if found.kind is SymbolKind.TIMER:
-        yield rate(found.rate.value) if isinstance(found.rate, Name) else _from_port(found.rate, "rate")
+def _connections(analysis: Analysis, symbol: Symbol, declared: Declaration) -> Iterator[str]:
+    if declared.kind is SymbolKind.TIMER:
+        yield rate(declared.rate.value) if isinstance(declared.rate, Name) else _from_port(declared.rate, "rate")
         return
-    yield _from_port(found.interface, "name")
+    yield _from_port(declared.interface, "name")
     done: dict[str, None] = {}
     for system in linked_systems(analysis, symbol.path):
         for automaton in system.automata_of(symbol.path):
@@ -318,12 +332,12 @@ def _connections(analysis: Analysis, symbol: Symbol, found: Declaration) -> Iter
                         None
                     )
     yield from done
-    if not done and isinstance(found.interface, Name):
-        yield f"{_sentence(interface_symbol('', found.kind, '').kind.value)} {name(found.interface.value)}"
+    if not done and isinstance(declared.interface, Name):
+        yield f"{_sentence(interface_symbol('', declared.kind, '').kind.value)} {name(declared.interface.value)}"
 
 
-def _from_port(value: Name | PortRead | None, what: str) -> str:
-    return f"Its {what} comes from port {name(value.key.value)}" if isinstance(value, PortRead) and value.key else ""
+def _from_port(value: Name | PortRead | None, subject: str) -> str:
+    return f"Its {subject} comes from port {name(value.key.value)}" if isinstance(value, PortRead) and value.key else ""
 
 
 def rate(text: str) -> str:
@@ -358,7 +372,7 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
             value = automaton.port(symbol.name)
             shown = "" if value is None else value.text if isinstance(value, PortConstant) else f"{{{value.variable}}}"
             bound.setdefault(shown, []).append(node_id(automaton))
-    found = [
+    held = [
         f"{name(value) if value else 'not set'} in {names(nodes, 3)}"
         for value, nodes in list(bound.items())[:_MAX_VALUES]
     ]
@@ -368,7 +382,7 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
         _remark(analysis, symbol.path, declared.element),
         lines(
             f"Port of {name(machine.name.value)}" if machine and machine.name else "",
-            f"**Holds** {' · '.join(found)}{rest}" if found else "",
+            f"**Holds** {' · '.join(held)}{rest}" if held else "",
         ),
     )
 
@@ -384,23 +398,23 @@ def node_id(automaton: SystemAutomaton) -> str:
 
 def machine(analysis: Analysis, symbol: Symbol) -> str:
     """A machine: its ports and interfaces, its automata in its systems, its file."""
-    found = analysis.machine(symbol.path)
-    if found is None:
+    model = analysis.machine(symbol.path)
+    if model is None:
         return ""
     outlines = [a.outline for s in linked_systems(analysis, symbol.path) for a in s.automata_of(symbol.path)]
     listed = [o for s in linked_systems(analysis, symbol.path) for p, o in (*s.nodes, *s.plugins) if p == symbol.path]
     plugins = {p for s in linked_systems(analysis, symbol.path) for p, _ in s.plugins}
-    is_plugin = symbol.path in plugins or bool(found.ports)
+    is_plugin = symbol.path in plugins or bool(model.ports)
     nodes = [a for s in linked_systems(analysis, symbol.path) for a in s.automata_of(symbol.path)]
     ports = "".join(
-        f"\n  {each.direction} {each.key.value}{f' : {each.type.text}' if each.type else ''}"
-        for each in found.ports
-        if each.key
+        f"\n  {port.direction} {port.key.value}{f' : {port.type.text}' if port.type else ''}"
+        for port in model.ports
+        if port.key
     )
     outline = next(iter((*outlines, *listed)), None)
     return paragraphs(
         code(f"{'plugin' if is_plugin else 'node'} {symbol.name}{ports}"),
-        _remark(analysis, symbol.path, found.element),
+        _remark(analysis, symbol.path, model.element),
         lines(
             *(_talk(outline) if outline else ()),
             _instances(nodes) if is_plugin else f"In JANI automaton {names(a.name for a in nodes)}" if nodes else "",
@@ -421,9 +435,12 @@ _TALK = {
 
 def _talk(outline: MachineOutline) -> Iterator[str]:
     for kind, verb in _TALK.items():
-        found = [use.name or f"port {use.port}" for use in outline.interfaces if use.kind == kind]
-        yield f"{verb} {names(found)}" if found else ""
-    sent, received = (each.event for each in outline.sent), (each.event for each in outline.received)
+        interfaces = [use.name or f"port {use.port}" for use in outline.interfaces if use.kind == kind]
+        yield f"{verb} {names(interfaces)}" if interfaces else ""
+    sent, received = (
+        (event_use.event for event_use in outline.sent),
+        (event_use.event for event_use in outline.received),
+    )
     yield f"Sends {found_names}" if (found_names := names(sent)) else ""
     yield f"Receives {found_names}" if (found_names := names(received)) else ""
 

@@ -31,7 +31,7 @@ _USERS_BLOCK = re.compile(r"^(?=#|~~~)")
 
 def code(text: str, language: str = "") -> str:
     """A block of code."""
-    ticks = "`" * max(3, 1 + max((len(found[0]) for found in _TICKS.finditer(text)), default=0))
+    ticks = "`" * max(3, 1 + max((len(ticks_in_text[0]) for ticks_in_text in _TICKS.finditer(text)), default=0))
     return f"{ticks}{language}\n{text}\n{ticks}"
 
 
@@ -40,15 +40,15 @@ def name(text: str) -> str:
     text = " ".join(text.split())
     if not text:
         return "` `"
-    ticks = "`" * (1 + max((len(found[0]) for found in _TICKS.finditer(text)), default=0))
+    ticks = "`" * (1 + max((len(ticks_in_text[0]) for ticks_in_text in _TICKS.finditer(text)), default=0))
     space = " " if text.startswith("`") or text.endswith("`") else ""
     return f"{ticks}{space}{text}{space}{ticks}"
 
 
-def names(found: Iterable[str], most: int = _MAX_NAMES) -> str:
+def names(texts: Iterable[str], most: int = _MAX_NAMES) -> str:
     """Names with commas, without duplicates; at the end of a long list the rest is only counted. "" if there are
     none."""
-    different = list(dict.fromkeys(found))
+    different = list(dict.fromkeys(texts))
     shown = different[:most] if len(different) > most + 1 else different
     rest = len(different) - len(shown)
     return ", ".join(map(name, shown)) + (f" and {rest} more" if rest else "")
@@ -63,7 +63,7 @@ def file(path: str) -> str:
 def prose(text: str) -> str:
     """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, an image or a link."""
     paragraphs = re.split(r"\n\s*\n", text.strip())
-    return "\n\n".join(_tame(" ".join(each.split())) for each in paragraphs)
+    return "\n\n".join(_tame(" ".join(paragraph.split())) for paragraph in paragraphs)
 
 
 def _tame(paragraph: str) -> str:
@@ -71,14 +71,14 @@ def _tame(paragraph: str) -> str:
     parts: list[str] = []
     text = ""
     done = 0
-    for found in _USERS_CODE.finditer(paragraph):
-        text += paragraph[done : found.start()]
-        if "<" in found[2] or "&" in found[2]:
-            text += found[2]
+    for span in _USERS_CODE.finditer(paragraph):
+        text += paragraph[done : span.start()]
+        if "<" in span[2] or "&" in span[2]:
+            text += span[2]
         else:
-            parts += (_without_marks_of_users(text), found[0])
+            parts += (_without_marks_of_users(text), span[0])
             text = ""
-        done = found.end()
+        done = span.end()
     parts.append(_without_marks_of_users(text + paragraph[done:]))
     return _USERS_BLOCK.sub(r"\\", _without_tags("".join(parts)))
 
@@ -104,12 +104,12 @@ def paragraphs(*parts: str) -> str:
 
 def plain(markdown: str) -> str:
     """The same as text without markup, for clients without Markdown."""
-    found: list[str] = []
+    pieces: list[str] = []
     done = 0
     for block in _FENCE.finditer(markdown):
-        found += [_without_marks(markdown[done : block.start()]), block[2]]
+        pieces += [_without_marks(markdown[done : block.start()]), block[2]]
         done = block.end()
-    return "".join([*found, _without_marks(markdown[done:])]).strip()
+    return "".join([*pieces, _without_marks(markdown[done:])]).strip()
 
 
 def _without_marks(text: str) -> str:
@@ -118,9 +118,9 @@ def _without_marks(text: str) -> str:
     text = re.sub(r"\n{3,}", "\n\n", text)
     parts: list[str] = []
     done = 0
-    for found in _SPAN.finditer(text):
-        parts += (_unescaped(text[done : found.start()]), found[3])
-        done = found.end()
+    for span in _SPAN.finditer(text):
+        parts += (_unescaped(text[done : span.start()]), span[3])
+        done = span.end()
     return "".join([*parts, _unescaped(text[done:])])
 
 

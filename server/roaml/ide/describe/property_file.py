@@ -102,7 +102,7 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
     sides = [around.get("left"), around.get("right")]
     if known is None or known.symbol not in _COMPARISONS or written not in sides:
         return ""
-    variable = next((each.value for each in sides if isinstance(each, JsonString)), "")
+    variable = next((side.value for side in sides if isinstance(side, JsonString)), "")
     if _STATUS.fullmatch(variable):
         called = next((name for name, value in STATUSES.items() if str(value) == written.text), "")
         every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
@@ -118,12 +118,12 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
 def global_variable(variable: GlobalVariable) -> str:
     """A global variable of the translated system, as properties name it."""
     if variable.parameter == "valid" and variable.name.endswith(".valid"):
-        what = f"Whether event {name(variable.event)} has been sent"
+        meaning = f"Whether event {name(variable.event)} has been sent"
     elif variable.name.endswith("_len"):
-        what = f"The number of elements of {name(variable.name.rpartition('.')[0])}"
+        meaning = f"The number of elements of {name(variable.name.rpartition('.')[0])}"
     else:
-        what = f"The value in the last event {name(variable.event)}"
-    return paragraphs(code(f"{variable.name} : {variable.type}"), what)
+        meaning = f"The value in the last event {name(variable.event)}"
+    return paragraphs(code(f"{variable.name} : {variable.type}"), meaning)
 
 
 def formula(value: JsonValue) -> str:
@@ -143,7 +143,7 @@ def _formula(value: JsonValue | None, depth: int) -> str:
         case JsonBool():
             return str(value.value).lower()
         case JsonArray():
-            return f"[{', '.join(_formula(each, depth + 1) for each in value.items)}]"
+            return f"[{', '.join(_formula(item, depth + 1) for item in value.items)}]"
         case JsonObject():
             return _operation(members(value), depth)
     return "…"

@@ -17,15 +17,15 @@ _WIDTH = 88
 
 def ros_type(registry: Registry, kind: Kind, type_name: str) -> str:
     """The definition of a type, `package/Name`; "" if there is none."""
-    found = registry.resolve(kind, type_name)
-    return "" if isinstance(found, NotFound) else definition(found)
+    resolved = registry.resolve(kind, type_name)
+    return "" if isinstance(resolved, NotFound) else definition(resolved)
 
 
-def definition(found: Definition) -> str:
+def definition(ros_definition: Definition) -> str:
     """A message, service or action: its fields and constants with their comments."""
-    rows: list[str] = [f"# {found.full_name}"]
-    for title, section in zip(SECTION_NAMES[found.kind], found.sections, strict=True):
-        if title != SECTION_NAMES[found.kind][0]:
+    rows: list[str] = [f"# {ros_definition.full_name}"]
+    for title, section in zip(SECTION_NAMES[ros_definition.kind], ros_definition.sections, strict=True):
+        if title != SECTION_NAMES[ros_definition.kind][0]:
             rows.append("---")
         rows += _section(section)
     if len(rows) > _MAX_LINES + 1:
@@ -35,8 +35,8 @@ def definition(found: Definition) -> str:
 
 def _section(section: Section) -> Iterator[str]:
     yield from _comment(section.comment)
-    parts: list[Field | Constant] = sorted((*section.constants, *section.fields), key=lambda each: each.name_span)
-    rows = [(_declared(each), each.comment) for each in parts]
+    parts: list[Field | Constant] = sorted((*section.constants, *section.fields), key=lambda member: member.name_span)
+    rows = [(_declared(member), member.comment) for member in parts]
     width = max((len(row) for row, comment in rows if _is_short(comment)), default=0)
     for row, comment in rows:
         if _is_short(comment):
@@ -56,10 +56,10 @@ def _comment(text: str) -> Iterator[str]:
         yield from (f"# {part}" for part in textwrap.wrap(line, _WIDTH) or [""])
 
 
-def _declared(each: Field | Constant) -> str:
-    if isinstance(each, Constant):
-        return f"{each.type} {each.name}={each.value_text}"
-    return f"{each.type} {each.name} {each.default_text}".rstrip()
+def _declared(member: Field | Constant) -> str:
+    if isinstance(member, Constant):
+        return f"{member.type} {member.name}={member.value_text}"
+    return f"{member.type} {member.name} {member.default_text}".rstrip()
 
 
 def field(registry: Registry, struct: str, field_name: str) -> str:
@@ -71,13 +71,13 @@ def field(registry: Registry, struct: str, field_name: str) -> str:
         field_name: its name or dotted path.
     """
     head, _, rest = field_name.partition(".")
-    found, section = section_of(registry, struct)
-    known = found.section(section).field(head) if found else None
-    if found is None or known is None:
+    owner, section = section_of(registry, struct)
+    known = owner.section(section).field(head) if owner else None
+    if owner is None or known is None:
         return ""
     if rest and not known.type.is_primitive:
         return field(registry, known.type.name, rest)
-    of = f"of {name(found.full_name)}" if found.kind == "msg" else f"in the {section} of {name(found.full_name)}"
+    of = f"of {name(owner.full_name)}" if owner.kind == "msg" else f"in the {section} of {name(owner.full_name)}"
     comment = list(_comment(known.comment))
     nested = registry.resolve("msg", known.type.name) if not known.type.is_primitive else None
     inside = definition(nested) if isinstance(nested, Definition) else ""
@@ -89,5 +89,5 @@ def section_of(registry: Registry, struct: str) -> tuple[Definition | None, str]
     type_name, _, section = struct.partition(" ")
     section = section or "message"
     kind: Kind = next((kind for kind, sections in SECTION_NAMES.items() if section in sections), "msg")
-    found = registry.resolve(kind, type_name)
-    return (None if isinstance(found, NotFound) else found), section
+    resolved = registry.resolve(kind, type_name)
+    return (None if isinstance(resolved, NotFound) else resolved), section

@@ -48,8 +48,8 @@ def _sentence(text: str) -> str:
 
 
 def _in_properties(variables: Iterable[GlobalVariable]) -> str:
-    found = [each.name for each in variables]
-    return f"In properties {names(found, 3)}" if found else ""
+    variable_names = [variable.name for variable in variables]
+    return f"In properties {names(variable_names, 3)}" if variable_names else ""
 
 
 # ---------------------------------------------------------------------- events
@@ -58,11 +58,11 @@ def _in_properties(variables: Iterable[GlobalVariable]) -> str:
 def event(analysis: Analysis, symbol: Symbol) -> str:
     """A plain event: its parameters, its senders and receivers, the variables for properties."""
     system = _system(analysis, symbol)
-    found = system.events.get(symbol.name) if system else None
-    if found is None:
+    system_event = system.events.get(symbol.name) if system else None
+    if system_event is None:
         return paragraphs(code(f"event {symbol.name}"), _in_files(analysis, symbol))
-    parameters = ", ".join(f"{key} : {type_}" for key, type_ in found.data.members)
-    senders, receivers = _who(a for a, _ in found.senders), _who(a for a, _ in found.receivers)
+    parameters = ", ".join(f"{key} : {type_}" for key, type_ in system_event.data.members)
+    senders, receivers = _who(a for a, _ in system_event.senders), _who(a for a, _ in system_event.receivers)
     return paragraphs(
         code(f"event {symbol.name}({parameters})" if parameters else f"event {symbol.name}"),
         lines(
@@ -74,11 +74,11 @@ def event(analysis: Analysis, symbol: Symbol) -> str:
 
 def _in_files(analysis: Analysis, symbol: Symbol) -> str:
     """The uses of an event in the file itself."""
-    found = thing(analysis, (symbol,)).uses
+    uses = thing(analysis, (symbol,)).uses
     counts = [
         f"{verb} {count} times" if count != 1 else f"{verb} once"
         for verb, access in (("sent", Access.WRITE), ("received", Access.READ))
-        if (count := sum(use.occurrence.access is access for use in found))
+        if (count := sum(use.occurrence.access is access for use in uses))
     ]
     return _sentence(", ".join(counts))
 
@@ -86,10 +86,14 @@ def _in_files(analysis: Analysis, symbol: Symbol) -> str:
 def parameter(analysis: Analysis, symbol: Symbol) -> str:
     """A parameter of an event; `symbol.scope` is the event."""
     system = _system(analysis, symbol)
-    found = system.events.get(symbol.scope) if system else None
-    type_ = found.data.member(symbol.name) if found else None
-    senders = [a for a, sent in found.senders if any(p.name == symbol.name for p in sent.params)] if found else []
-    readers = [a for a, received in found.receivers if symbol.name in received.reads] if found else []
+    system_event = system.events.get(symbol.scope) if system else None
+    type_ = system_event.data.member(symbol.name) if system_event else None
+    senders = (
+        [a for a, sent in system_event.senders if any(p.name == symbol.name for p in sent.params)]
+        if system_event
+        else []
+    )
+    readers = [a for a, received in system_event.receivers if symbol.name in received.reads] if system_event else []
     return paragraphs(
         code(f"{symbol.name} : {type_ or UNKNOWN}"),
         lines(
@@ -114,31 +118,31 @@ _VERBS = {
 def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
     """A topic, service or action, with the name as `written`: its type, both sides, its names in the translation."""
     system = _system(analysis, symbol)
-    found = find_channel(system, symbol) if system else None
+    connected = find_channel(system, symbol) if system else None
     shown = written or symbol.name
-    if system is None or found is None:
+    if system is None or connected is None:
         return code(f"{symbol.kind.value} {shown}")
-    types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in found.endpoints))
-    return paragraphs(code(f"{symbol.kind.value} {shown} : {types}"), _sides(analysis, symbol, found, system))
+    types = ", ".join(dict.fromkeys(endpoint.use.type for endpoint in connected.endpoints))
+    return paragraphs(code(f"{symbol.kind.value} {shown} : {types}"), _sides(analysis, symbol, connected, system))
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
     """The same in fewer words, for the automata that take part."""
-    found = find_channel(system, symbol)
+    connected = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
-    return head if found is None else lines(head, _sides(analysis, symbol, found, system))
+    return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
 
 
 def find_channel(system: System, symbol: Symbol) -> Channel | None:
     return system.channels(symbol.kind).get(symbol.name)
 
 
-def _sides(analysis: Analysis, symbol: Symbol, found: Channel, system: System) -> str:
+def _sides(analysis: Analysis, symbol: Symbol, connected: Channel, system: System) -> str:
     given, taken = _VERBS[symbol.kind]
-    sources = "the clock of the system" if is_clock(system, symbol) else _ends(found.sources)
+    sources = "the clock of the system" if is_clock(system, symbol) else _ends(connected.sources)
     return lines(
-        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(found.users)}",
-        _plain_events(symbol, found),
+        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(connected.users)}",
+        _plain_events(symbol, connected),
         _in_properties(global_variables(analysis, symbol)),
     )
 
@@ -152,15 +156,15 @@ def _ends(endpoints: Iterable[ChannelEndpoint]) -> str:
     return _who(endpoint.automaton for endpoint in endpoints) or "nobody"
 
 
-def _plain_events(symbol: Symbol, found: Channel) -> str:
+def _plain_events(symbol: Symbol, connected: Channel) -> str:
     if symbol.kind is SymbolKind.TOPIC:
         return f"In plain SCXML event {name(f'topic_{symbol.name}_msg')}"
     called = sanitise(symbol.name)
     if symbol.kind is SymbolKind.ACTION:
         return f"In plain SCXML events {name(f'action_{called}_…')}"
-    there = ("req_client_…", "request") if found.users else ()
-    back = ("response", "response_client_…") if found.sources else ()
-    return f"In plain SCXML {' → '.join(name(f'srv_{called}_{each}') for each in (*there, *back))}"
+    there = ("req_client_…", "request") if connected.users else ()
+    back = ("response", "response_client_…") if connected.sources else ()
+    return f"In plain SCXML {' → '.join(name(f'srv_{called}_{step}') for step in (*there, *back))}"
 
 
 # -------------------------------------------------------------------- blackboard
@@ -169,11 +173,11 @@ def _plain_events(symbol: Symbol, found: Channel) -> str:
 def blackboard(analysis: Analysis, symbol: Symbol) -> str:
     """A blackboard variable: its type, and the ports that write and read it."""
     variables = global_variables(analysis, symbol)
-    full = dict.fromkeys(_full_name(each) for each in variables)
+    full = dict.fromkeys(_full_name(variable) for variable in variables)
     bound: list[BoundPort] = []
     types: dict[str, None] = {}
-    for each in analysis.systems_of(symbol.path):
-        system = analysis.system(each) if each else None
+    for owner in analysis.systems_of(symbol.path):
+        system = analysis.system(owner) if owner else None
         for variable in full if system else ():
             assert system is not None
             ports = system.blackboard.get(variable, ())
@@ -200,8 +204,8 @@ def _full_name(variable: GlobalVariable) -> str:
 
 
 def _ports(bound: Iterable[BoundPort], direction: str) -> str:
-    found = (f"{b.automaton.outline.name}.{b.port.key}" for b in bound if b.port.direction == direction)
-    return names(found) or "nobody"
+    port_names = (f"{b.automaton.outline.name}.{b.port.key}" for b in bound if b.port.direction == direction)
+    return names(port_names) or "nobody"
 
 
 # ------------------------------------------------------------------------- trees
@@ -219,9 +223,9 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
     """A behavior tree: its size, the trees that use it."""
     for place in thing(analysis, (symbol,)).definitions:
         trees = analysis.tree(place.path)
-        for each in trees.trees if trees else ():
-            if each.id is not None and each.id.span == place.span:
-                count = sum(1 for _ in nodes(each))
+        for candidate in trees.trees if trees else ():
+            if candidate.id is not None and candidate.id.span == place.span:
+                count = sum(1 for _ in nodes(candidate))
                 size = "one node" if count == 1 else f"{count} nodes"
                 return paragraphs(
                     code(f"tree {symbol.name}"),
@@ -253,7 +257,9 @@ def tree_node(analysis: Analysis, symbol: Symbol) -> str:
 
 def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
     """The names in the translation of a node of a file, where its tree is executed."""
-    told = list(dict.fromkeys(node(system, each) for system, each in instances(analysis, path, tree, position)))
+    told = list(
+        dict.fromkeys(node(system, automaton) for system, automaton in instances(analysis, path, tree, position))
+    )
     rest = f"… and {len(told) - _MAX_USES} more times" if len(told) > _MAX_USES else ""
     return paragraphs(*told[:_MAX_USES], rest)
 
@@ -263,8 +269,8 @@ _MAX_USES = 3
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, SystemAutomaton]]:
     """The nodes of executed trees for a node of a file, in all systems of the file."""
-    for each in analysis.systems_of(path):
-        system = analysis.system(each) if each else None
+    for owner in analysis.systems_of(path):
+        system = analysis.system(owner) if owner else None
         for automaton in system.automata if system else ():
             source = automaton.instance.source if automaton.instance else None
             if system and source and (source.path, source.tree, source.position) == (path, tree, position):
@@ -306,12 +312,12 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
     )
 
 
-def _struct(analysis: Analysis, symbol: Symbol, wanted: str) -> Struct | None:
+def _struct(analysis: Analysis, symbol: Symbol, struct_name: str) -> Struct | None:
     """The struct in the system of a symbol, or in the file itself."""
     if symbol.path in analysis.system_paths:
-        found = analysis.structs(symbol.path).types.get(wanted)
-        return found if isinstance(found, Struct) else None
+        struct = analysis.structs(symbol.path).types.get(struct_name)
+        return struct if isinstance(struct, Struct) else None
     declared: tuple[StructDeclaration, ...] = analysis.struct_declarations(symbol.path)
-    outlines = tuple(outline for each in declared if (outline := each.outline) is not None)
-    found = resolve_structs(outlines).get(wanted)
-    return found if isinstance(found, Struct) else None
+    outlines = tuple(outline for declaration in declared if (outline := declaration.outline) is not None)
+    struct = resolve_structs(outlines).get(struct_name)
+    return struct if isinstance(struct, Struct) else None

@@ -39,7 +39,7 @@ def ros_picture(analysis: Analysis, path: str) -> Picture | None:
         (DiagramNodeKind.ACTION_INTERFACE, system.actions),
     ):
         for channel in channels.values():
-            ends = [each for each in channel.endpoints if _id(each.automaton) in nodes]
+            ends = [endpoint for endpoint in channel.endpoints if _id(endpoint.automaton) in nodes]
             node = _channel(analysis, kind, channel, ends)
             nodes[node.id] = node
             edges.update(dict.fromkeys(_edge(analysis, node, end) for end in ends))
@@ -75,9 +75,9 @@ def _edge(analysis: Analysis, channel: DiagramNode, end: ChannelEndpoint) -> Dia
 
 
 def _declared(analysis: Analysis, end: ChannelEndpoint) -> Location | None:
-    machine, wanted = analysis.machine(end.automaton.path), (end.use.kind, end.use.handle)
+    machine, kind_and_handle = analysis.machine(end.automaton.path), (end.use.kind, end.use.handle)
     for declaration in machine.declarations if machine else ():
-        if wanted == (declaration.kind, declaration.handle.value if declaration.handle else ""):
+        if kind_and_handle == (declaration.kind, declaration.handle.value if declaration.handle else ""):
             return Location(end.automaton.path, declaration.element.span)
     return None
 

@@ -27,7 +27,7 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 def tree_picture(analysis: Analysis, path: str) -> Picture | None:
     """The tree of a system, given by its system file or any other of its files; `None` if there is none."""
-    system = next((found for s in analysis.systems_of(path) if s and (found := analysis.system(s))), None)
+    system = next((owner for s in analysis.systems_of(path) if s and (owner := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances = system.tree_paths, system.instances
     else:
@@ -48,7 +48,7 @@ class _Tree:
         self.system = system
         self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
-        self.written = {each.number: self.node(each) for each in instances}
+        self.written = {instance.number: self.node(instance) for instance in instances}
 
     def node(self, instance: Instance) -> TreeNode | None:
         file = self.files.get(instance.source.path)

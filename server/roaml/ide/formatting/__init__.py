@@ -46,12 +46,12 @@ def format_edits(
     source = analysis.source(path)
     if source is None:
         return ()
-    found = sorted(edits(source.text, _gaps(analysis, path, layout)))
+    changes = sorted(edits(source.text, _gaps(analysis, path, layout)))
     if within is not None:
         start, end = _lines_around(source, within)
         last = end if end == len(source.text) else end - 1  # an insertion after the line end is in the next line
-        found = [edit for edit in found if start <= edit.span.start <= last and edit.span.end <= end]
-    return tuple(found)
+        changes = [edit for edit in changes if start <= edit.span.start <= last and edit.span.end <= end]
+    return tuple(changes)
 
 
 def _gaps(analysis: Analysis, path: str, layout: FileLayout) -> Iterator[Spacing]:

@@ -44,37 +44,37 @@ def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
         following = tokens[i + 1]
         if following in ("}", "]"):
             is_flat = open_flat.pop()
-            wanted = _flat_gap(tokens, i) if is_flat else f"\n{layout.indent(len(open_flat))}"
+            white_space = _flat_gap(tokens, i) if is_flat else f"\n{layout.indent(len(open_flat))}"
         elif token in ("{", "[", ",") and not open_flat[-1]:
-            wanted = new_line(text[space.start : space.end] if token == "," else "", layout.indent(len(open_flat)))
+            white_space = new_line(text[space.start : space.end] if token == "," else "", layout.indent(len(open_flat)))
         else:
-            wanted = _flat_gap(tokens, i)
-        yield Spacing(space, wanted)
-        if wanted.startswith("\n"):
+            white_space = _flat_gap(tokens, i)
+        yield Spacing(space, white_space)
+        if white_space.startswith("\n"):
             column = layout.column(len(open_flat))
         else:
-            column += len(token) + len(wanted)
+            column += len(token) + len(white_space)
     yield Spacing(Span(spans[-1].end, len(text)), "\n")
 
 
 def _like(text: str, layout: FileLayout) -> FileLayout:
     """The layout with the width of the first indented line, if that is one of the usual ones."""
-    found = _FIRST_INDENT.search(text)
-    if found is None or len(found[1]) not in _WIDTHS or found[1][0] == "\t":
+    first_indent = _FIRST_INDENT.search(text)
+    if first_indent is None or len(first_indent[1]) not in _WIDTHS or first_indent[1][0] == "\t":
         return layout
-    return replace(layout, width=len(found[1]), tabs=False)
+    return replace(layout, width=len(first_indent[1]), tabs=False)
 
 
 def _closers(tokens: list[str]) -> dict[int, int]:
     """Index of each opening bracket -> index of the matching closing one."""
-    found: dict[int, int] = {}
+    closer_of: dict[int, int] = {}
     opened: list[int] = []
     for i, token in enumerate(tokens):
         if token in ("{", "["):
             opened.append(i)
         elif token in ("}", "]"):
-            found[opened.pop()] = i
-    return found
+            closer_of[opened.pop()] = i
+    return closer_of
 
 
 def _flat_gap(tokens: list[str], i: int) -> str:

@@ -59,12 +59,12 @@ def new_line(before: str, indent: str) -> str:
 def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
     """The smallest edits that fill the gaps."""
     gaps = list(gaps)
-    line_end = next((found[0] for gap in gaps if (found := _LINE_END.search(text, *gap.span))), None)
+    line_end = next((match[0] for gap in gaps if (match := _LINE_END.search(text, *gap.span))), None)
     if line_end is None:
         first = _LINE_END.search(text)
         line_end = first[0] if first else "\n"
-    for span, wanted in gaps:
-        new = wanted.replace("\n", line_end)
+    for span, filling in gaps:
+        new = filling.replace("\n", line_end)
         old = text[span.start : span.end]
         # Separate from the line breaks, so that the indentation of a line can be changed without the line before it.
         old_breaks, new_breaks = _indent_start(old), _indent_start(new)

@@ -152,7 +152,7 @@ class _Formatter:
     def between(self, element: Element) -> list[Span]:
         """The gaps before the attributes."""
         ends = [element.name_span.end, *(attribute.span.end for attribute in element.attributes)]
-        return [Span(end, each.span.start) for end, each in zip(ends, element.attributes, strict=False)]
+        return [Span(end, attribute.span.start) for end, attribute in zip(ends, element.attributes, strict=False)]
 
     # ----------------------------------------------------------- on one line
 

@@ -54,8 +54,8 @@ def items_at(analysis: Analysis, path: str, offset: int) -> tuple[CallHierarchyI
             symbols.update(dict.fromkeys(interfaces_of(analysis, symbol)))
         elif symbol.kind in _CALLABLE:
             symbols[symbol] = None
-    found = (_item(analysis, symbol) for symbol in symbols)
-    return tuple(item for item in found if item is not None)
+    candidates = (_item(analysis, symbol) for symbol in symbols)
+    return tuple(item for item in candidates if item is not None)
 
 
 def incoming(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
@@ -85,13 +85,13 @@ def _calls(analysis: Analysis, edges: Iterable[_Edge]) -> tuple[HierarchyCall, .
     places: dict[Symbol, dict[Span, None]] = {}
     for symbol, span in edges:
         places.setdefault(symbol, {})[span] = None
-    found = ((_item(analysis, symbol), tuple(sorted(spans))) for symbol, spans in places.items())
-    return tuple(HierarchyCall(item, spans) for item, spans in found if item is not None)
+    callers = ((_item(analysis, symbol), tuple(sorted(spans))) for symbol, spans in places.items())
+    return tuple(HierarchyCall(item, spans) for item, spans in callers if item is not None)
 
 
 def _item(analysis: Analysis, symbol: Symbol) -> CallHierarchyItem | None:
-    found = thing(analysis, (symbol,))
-    own = [use for use in found.uses if use.occurrence.symbol == symbol]
+    group = thing(analysis, (symbol,))
+    own = [use for use in group.uses if use.occurrence.symbol == symbol]
     use = next((use for use in own if use.occurrence.defines), own[0] if own else None)
     if use is None:
         return None
@@ -127,10 +127,10 @@ def _machine(analysis: Analysis, path: str) -> Symbol | None:
 
 
 def _of_event(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
-    wanted = Access.WRITE if into else Access.READ
+    access = Access.WRITE if into else Access.READ
     for use in thing(analysis, (symbol,)).uses:
         machine = _machine(analysis, use.path)
-        if machine is not None and use.occurrence.access is wanted:
+        if machine is not None and use.occurrence.access is access:
             yield machine, use.occurrence.span
 
 
@@ -145,8 +145,8 @@ def _of_interface(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator
 
 
 def _systems(analysis: Analysis, path: str) -> tuple[System, ...]:
-    found = (analysis.system(system) for system in analysis.systems_of(path) if system)
-    return tuple(system for system in found if system is not None)
+    owners = (analysis.system(system) for system in analysis.systems_of(path) if system)
+    return tuple(system for system in owners if system is not None)
 
 
 def _interface(system: System, automaton: SystemAutomaton, use: InterfaceUse) -> Symbol | None:
@@ -168,23 +168,25 @@ def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
 def _places(analysis: Analysis, system: str, automaton: SystemAutomaton, use: InterfaceUse) -> tuple[Span, ...]:
     """The places where a machine uses a declaration; the declaration itself if there are none."""
     known = uses(analysis, automaton.path, system).by_symbol
-    found = list(known.get(automaton.symbol(use), ()))
-    if use.name and not found:  # the interface itself is the handle
-        found = list(known.get(interface_symbol(system, use.kind, use.name), ()))
-    wanted = Access.WRITE if use.kind in _SENDING else Access.READ
-    chosen = [each for each in found if each.access is wanted] or [each for each in found if each.access is Access.TEXT]
-    return tuple(each.span for each in chosen)
+    occurrences = list(known.get(automaton.symbol(use), ()))
+    if use.name and not occurrences:  # the interface itself is the handle
+        occurrences = list(known.get(interface_symbol(system, use.kind, use.name), ()))
+    access = Access.WRITE if use.kind in _SENDING else Access.READ
+    chosen = [occurrence for occurrence in occurrences if occurrence.access is access] or [
+        occurrence for occurrence in occurrences if occurrence.access is Access.TEXT
+    ]
+    return tuple(occurrence.span for occurrence in chosen)
 
 
 # ------------------------------------------------------------- machines, trees
 
 
 def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
-    wanted = Access.READ if into else Access.WRITE
+    access = Access.READ if into else Access.WRITE
     for system in analysis.systems_of(symbol.path):
-        for each in uses(analysis, symbol.path, system).all:
-            if each.symbol.kind is SymbolKind.EVENT and each.access is wanted:
-                yield each.symbol, each.span
+        for occurrence in uses(analysis, symbol.path, system).all:
+            if occurrence.symbol.kind is SymbolKind.EVENT and occurrence.access is access:
+                yield occurrence.symbol, occurrence.span
     for linked in _systems(analysis, symbol.path):
         for automaton in linked.automata_of(symbol.path):
             for use in automaton.outline.interfaces:
@@ -231,7 +233,7 @@ def _in_tree(analysis: Analysis, place: Location) -> Iterator[_Edge]:
         if tree.id is None or tree.id.span != place.span:
             continue
         for system in analysis.systems_of(place.path):
-            for each in uses(analysis, place.path, system).all:
-                inside = tree.element.content_span.start <= each.span.start < tree.element.content_span.end
-                if inside and each.symbol.kind in (SymbolKind.MACHINE, SymbolKind.TREE):
-                    yield each.symbol, each.span
+            for occurrence in uses(analysis, place.path, system).all:
+                inside = tree.element.content_span.start <= occurrence.span.start < tree.element.content_span.end
+                if inside and occurrence.symbol.kind in (SymbolKind.MACHINE, SymbolKind.TREE):
+                    yield occurrence.symbol, occurrence.span

@@ -33,10 +33,10 @@ class TypeItem:
 
 def types_at(analysis: Analysis, path: str, offset: int) -> tuple[TypeItem, ...]:
     """The types at a caret: written there, or those of the variable, field or member."""
-    found: dict[Symbol, None] = {}
-    for each in occurrences_at(analysis, path, offset):
-        found.update(dict.fromkeys(_types_of(analysis, path, each.symbol)))
-    items = (_item(analysis, symbol, ()) for symbol in found)
+    symbols: dict[Symbol, None] = {}
+    for occurrence in occurrences_at(analysis, path, offset):
+        symbols.update(dict.fromkeys(_types_of(analysis, path, occurrence.symbol)))
+    items = (_item(analysis, symbol, ()) for symbol in symbols)
     return tuple(item for item in items if item is not None)
 
 
@@ -48,13 +48,13 @@ def members_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
 def holders_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
     """The types that have a field or member of a type."""
     candidates = _structs(analysis, symbol.path) if symbol.kind is SymbolKind.STRUCT else _used(analysis)
-    found = ((each, name) for each in candidates for name, inner in _inside(analysis, each) if inner == symbol)
-    return _items(analysis, found)
+    fields = ((holder, name) for holder in candidates for name, inner in _inside(analysis, holder) if inner == symbol)
+    return _items(analysis, fields)
 
 
-def _items(analysis: Analysis, found: Iterator[tuple[Symbol, str]]) -> tuple[TypeItem, ...]:
+def _items(analysis: Analysis, holders: Iterator[tuple[Symbol, str]]) -> tuple[TypeItem, ...]:
     fields: dict[Symbol, list[str]] = {}
-    for symbol, field in found:
+    for symbol, field in holders:
         fields.setdefault(symbol, []).append(field)
     items = (_item(analysis, symbol, tuple(names)) for symbol, names in fields.items())
     return tuple(item for item in items if item is not None)
@@ -64,8 +64,8 @@ def _item(analysis: Analysis, symbol: Symbol, fields: tuple[str, ...]) -> TypeIt
     place = definition_of(analysis, symbol)
     if place is None or analysis.source(place.path) is None:
         return None
-    what = "struct" if symbol.kind is SymbolKind.STRUCT else KIND_NAMES[_kind(symbol)]
-    return TypeItem(symbol, ", ".join(fields) or what, place)
+    kind_name = "struct" if symbol.kind is SymbolKind.STRUCT else KIND_NAMES[_kind(symbol)]
+    return TypeItem(symbol, ", ".join(fields) or kind_name, place)
 
 
 def _kind(symbol: Symbol) -> Kind:
@@ -123,18 +123,18 @@ def _structs(analysis: Analysis, system: str) -> list[Symbol]:
 
 def _used(analysis: Analysis) -> list[Symbol]:
     """The ROS types that machines declare, and the types inside them."""
-    found: dict[Symbol, None] = {}
+    ros_types: dict[Symbol, None] = {}
     for path in dict.fromkeys(p for system in analysis.system_paths for p in analysis.files_of(system)):
         machine = analysis.machine(path)
-        for each in machine.declarations if machine else ():
-            kind = INTERFACE_KINDS.get(each.kind)
-            definition = analysis.registry.resolve(kind, each.type.value) if kind and each.type else None
+        for declaration in machine.declarations if machine else ():
+            kind = INTERFACE_KINDS.get(declaration.kind)
+            definition = analysis.registry.resolve(kind, declaration.type.value) if kind and declaration.type else None
             if isinstance(definition, Definition):
-                found[Symbol("", SymbolKind.ROS_TYPE, definition.full_name, definition.kind)] = None
-    todo = list(found)
+                ros_types[Symbol("", SymbolKind.ROS_TYPE, definition.full_name, definition.kind)] = None
+    todo = list(ros_types)
     while todo:
         for _, inner in _inside(analysis, todo.pop()):
-            if inner not in found:
-                found[inner] = None
+            if inner not in ros_types:
+                ros_types[inner] = None
                 todo.append(inner)
-    return list(found)
+    return list(ros_types)

@@ -23,7 +23,7 @@ def listed_file(place: Place) -> tuple[Span, str] | None:
     system, tree = analysis.system_file(path), analysis.tree(path)
     written = [entry.src for entry in system.inputs] if system else []
     written += [include.path for include in tree.includes] if tree else []
-    named = next((each for each in written if each and each.span.contains(offset)), None)
+    named = next((name for name in written if name and name.span.contains(offset)), None)
     if named is None:
         return None
     text = content(analysis, path, resolve(path, named.value))
@@ -39,11 +39,11 @@ def content(analysis: Analysis, system: str, path: str) -> str:
         case FileKind.MACHINE if machine and machine.name:
             return describe(analysis, Symbol(path, SymbolKind.MACHINE, machine.name.value))
         case FileKind.TREE if tree:
-            trees = names(each.id.value for each in tree.trees if each.id)
+            trees = names(behavior_tree.id.value for behavior_tree in tree.trees if behavior_tree.id)
             return lines(f"Behavior trees {trees}" if trees else "Behavior tree", file(path))
         case FileKind.PROPERTIES:
             return paragraphs(_properties(analysis, path), file(path))
-    structs = names(each.name.value for each in analysis.struct_declarations(path) if each.name)
+    structs = names(declaration.name.value for declaration in analysis.struct_declarations(path) if declaration.name)
     return (
         lines(f"Structs {structs}", file(path))
         if structs
@@ -53,10 +53,10 @@ def content(analysis: Analysis, system: str, path: str) -> str:
 
 def _properties(analysis: Analysis, path: str) -> str:
     value = analysis.json(path)
-    found = value[0].get("properties") if value and isinstance(value[0], JsonObject) else None
+    entries = value[0].get("properties") if value and isinstance(value[0], JsonObject) else None
     rows = []
-    for each in found.items if isinstance(found, JsonArray) else ():
-        parts = members(each)
+    for entry in entries.items if isinstance(entries, JsonArray) else ():
+        parts = members(entry)
         called, expression = parts.get("name"), parts.get("expression")
         if isinstance(called, JsonString) and expression is not None:
             rows.append(f"{called.value}: {formula(expression)}")

@@ -19,18 +19,18 @@ def global_variable(place: Place) -> tuple[Span, str] | None:
     """The global variable whose name is at a place, in each system of the file."""
     analysis, offset = place.analysis, place.offset
     value = analysis.json(place.path)
-    found = value_at(value[0], offset) if value else None
-    if not isinstance(found, JsonString) or not found.content_span.contains(offset):
+    hovered = value_at(value[0], offset) if value else None
+    if not isinstance(hovered, JsonString) or not hovered.content_span.contains(offset):
         return None
     texts: dict[str, None] = {}
-    for each in place.systems:
-        system = analysis.system(each) if each else None
-        variable = analysis.globals(each).get(found.value) if each else None
+    for owner in place.systems:
+        system = analysis.system(owner) if owner else None
+        variable = analysis.globals(owner).get(hovered.value) if owner else None
         if system is not None and variable is not None:
-            node = describe_system.node_of(system, found.value)
+            node = describe_system.node_of(system, hovered.value)
             about = describe_system.node(system, node) if node else ""
             texts[paragraphs(describe_properties.global_variable(variable), about)] = None
-    return (found.content_span, paragraphs(*texts)) if texts else None
+    return (hovered.content_span, paragraphs(*texts)) if texts else None
 
 
 def in_json(place: Place) -> tuple[Span, str] | None:
@@ -64,49 +64,49 @@ def in_json(place: Place) -> tuple[Span, str] | None:
 
 def value_at(value: JsonValue, offset: int) -> JsonValue | None:
     """The innermost value around an offset; None on keys and between values."""
-    found: JsonValue | None = value
-    while found is not None:
-        if isinstance(found, JsonObject):
-            member = next((each for each in found.members if each.span.contains(offset)), None)
+    innermost: JsonValue | None = value
+    while innermost is not None:
+        if isinstance(innermost, JsonObject):
+            member = next((candidate for candidate in innermost.members if candidate.span.contains(offset)), None)
             if member is None:
-                return found
+                return innermost
             if member.key_span.contains(offset) or member.value is None or not member.value.span.contains(offset):
                 return None
-            found = member.value
-        elif isinstance(found, JsonArray):
-            inner = next((each for each in found.items if each.span.contains(offset)), None)
+            innermost = member.value
+        elif isinstance(innermost, JsonArray):
+            inner = next((item for item in innermost.items if item.span.contains(offset)), None)
             if inner is None:
-                return found
-            found = inner
+                return innermost
+            innermost = inner
         else:
-            return found if found.span.contains(offset) else None
+            return innermost if innermost.span.contains(offset) else None
     return None
 
 
 def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObject, Member]]:
     """The members around an offset, innermost first, with their objects and their declarations in the schema."""
-    found: list[tuple[Schema, JsonObject, Member]] = []
+    around: list[tuple[Schema, JsonObject, Member]] = []
     schema, inner = PROPERTIES.root, value
     while True:
         if isinstance(inner, JsonArray):
             schema = PROPERTIES.item(schema, inner)
-            item = next((each for each in inner.items if each.span.contains(offset)), None)
+            item = next((candidate for candidate in inner.items if candidate.span.contains(offset)), None)
             if item is None:
                 break
             inner = item
         elif isinstance(inner, JsonObject):
-            member = next((each for each in inner.members if each.span.contains(offset)), None)
+            member = next((candidate for candidate in inner.members if candidate.span.contains(offset)), None)
             if member is None:
                 break
             if any(inner.get(key) for key in _OF_FORMULAS):
                 schema = PROPERTIES.definition("formula")
-            found.append((schema, inner, member))
+            around.append((schema, inner, member))
             if member.value is None:
                 break
             schema, inner = PROPERTIES.member(schema, inner, member.key), member.value
         else:
             break
-    yield from reversed(found)
+    yield from reversed(around)
 
 
 _OF_FORMULAS = ("op", "constant", "distribution")

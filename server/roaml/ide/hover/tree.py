@@ -25,5 +25,5 @@ def tree_node(place: Place) -> tuple[Span, str] | None:
 
 def name_at(node: TreeNode, offset: int) -> Span | None:
     """The tag, the plugin or the name of a node at a place."""
-    spans = [node.element.name_span, *(each.span for each in (node.plugin, node.name) if each)]
+    spans = [node.element.name_span, *(name.span for name in (node.plugin, node.name) if name)]
     return next((span for span in spans if span.contains(offset)), None)

@@ -131,15 +131,15 @@ class Trees:
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
         """Of each plugin and subtree, what its ports hold where a tree does not set them."""
-        found: dict[str, dict[str, Setting]] = {}
+        settings: dict[str, dict[str, Setting]] = {}
         for path, file in self.files.items():
             for model in file.models:
                 for port in model.ports:
                     default = port.element.get("default")
                     if model.id and port.name and default is not None:
                         setting = Setting(path, Name(default.value, default.value_span))
-                        found.setdefault(model.id.value, {}).setdefault(port.name.value, setting)
-        return found
+                        settings.setdefault(model.id.value, {}).setdefault(port.name.value, setting)
+        return settings
 
     @cached_property
     def _expansion(self) -> expand.Expansion:
@@ -248,8 +248,8 @@ class Trees:
             for name in frame.names:
                 inner = frame
                 while inner.outer is not None and inner.is_shared(name):
-                    one, other = sorted((root((*inner.key, name)), root((*inner.outer.key, name))))
-                    above[other] = one
+                    first, other = sorted((root((*inner.key, name)), root((*inner.outer.key, name))))
+                    above[other] = first
                     inner = inner.outer
         return above
 
@@ -275,15 +275,15 @@ class Trees:
     @cached_property
     def full_names(self) -> Mapping[str, tuple[Piece, ...]]:
         """The full name of each variable in the translation -> its parts."""
-        found: dict[str, tuple[Piece, ...]] = {}
+        by_name: dict[str, tuple[Piece, ...]] = {}
         for frame in self.frames:
             for name in frame.names:
                 if not name.startswith("@") and name not in frame.settings and not frame.is_shared(name):
                     pieces = (*frame.prefix, (name, self.variable(*frame.key, name), Form.AS_IS))
-                    found.setdefault("".join(piece[0] for piece in pieces), pieces)
+                    by_name.setdefault("".join(piece[0] for piece in pieces), pieces)
                 elif name.startswith("@"):
-                    found.setdefault(name[1:], ((name[1:], self.variable(*frame.key, name), Form.AS_IS),))
-        return found
+                    by_name.setdefault(name[1:], ((name[1:], self.variable(*frame.key, name), Form.AS_IS),))
+        return by_name
 
     def constant(self, number: int, key: str) -> Setting | None:
         """The text that gives the port `key` of a node a constant."""

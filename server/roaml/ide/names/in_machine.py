@@ -62,8 +62,8 @@ _WORD = re.compile(r"\S+")
 
 def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
     """The topic, service or action `name` of a declaration of `kind`. Topics are identified by their sanitised name."""
-    what = CHANNEL_KINDS[kind]
-    return Symbol(owner, what, sanitise(name) if what is SymbolKind.TOPIC else name)
+    channel_kind = CHANNEL_KINDS[kind]
+    return Symbol(owner, channel_kind, sanitise(name) if channel_kind is SymbolKind.TOPIC else name)
 
 
 def is_implicit(declaration: Declaration) -> bool:
@@ -144,8 +144,8 @@ class _Machine:
         if name is None or declaration is None:
             return
         if is_implicit(declaration):
-            for found in self.interface(name, declaration):
-                yield Occurrence(found.span, found.symbol, access=access)
+            for part in self.interface(name, declaration):
+                yield Occurrence(part.span, part.symbol, access=access)
         else:
             yield Occurrence(name.span, Symbol(self.path, declaration.kind, name.value), access=access)
 
@@ -163,10 +163,10 @@ class _Machine:
             yield from self.state(chart, state.id, defines=True)
             for handler in state.handlers:
                 yield from self.handler(chart, handler)
-        for _, each, body in bodies(chart):
-            known = bindings(each, "body", self.machine, self.environment) if each else {}
+        for _, owner, body in bodies(chart):
+            known = bindings(owner, "body", self.machine, self.environment) if owner else {}
             for statement in statements(body):
-                yield from self.statement(_Scope(self, chart, each, known), statement)
+                yield from self.statement(_Scope(self, chart, owner, known), statement)
 
     def state(self, chart: Chart, name: Name | None, *, defines: bool = False) -> Iterator[Occurrence]:
         if name is not None:
@@ -181,27 +181,27 @@ class _Machine:
                 start = self.text.rfind(data.id.value, 0, data.type.span.start)
                 yield Occurrence(Span(start, start + len(data.id.value)), symbol)
         yield from type_use(self.owner, data.type)
-        wanted: Type = UNKNOWN
+        required_type: Type = UNKNOWN
         if data.type is not None and data.type.name is not None:
-            wanted = resolve_type(data.type.name, self.environment.struct) or UNKNOWN
+            required_type = resolve_type(data.type.name, self.environment.struct) or UNKNOWN
         scope = _Scope(self, chart, None, {})
         for value in (data.value, data.lower, data.upper):
             yield from self.value(scope, value)
             if isinstance(value, Expression):
-                yield from self.keys(value.tree, wanted)
+                yield from self.keys(value.tree, required_type)
 
-    def keys(self, expr: Expr, wanted: Type) -> Iterator[Occurrence]:
+    def keys(self, expr: Expr, required_type: Type) -> Iterator[Occurrence]:
         """The member names in an initial value."""
-        if isinstance(expr, ArrayLiteral) and isinstance(wanted, Array):
+        if isinstance(expr, ArrayLiteral) and isinstance(required_type, Array):
             for element in expr.elements:
-                yield from self.keys(element, wanted.element)
-        if isinstance(expr, ObjectLiteral) and isinstance(wanted, Struct):
+                yield from self.keys(element, required_type.element)
+        if isinstance(expr, ObjectLiteral) and isinstance(required_type, Struct):
             for member in expr.members:
                 lead = self.text[member.key_span.start : member.key_span.end].find(member.key)
-                type_ = wanted.member(member.key)
+                type_ = required_type.member(member.key)
                 if type_ is not None and lead >= 0:
                     start = member.key_span.start + lead
-                    symbol = Symbol(self.owner, SymbolKind.MEMBER, member.key, wanted.name)
+                    symbol = Symbol(self.owner, SymbolKind.MEMBER, member.key, required_type.name)
                     yield Occurrence(Span(start, start + len(member.key)), symbol, access=Access.WRITE)
                     yield from self.keys(member.value, type_)
 

@@ -48,8 +48,8 @@ def in_properties(
     text: str, properties: Iterable[Property], table: Mapping[str, tuple[Piece, ...]]
 ) -> Iterator[Occurrence]:
     """`table` is the result of `names`."""
-    for each in properties:
-        for identifier, span in identifiers(each.expression):
+    for prop in properties:
+        for identifier, span in identifiers(prop.expression):
             if text[span.start : span.end] == identifier:
                 yield from _occurrences(table.get(identifier, ()), span.start)
 
@@ -66,11 +66,11 @@ def names(
 ) -> Mapping[str, tuple[Piece, ...]]:
     """The name of each global variable of the translation -> its parts."""
     events = {_text(pieces): (pieces, part) for pieces, part in _events(system, trees, interface)}
-    found = {}
+    pieces_by_name = {}
     for name, variable in variables.items():
         event, part = events.get(variable.event, ((_plain(variable.event),), UNKNOWN))
-        found[name] = (*event, *_rest(name[len(variable.event) :], variable, part, system, trees))
-    return found
+        pieces_by_name[name] = (*event, *_rest(name[len(variable.event) :], variable, part, system, trees))
+    return pieces_by_name
 
 
 def _text(pieces: Iterable[Piece]) -> str:
@@ -107,9 +107,9 @@ def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[
 def _part(channel: Channel, part: str, interface: FindInterface) -> Type:
     """The fields of a part of a topic, service or action."""
     for endpoint in channel.endpoints:
-        found = interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type) if part else None
-        if found is not None:
-            return dict(found.parts).get(part, UNKNOWN)
+        definition = interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type) if part else None
+        if definition is not None:
+            return dict(definition.parts).get(part, UNKNOWN)
     return UNKNOWN
 
 

@@ -29,7 +29,7 @@ def in_xml(declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Oc
 
 def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Occurrence]:
     """A property that is an object names both a member and a struct (docs/spec/types.md#json-structs)."""
-    found: dict[Occurrence, None] = {}
+    occurrences: dict[Occurrence, None] = {}
     names = set()
     for struct in declarations:
         if struct.name is None:
@@ -37,20 +37,20 @@ def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaratio
         names.add(struct.name.value)
         span = _span(text, struct.name)
         if span is not None:
-            found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, struct.name.value), defines=True)] = None
+            occurrences[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, struct.name.value), defines=True)] = None
         for member in struct.members:
             span = _span(text, member.name)
             if member.name is None or span is None:
                 continue
             symbol = Symbol(owner, SymbolKind.MEMBER, member.name.value, struct.name.value)
-            found[Occurrence(span, symbol, defines=True)] = None
+            occurrences[Occurrence(span, symbol, defines=True)] = None
             inner = member.type.name if member.type else None
             if inner is not None and inner.base == member.name.value and not _refers(text, member.type):
-                found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, inner.base), defines=True)] = None
+                occurrences[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, inner.base), defines=True)] = None
     for name, span in _definitions(value):
         if name in names and text[span.start : span.end] == name:
-            found[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, name), defines=True)] = None
-    yield from found
+            occurrences[Occurrence(span, Symbol(owner, SymbolKind.STRUCT, name), defines=True)] = None
+    yield from occurrences
 
 
 def _span(text: str, name: Name | None) -> Span | None:
@@ -80,7 +80,7 @@ def _definitions(value: JsonValue) -> Iterator[tuple[str, Span]]:
             if member.value is not None:
                 stack.append(member.value)
             if member.key in ("$defs", "definitions") and node is value and isinstance(member.value, JsonObject):
-                yield from ((each.key, each.key_content_span) for each in member.value.members)
+                yield from ((definition.key, definition.key_content_span) for definition in member.value.members)
             elif member.key == "$ref" and isinstance(member.value, JsonString):
                 name = member.value.value.rpartition("/")[2]
                 span = member.value.content_span

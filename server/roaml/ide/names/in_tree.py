@@ -183,7 +183,7 @@ class _Tree:
         """Topics, services and actions in the values of ports."""
         if self.system is None:
             return
-        found: dict[Occurrence, None] = {}
+        occurrences: dict[Occurrence, None] = {}
         for automaton in self.system.automata:
             if automaton.instance is None:
                 continue
@@ -195,8 +195,8 @@ class _Tree:
                         symbol = interface_symbol(self.owner, use.kind, name.value)
                         span = without_slash(name) if symbol.kind is SymbolKind.TOPIC else name.span
                         if span.end > span.start:
-                            found[Occurrence(span, symbol)] = None
-        yield from found
+                            occurrences[Occurrence(span, symbol)] = None
+        yield from occurrences
 
 
 _NAMING = {

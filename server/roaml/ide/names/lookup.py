@@ -57,40 +57,40 @@ class SymbolGroup:
 def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
     """The occurrences at a caret, in each system; a name that begins there takes precedence over one that ends
     there."""
-    found = dict.fromkeys(
-        each
+    touching = dict.fromkeys(
+        occurrence
         for system in analysis.systems_of(path)
-        for each in uses(analysis, path, system).all
-        if each.span.contains(offset) and each.span.start < each.span.end
+        for occurrence in uses(analysis, path, system).all
+        if occurrence.span.contains(offset) and occurrence.span.start < occurrence.span.end
     )
-    starting = [each for each in found if each.span.start <= offset < each.span.end]
-    return tuple(starting or found)
+    starting = [occurrence for occurrence in touching if occurrence.span.start <= offset < occurrence.span.end]
+    return tuple(starting or touching)
 
 
 def thing_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup | None:
     """All that means the same as the name at a caret; None if no name stands there."""
-    found = occurrences_at(analysis, path, offset)
-    return thing(analysis, (each.symbol for each in found)) if found else None
+    occurrences = occurrences_at(analysis, path, offset)
+    return thing(analysis, (occurrence.symbol for occurrence in occurrences)) if occurrences else None
 
 
 def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
     """All uses of some symbols, and of the symbols that share a place with one of them."""
     seen = dict.fromkeys(symbols)
     todo = list(seen)
-    found: dict[tuple[str, Span], SymbolUse] = {}
+    uses_by_place: dict[tuple[str, Span], SymbolUse] = {}
     while todo:
         symbol = todo.pop(0)
         for path, uses_ in where(analysis, symbol):
             for occurrence in uses_.by_symbol.get(symbol, ()):
                 place = (path, occurrence.span)
                 # Of several at one place, the definition is the most specific, then the requested one.
-                if place not in found or (occurrence.defines and not found[place].occurrence.defines):
-                    found[place] = SymbolUse(path, occurrence)
+                if place not in uses_by_place or (occurrence.defines and not uses_by_place[place].occurrence.defines):
+                    uses_by_place[place] = SymbolUse(path, occurrence)
                 for other in _sharing(analysis, path, occurrence.span):
                     if other not in seen:
                         seen[other] = None
                         todo.append(other)
-    return SymbolGroup(tuple(seen), tuple(found[place] for place in sorted(found)))
+    return SymbolGroup(tuple(seen), tuple(uses_by_place[place] for place in sorted(uses_by_place)))
 
 
 def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:

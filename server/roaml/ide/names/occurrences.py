@@ -46,17 +46,17 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
     return uses(analysis, path, system).all
 
 
-def _index(found: Iterable[Occurrence]) -> Uses:
+def _index(occurrences: Iterable[Occurrence]) -> Uses:
     """Each occurrence, without duplicates."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
     ordered: list[Occurrence] = []
-    for each in sorted(found, key=lambda each: (each.span, each.symbol.kind)):
-        there = by_span.setdefault(each.span, [])
-        if each not in there:
-            there.append(each)
-            ordered.append(each)
-            by_symbol.setdefault(each.symbol, []).append(each)
+    for occurrence in sorted(occurrences, key=lambda o: (o.span, o.symbol.kind)):
+        there = by_span.setdefault(occurrence.span, [])
+        if occurrence not in there:
+            there.append(occurrence)
+            ordered.append(occurrence)
+            by_symbol.setdefault(occurrence.symbol, []).append(occurrence)
     return Uses(
         tuple(ordered),
         {symbol: tuple(uses_) for symbol, uses_ in by_symbol.items()},

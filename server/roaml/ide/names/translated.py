@@ -13,7 +13,7 @@ from roaml.project.analysis import Analysis
 
 def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable, ...]:
     """The global variables whose names contain a symbol, in all its systems, flags (`.valid`) first."""
-    found: dict[str, GlobalVariable] = {}
+    result: dict[str, GlobalVariable] = {}
     if symbol.path:
         systems = (symbol.path,) if symbol.path in analysis.system_paths else analysis.systems_of(symbol.path)
     else:
@@ -22,20 +22,20 @@ def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable
         if system is not None:
             variables = analysis.globals(system)
             names = _by_symbol(analysis, system).get(symbol, ())
-            found.update((name, variables[name]) for name in names if name in variables)
-    return tuple(sorted(found.values(), key=lambda each: each.parameter != "valid"))
+            result.update((name, variables[name]) for name in names if name in variables)
+    return tuple(sorted(result.values(), key=lambda variable: variable.parameter != "valid"))
 
 
 def _by_symbol(analysis: Analysis, system: str) -> Mapping[Symbol, tuple[str, ...]]:
     names = global_names(analysis, system)
 
     def invert() -> Mapping[Symbol, tuple[str, ...]]:
-        found: dict[Symbol, dict[str, None]] = {}
+        names_by_symbol: dict[Symbol, dict[str, None]] = {}
         for name, pieces in names.items():
             for _, symbol, _ in pieces:
                 if symbol is not None:
-                    found.setdefault(symbol, {})[name] = None
-        return {symbol: tuple(each) for symbol, each in found.items()}
+                    names_by_symbol.setdefault(symbol, {})[name] = None
+        return {symbol: tuple(names) for symbol, names in names_by_symbol.items()}
 
     key = (analysis.system(system), trees_of(analysis, system, system))
     return analysis.memo.get("global names by symbol", system, key, invert)

@@ -35,8 +35,8 @@ def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ..
     file = _file_at(analysis, path, offset)
     if file is not None:
         return (Location(file, Span(0, 0)),)
-    found = thing_at(analysis, path, offset)
-    return () if found is None else (*found.definitions, *_ros(analysis, found.symbols), *_builtin(found.symbols))
+    group = thing_at(analysis, path, offset)
+    return () if group is None else (*group.definitions, *_ros(analysis, group.symbols), *_builtin(group.symbols))
 
 
 def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
@@ -48,19 +48,19 @@ def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
 
 def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """Like `definition`; for topics, services and actions the declarations of all participants."""
-    found = thing_at(analysis, path, offset)
-    if found is None or not found.kinds & set(INTERFACES):
+    group = thing_at(analysis, path, offset)
+    if group is None or not group.kinds & set(INTERFACES):
         return definition(analysis, path, offset)
-    return tuple(use.location for use in found.uses if use.occurrence.access is Access.TEXT)
+    return tuple(use.location for use in group.uses if use.occurrence.access is Access.TEXT)
 
 
 def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """The file of a tree node's plugin, the handlers of an event; otherwise the definition."""
-    found = thing_at(analysis, path, offset)
-    if found is not None and SymbolKind.EVENT in found.kinds:
+    group = thing_at(analysis, path, offset)
+    if group is not None and SymbolKind.EVENT in group.kinds:
         return tuple(
             use.location
-            for use in found.uses
+            for use in group.uses
             if use.occurrence.access is Access.READ and analysis.machine(use.path) is not None
         )
     return definition(analysis, path, offset)
@@ -68,17 +68,17 @@ def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location
 
 def references(analysis: Analysis, path: str, offset: int, *, with_declaration: bool = True) -> tuple[Location, ...]:
     """All uses of the symbol at a caret, in all files, sorted."""
-    found = thing_at(analysis, path, offset)
-    if found is None:
+    group = thing_at(analysis, path, offset)
+    if group is None:
         return ()
-    uses = (use.location for use in found.uses if with_declaration or not use.occurrence.defines)
-    return (*uses, *(_ros(analysis, found.symbols) if with_declaration else ()))
+    uses = (use.location for use in group.uses if with_declaration or not use.occurrence.defines)
+    return (*uses, *(_ros(analysis, group.symbols) if with_declaration else ()))
 
 
 def highlights(analysis: Analysis, path: str, offset: int) -> tuple[DocumentHighlight, ...]:
     """All uses of the symbol at a caret, in this file."""
-    found = thing_at(analysis, path, offset)
-    uses: Iterable[SymbolUse] = found.uses if found else ()
+    group = thing_at(analysis, path, offset)
+    uses: Iterable[SymbolUse] = group.uses if group else ()
     return tuple(_highlight(use) for use in uses if use.path == path)
 
 
@@ -88,8 +88,8 @@ def _highlight(use: SymbolUse) -> DocumentHighlight:
 
 
 def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
-    found = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in NOT_OURS)
-    return tuple(dict.fromkeys(place for place in found if place is not None))
+    places = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in NOT_OURS)
+    return tuple(dict.fromkeys(place for place in places if place is not None))
 
 
 def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
@@ -115,11 +115,11 @@ def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
 
 def type_definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """The definition of the type of the symbol at a caret: a struct, or a ROS definition file."""
-    found: dict[Location, None] = {}
+    locations: dict[Location, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
         for system in analysis.systems_of(path):
-            found.update(dict.fromkeys(_type_of(analysis, path, system, occurrence.symbol)))
-    return tuple(found)
+            locations.update(dict.fromkeys(_type_of(analysis, path, system, occurrence.symbol)))
+    return tuple(locations)
 
 
 def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) -> Iterator[Location]:
@@ -159,9 +159,9 @@ def _of_type(analysis: Analysis, owner: str, type_: Type | None) -> Iterator[Loc
 
 def _of_handle(analysis: Analysis, symbol: Symbol) -> Iterator[Location]:
     machine = analysis.machine(symbol.path)
-    for each in machine.declarations if machine else ():
-        if each.kind == symbol.kind and each.handle and each.handle.value == symbol.name and each.type:
-            place = locate_type(analysis, INTERFACE_KINDS.get(each.kind, "msg"), each.type.value)
+    for declared in machine.declarations if machine else ():
+        if declared.kind == symbol.kind and declared.handle and declared.handle.value == symbol.name and declared.type:
+            place = locate_type(analysis, INTERFACE_KINDS.get(declared.kind, "msg"), declared.type.value)
             if place is not None:
                 yield place
 
@@ -174,12 +174,12 @@ def _of_interface(analysis: Analysis, system: System, symbol: Symbol) -> Iterato
             yield place
 
 
-def _of_declarations(analysis: Analysis, found: SymbolGroup) -> Iterator[Location]:
-    for use in found.uses:
+def _of_declarations(analysis: Analysis, group: SymbolGroup) -> Iterator[Location]:
+    for use in group.uses:
         machine = analysis.machine(use.path)
-        for each in machine.declarations if machine else ():
-            name = each.interface
-            if name is not None and name.span.contains(use.occurrence.span.start) and each.type:
-                place = locate_type(analysis, INTERFACE_KINDS[each.kind], each.type.value)
+        for declared in machine.declarations if machine else ():
+            name = declared.interface
+            if name is not None and name.span.contains(use.occurrence.span.start) and declared.type:
+                place = locate_type(analysis, INTERFACE_KINDS[declared.kind], declared.type.value)
                 if place is not None:
                     yield place

@@ -33,7 +33,7 @@ def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...
     if kind is FileKind.SYSTEM and (system := analysis.system_file(path)):
         return (_system(system),)
     if kind is FileKind.STRUCTS:
-        return tuple(_struct(each) for each in analysis.struct_declarations(path))
+        return tuple(_struct(declaration) for declaration in analysis.struct_declarations(path))
     if kind is FileKind.PROPERTIES:
         return tuple(_properties(analysis, path))
     if kind is FileKind.JANI_MODEL and (json := analysis.json(path)):
@@ -72,12 +72,12 @@ def _machine(machine: Machine) -> DocumentSymbol:
 
 def _chart(chart: Chart) -> Iterator[DocumentSymbol]:
     datamodel = chart.element.find("datamodel")
-    data = [_data(each) for each in chart.data]
+    data = [_data(variable) for variable in chart.data]
     if datamodel is not None:
-        inside = [each for each in data if _is_inside(each.span, datamodel.span)]
+        inside = [symbol for symbol in data if _is_inside(symbol.span, datamodel.span)]
         name = Name("datamodel", datamodel.name_span)
         yield _symbol(datamodel, name, DocumentSymbolKind.DATAMODEL, children=inside)
-        data = [each for each in data if each not in inside]
+        data = [symbol for symbol in data if symbol not in inside]
     yield from data
     for state in chart.states:
         yield _state(state)
@@ -111,7 +111,7 @@ def _state(state: State) -> DocumentSymbol:
 def _handler(handler: Handler) -> DocumentSymbol:
     """Named by its event: that of a plain transition, or the element with what it refers to."""
     element = handler.element
-    words = [each.value for each in (handler.handle, handler.child) if each]
+    words = [name.value for name in (handler.handle, handler.child) if name]
     if element.name != "transition":
         words.insert(0, element.name)
     name = handler.event.value if handler.event else " ".join(words)
@@ -171,10 +171,10 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
 def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
     """From the text, not from the model, which contains only the properties without errors."""
     json = analysis.json(path)
-    found = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
-    for each in found.items if isinstance(found, JsonArray) else ():
-        named = members(each)
+    entries = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
+    for entry in entries.items if isinstance(entries, JsonArray) else ():
+        named = members(entry)
         name, comment = named.get("name"), named.get("comment")
         if isinstance(name, JsonString) and name.value:
             detail = comment.value if isinstance(comment, JsonString) else ""
-            yield DocumentSymbol(name.value, detail, DocumentSymbolKind.PROPERTY, each.span, name.content_span)
+            yield DocumentSymbol(name.value, detail, DocumentSymbolKind.PROPERTY, entry.span, name.content_span)

@@ -20,7 +20,7 @@ def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
     for section in value.members:
         make = _SECTIONS.get(section.key)
         if make is not None and isinstance(section.value, JsonArray) and section.value.items:
-            children = tuple(found for item in section.value.items if (found := make(item)) is not None)
+            children = tuple(child for item in section.value.items if (child := make(item)) is not None)
             detail = str(len(section.value.items))
             yield DocumentSymbol(
                 section.key, detail, DocumentSymbolKind.SECTION, section.span, section.key_span, children
@@ -66,11 +66,11 @@ def _automaton(item: JsonValue) -> DocumentSymbol | None:
     parts = members(item)
     children = [
         *(
-            _named(each, DocumentSymbolKind.VARIABLE, _type(members(each).get("type")))
-            for each in _items(parts, "variables")
+            _named(variable, DocumentSymbolKind.VARIABLE, _type(members(variable).get("type")))
+            for variable in _items(parts, "variables")
         ),
-        *(_named(each, DocumentSymbolKind.STATE, "") for each in _items(parts, "locations")),
-        *(_edge(each) for each in _items(parts, "edges")),
+        *(_named(location, DocumentSymbolKind.STATE, "") for location in _items(parts, "locations")),
+        *(_edge(edge) for edge in _items(parts, "edges")),
     ]
     return _named(item, DocumentSymbolKind.MACHINE, "", *(child for child in children if child is not None))
 
@@ -81,8 +81,8 @@ def _edge(item: JsonValue) -> DocumentSymbol | None:
     location, action = parts.get("location"), parts.get("action")
     if not isinstance(location, JsonString):
         return None
-    targets = (members(each).get("location") for each in _items(parts, "destinations"))
-    named = dict.fromkeys(each.value for each in targets if isinstance(each, JsonString))
+    targets = (members(destination).get("location") for destination in _items(parts, "destinations"))
+    named = dict.fromkeys(target.value for target in targets if isinstance(target, JsonString))
     guard = members(parts["guard"]).get("exp") if "guard" in parts else None
     detail = f"{location.value} → {', '.join(named)}"
     if guard is not None:

@@ -25,20 +25,22 @@ class Found:
 
 def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found, ...]:
     """The definitions in some files whose names contain the letters of `query` in that order, ignoring case."""
-    wanted = query.casefold()
-    found: dict[tuple[str, Span, SymbolKind], Found] = {}
+    letters = query.casefold()
+    entries: dict[tuple[str, Span, SymbolKind], Found] = {}
     for path in paths:
         for system in analysis.systems_of(path):
-            for each in uses(analysis, path, system).all:
-                if each.defines and _matches(each.symbol.name.casefold(), wanted):
-                    entry = Found(each.symbol, path, each.span, _container(analysis, path, each.symbol))
-                    found.setdefault((path, each.span, each.symbol.kind), entry)
-    return tuple(found.values())
+            for occurrence in uses(analysis, path, system).all:
+                if occurrence.defines and _matches(occurrence.symbol.name.casefold(), letters):
+                    entry = Found(
+                        occurrence.symbol, path, occurrence.span, _container(analysis, path, occurrence.symbol)
+                    )
+                    entries.setdefault((path, occurrence.span, occurrence.symbol.kind), entry)
+    return tuple(entries.values())
 
 
-def _matches(name: str, wanted: str) -> bool:
+def _matches(name: str, query: str) -> bool:
     letters = iter(name)
-    return all(letter in letters for letter in wanted)
+    return all(letter in letters for letter in query)
 
 
 def _container(analysis: Analysis, path: str, symbol: Symbol) -> str:

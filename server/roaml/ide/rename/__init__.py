@@ -60,10 +60,10 @@ class Renaming:
 
 def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefusal:
     """Whether the symbol at a caret can be renamed."""
-    found, source = thing_at(analysis, path, offset), analysis.source(path)
-    if found is None or source is None:
+    group, source = thing_at(analysis, path, offset), analysis.source(path)
+    if group is None or source is None:
         return RenameRefusal("there is no name here")
-    reason = _fixed(found)
+    reason = _fixed(group)
     if reason:
         return RenameRefusal(reason)
     span = occurrences_at(analysis, path, offset)[0].span
@@ -72,19 +72,19 @@ def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefu
 
 def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | RenameRefusal:
     """The edits that rename the symbol at a caret."""
-    found = thing_at(analysis, path, offset)
-    if found is None:
+    group = thing_at(analysis, path, offset)
+    if group is None:
         return RenameRefusal("there is no name here")
     new = new.strip()
-    if SymbolKind.TOPIC in found.kinds:
+    if SymbolKind.TOPIC in group.kinds:
         new = new.removeprefix("/")
-    reason = _fixed(found) or problem(analysis, found, new)
+    reason = _fixed(group) or problem(analysis, group, new)
     if reason:
         return RenameRefusal(reason)
     edits: dict[str, list[TextEdit]] = {}
-    for use in found.uses:
+    for use in group.uses:
         edits.setdefault(use.path, []).append(TextEdit(use.occurrence.span, _spelled(new, use)))
-    return Renaming({each: tuple(sorted(changes)) for each, changes in edits.items()})
+    return Renaming({edited: tuple(sorted(changes)) for edited, changes in edits.items()})
 
 
 def _spelled(new: str, use: SymbolUse) -> str:
@@ -101,9 +101,9 @@ def _spelled(new: str, use: SymbolUse) -> str:
             return new.replace(".", "__")
 
 
-def _fixed(found: SymbolGroup) -> str:
+def _fixed(group: SymbolGroup) -> str:
     """Why a symbol cannot be renamed at all; "" if it can."""
-    for symbol in found.symbols:
+    for symbol in group.symbols:
         name = symbol.name
         if symbol.kind in NOT_OURS:
             return f"`{name}` is defined by ROS, not by this model"
@@ -113,9 +113,9 @@ def _fixed(found: SymbolGroup) -> str:
             return f"the port `{name}` has a special meaning in a tree"
         if symbol.kind is SymbolKind.TOPIC and name == CLOCK_TOPIC:
             return f"the topic `{name}` is the time of ROS"
-        in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in found.uses)
+        in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in group.uses)
         if in_prefix and not (name[:1].isalpha() or name[:1] == "_"):
             return f"`{name}` is spelled differently in properties"
-    if found.kinds & _NEED_A_DEFINITION and not found.definitions:
-        return f"`{found.symbols[0].name}` is not defined in this workspace"
+    if group.kinds & _NEED_A_DEFINITION and not group.definitions:
+        return f"`{group.symbols[0].name}` is not defined in this workspace"
     return ""

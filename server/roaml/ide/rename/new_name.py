@@ -35,36 +35,36 @@ _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolK
 """Kinds of symbols whose names the translation joins with others by `__`."""
 
 
-def problem(analysis: Analysis, found: SymbolGroup, new: str) -> str:
+def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
     """Why a symbol cannot be named `new`, as a clause; "" if it can."""
-    for symbol in found.symbols:
+    for symbol in group.symbols:
         if symbol.name == new:
             return f"its name is already `{new}`"
-    for kind in sorted(found.kinds):
-        if reason := _form(kind, new, found):
+    for kind in sorted(group.kinds):
+        if reason := _form(kind, new, group):
             return reason
-    for symbol in found.symbols:
+    for symbol in group.symbols:
         for other in _neighbours(analysis, symbol):
-            if other not in found.symbols and _clashes(symbol, other, new):
+            if other not in group.symbols and _clashes(symbol, other, new):
                 return f"{_article(other.kind)} `{other.name}` already exists"
         if symbol.kind is SymbolKind.BLACKBOARD:
             trees = (trees_of(analysis, symbol.path, system) for system in analysis.systems_of(symbol.path))
-            if any(each.is_taken(symbol, new) for each in trees):
+            if any(tree.is_taken(symbol, new) for tree in trees):
                 return f"a blackboard variable `{new}` already exists"
-        if handle := _handle_called(analysis, found, symbol, new):
+        if handle := _handle_called(analysis, group, symbol, new):
             return f"{_article(handle.kind)} `{new}` already exists in a machine that uses it by its name"
     return ""
 
 
-def _handle_called(analysis: Analysis, found: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
+def _handle_called(analysis: Analysis, group: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
     """The declaration for which a handle, or an interface that is its own handle, would be mistaken."""
     if symbol.kind in HANDLES:
         machine = analysis.machine(symbol.path)
         return next((d for d in _declared(machine, new) if is_implicit(d)), None)
     if symbol.kind in _INTERFACES:
-        for machine in map(analysis.machine, dict.fromkeys(use.path for use in found.uses)):
+        for machine in map(analysis.machine, dict.fromkeys(use.path for use in group.uses)):
             own = (d for d in machine.declarations if is_implicit(d)) if machine else ()
-            spans = {use.occurrence.span.end for use in found.uses if analysis.machine(use.path) is machine}
+            spans = {use.occurrence.span.end for use in group.uses if analysis.machine(use.path) is machine}
             if any(d.handle and d.handle.span.end in spans for d in own):
                 return next(iter((*_declared(machine, new), *_declared(machine, f"/{new}"))), None)
     return None
@@ -75,11 +75,11 @@ def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
     return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
 
 
-def _form(kind: SymbolKind, new: str, found: SymbolGroup) -> str:
+def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
     """Why `new` is not a valid name of a kind."""
-    what = _article(kind)
-    cannot = f"`{new}` cannot name {what}"
-    if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in found.symbols):
+    kind_name = _article(kind)
+    cannot = f"`{new}` cannot name {kind_name}"
+    if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in group.symbols):
         return f"{cannot}: `__` separates the parts of names in the translation"
     right: object
     match kind:

@@ -39,15 +39,15 @@ def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> di
     """The ports of the node that the tree does not set: defaults of the schema, number of children, rate of the
     tree."""
     rate = Fraction(str(program.parameters.tick_rate))
-    found = {
+    ports = {
         CHILDREN_COUNT: str(_children(automaton)),
         "TICKS": str(rate.numerator),
         "TICKS_MSEC": str(rate.denominator * _MILLISECONDS_PER_SECOND),
     }
     for attribute in BEHAVIOR_TREE.elements[automaton.outline.name].ports:
         if attribute.port and attribute.port.default:
-            found[attribute.name] = attribute.port.default
-    return found
+            ports[attribute.name] = attribute.port.default
+    return ports
 
 
 def node_file(name: str) -> str | None:

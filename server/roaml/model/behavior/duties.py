@@ -152,14 +152,14 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
     for step in behavior.steps:
         if step.source in configurations:
             incoming.setdefault(step.target, []).append(step.source)
-    found = {number: 0 for number in incoming if number not in configurations}
-    waiting = list(found)
+    distance = {number: 0 for number in incoming if number not in configurations}
+    waiting = list(distance)
     for here in waiting:
         for source in incoming.get(here, ()):
-            if source not in found:
-                found[source] = found[here] + 1
+            if source not in distance:
+                distance[source] = distance[here] + 1
                 waiting.append(source)
-    return found
+    return distance
 
 
 def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
@@ -176,10 +176,10 @@ def _reached(first: set[int], pairs: Iterable[tuple[int, int]]) -> set[int]:
     following: dict[int, list[int]] = {}
     for here, there in pairs:
         following.setdefault(here, []).append(there)
-    found, waiting = set(first), list(first)
+    reached, waiting = set(first), list(first)
     while waiting:
         for there in following.get(waiting.pop(), ()):
-            if there not in found:
-                found.add(there)
+            if there not in reached:
+                reached.add(there)
                 waiting.append(there)
-    return found
+    return reached

@@ -169,10 +169,10 @@ class Behavior:
         return len(self.configurations)
 
     def outgoing(self) -> list[list[BehaviorStep]]:
-        found: list[list[BehaviorStep]] = [[] for _ in self.configurations]
+        by_source: list[list[BehaviorStep]] = [[] for _ in self.configurations]
         for step in self.steps:
-            found[step.source].append(step)
-        return found
+            by_source[step.source].append(step)
+        return by_source
 
 
 def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior | None:
@@ -223,14 +223,14 @@ def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[s
     """The scalar variables of a chart that are integers, and those that are booleans."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
-    whole = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
-    return scalar, frozenset(whole), frozenset(name for name, base in scalar.items() if base == "bool")
+    integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
+    return scalar, frozenset(integers), frozenset(name for name, base in scalar.items() if base == "bool")
 
 
 def condition_facts(chart: Chart) -> ConditionFacts:
     """The facts with which the conditions of a chart are compared."""
-    _, whole, logical = _kinds(chart)
-    return ConditionFacts(whole, logical, constants=STATUSES)
+    _, integers, logical = _kinds(chart)
+    return ConditionFacts(integers, logical, constants=STATUSES)
 
 
 class _TooLargeError(Exception):
@@ -293,12 +293,12 @@ class _Explorer:
         self.threaded = {t.server.value for t in self.machine.threads if t.server}
         self.count = next((t.count for t in self.machine.threads if t.chart is chart), None)
         self.counts = {t.server.value: t.count for t in self.machine.threads if t.server and t.count}
-        scalar, whole, logical = _kinds(chart)
+        scalar, integers, logical = _kinds(chart)
         counted = self._counted()
         self.relevant = self._relevant(scalar, logical) if self.fine else counted | self._statuses()
         followed = None if not self.fine else self.relevant | EVENT_VARIABLES
-        self.facts = ConditionFacts(whole, logical, followed, counted)
-        self.status_facts = ConditionFacts(whole, logical, followed, counted, STATUSES)
+        self.facts = ConditionFacts(integers, logical, followed, counted)
+        self.status_facts = ConditionFacts(integers, logical, followed, counted, STATUSES)
         self.counts_down = bool(self.counts) and self._counts_down()
         self.goal_ids = self._goal_ids()
         self.may_be_ids = self._may_be_ids() if self.goal_ids else frozenset()
@@ -321,7 +321,7 @@ class _Explorer:
         """The variables whose values may decide where a path leads: those that conditions read, if they are compared
         more than once or assigned only constants and booleans."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
-        wanted = {*self._counted(), *self._statuses()}
+        relevant = {*self._counted(), *self._statuses()}
         assigned: dict[str, list[Expr | None]] = {}
         for statement in self.chart.statements:
             match statement:
@@ -332,13 +332,13 @@ class _Explorer:
                     root = (access_path(statement.location.tree) or ("",))[0]
                     assigned.setdefault(root, []).append(value)
         often = Counter(name for tree in read for name in variables_in((tree,)))
-        wanted |= {name for name, count in often.items() if count > 1}
-        wanted |= {
+        relevant |= {name for name, count in often.items() if count > 1}
+        relevant |= {
             name
             for name in often
             if all(name in logical or (v is not None and is_literal(v)) for v in assigned.get(name, ()))
         }
-        sources = set(wanted)
+        sources = set(relevant)
         while sources:
             values = [
                 value
@@ -346,9 +346,9 @@ class _Explorer:
                 for value in assigned.get(name, ())
                 if isinstance(value, Name) or (value is not None and name in self._counted())
             ]
-            sources = {name for name in variables_in(values) if name in scalar} - wanted
-            wanted |= sources
-        return frozenset(wanted) - EVENT_VARIABLES
+            sources = {name for name in variables_in(values) if name in scalar} - relevant
+            relevant |= sources
+        return frozenset(relevant) - EVENT_VARIABLES
 
     def _statuses(self) -> frozenset[str]:
         """The variables that hold statuses."""
@@ -387,14 +387,14 @@ class _Explorer:
 
     def _goal_ids(self) -> frozenset[str]:
         """The variables that hold the ids of goals."""
-        found = {
+        goal_ids = {
             s.goal_id.tree.name
             for s in self.chart.statements
             if isinstance(s, RosSend) and s.goal_id is not None and isinstance(s.goal_id.tree, Name)
         }
-        if not found:
+        if not goal_ids:
             return frozenset()
-        found |= {
+        goal_ids |= {
             s.location.tree.name
             for s in self.chart.statements
             if isinstance(s, Assign) and s.location and isinstance(s.location.tree, Name)
@@ -405,26 +405,28 @@ class _Explorer:
                 s.value.tree.name
                 for s in self.chart.statements
                 if isinstance(s, Assign) and s.location and isinstance(s.value, Expression)
-                if isinstance(s.value.tree, Name) and access_path(s.location.tree) in {(name,) for name in found}
+                if isinstance(s.value.tree, Name) and access_path(s.location.tree) in {(name,) for name in goal_ids}
             }
-            if copied <= found:
-                return frozenset(found)
-            found |= copied
+            if copied <= goal_ids:
+                return frozenset(goal_ids)
+            goal_ids |= copied
 
     def _may_be_ids(self) -> frozenset[str]:
         """The variables, and the data of events, that may hold the id of a goal: all except the fields of a goal and
         values computed only from these, from constants and from each other."""
-        found = set(EVENT_VARIABLES - {"_goal"})
+        candidates = set(EVENT_VARIABLES - {"_goal"})
         assigned = [
             ((access_path(s.location.tree) or ("",))[0], s.value.tree if isinstance(s.value, Expression) else None)
             for s in self.chart.statements
             if isinstance(s, Assign) and s.location
         ]
         while True:
-            more = {root for root, value in assigned if value is None or not variables_in((value,)).isdisjoint(found)}
-            if more <= found:
-                return frozenset(found)
-            found |= more
+            more = {
+                root for root, value in assigned if value is None or not variables_in((value,)).isdisjoint(candidates)
+            }
+            if more <= candidates:
+                return frozenset(candidates)
+            candidates |= more
 
     # ----------------------------------------------------------------- search
 
@@ -437,9 +439,9 @@ class _Explorer:
             entry = self.states[initial].entry
             path = _Path((), self._initial())
             paths = self._bodies([entry.statements if entry else ()], [path])
-            for each in paths:
-                at_start += each.sent
-                self._number(ChartConfiguration(initial, each.phases, self._kept(each.knowledge)))
+            for path in paths:
+                at_start += path.sent
+                self._number(ChartConfiguration(initial, path.phases, self._kept(path.knowledge)))
             starts = len(self.numbers)
             done = 0
             while done < len(self.numbers):
@@ -494,11 +496,11 @@ class _Explorer:
         """The handlers of a state that wait for the same event."""
         if name not in self.groups:
             state = self.states.get(name)
-            found: dict[ProtocolEvent | None, list[Handler]] = {}
+            by_event: dict[ProtocolEvent | None, list[Handler]] = {}
             for handler in state.handlers if state else ():
                 if handler.effective:
-                    found.setdefault(self.event(handler), []).append(handler)
-            groups = found.items()
+                    by_event.setdefault(self.event(handler), []).append(handler)
+            groups = by_event.items()
             self.groups[name] = [_Group(state, e, tuple(hs), self._touched(state, e, hs)) for e, hs in groups if state]
         return self.groups[name]
 
@@ -506,10 +508,10 @@ class _Explorer:
         self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
     ) -> frozenset[tuple[str, str]]:
         """The phases that the steps of a group may read or change."""
-        found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
+        phases: set[tuple[str, str]] = {("tree", ""), ("child", "")}
         if event is not None:
             handle = event.name
-            found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "outcome", "decision")}
+            phases |= {(kind, handle) for kind in ("request", "goal", "result", "response", "outcome", "decision")}
         bodies = [state.exit.statements if state.exit else ()]
         for handler in handlers:
             for target in handler.targets:
@@ -519,8 +521,8 @@ class _Explorer:
             if isinstance(statement, RosSend):
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
-                found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
-        return frozenset(found)
+                phases |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
+        return frozenset(phases)
 
     def event(self, handler: Handler) -> ProtocolEvent | None:
         """The event that a handler waits for; `None` if it waits for none."""
@@ -750,15 +752,15 @@ class _Explorer:
         parts.append((ways, statement.otherwise.body if statement.otherwise else ()))
         possible = [(known, body) for known, body in parts if known]
         certain = path.certain and len(possible) == 1
-        found: list[_Path] = []
+        paths: list[_Path] = []
         for known, body in possible:
-            found += self._bodies([body], [path._replace(knowledge=k, certain=certain) for k in dict.fromkeys(known)])
-        return found
+            paths += self._bodies([body], [path._replace(knowledge=k, certain=certain) for k in dict.fromkeys(known)])
+        return paths
 
     def _any_part(self, statement: If, path: _Path) -> Iterable[_Path]:
-        found = [after for branch in statement.branches for after in self._bodies([branch.body], [path])]
-        found += self._bodies([statement.otherwise.body], [path]) if statement.otherwise else [path]
-        return [after._replace(certain=False) for after in found]
+        paths = [after for branch in statement.branches for after in self._bodies([branch.body], [path])]
+        paths += self._bodies([statement.otherwise.body], [path]) if statement.otherwise else [path]
+        return [after._replace(certain=False) for after in paths]
 
     def _status(self, statement: ReturnStatus, path: _Path) -> Iterable[_Path]:
         duty = Duty("tick", "")
@@ -846,7 +848,7 @@ class _Explorer:
                 return path.wrong("unasked", duty, statement)
         return path
 
-    def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]) -> _Path:
+    def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, statuses: tuple[str, ...]) -> _Path:
         """A goal must be named by the id with which it arrived."""
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:
@@ -861,7 +863,7 @@ class _Explorer:
             return path.wrong("foreign", duty, statement, server)
         if server != handle:
             return path.wrong("other", duty, statement)
-        if status not in wanted:
+        if status not in statuses:
             if duty.kind == "goal":
                 return path.wrong("earlier", duty, statement, path.variable_with(f"asked {handle}"))
             kind = {"asked": "undecided", "finished": "unasked"}.get(status, status)

@@ -115,9 +115,9 @@ class _Solver:
             yield automaton, event
             return
         channel = channel_of(self.system, automaton, event)
-        wanted = _SENDERS.get(event.part)
+        sending_kind = _SENDERS.get(event.part)
         for endpoint in channel.endpoints if channel else ():
-            if endpoint.use.kind is wanted:
+            if endpoint.use.kind is sending_kind:
                 yield endpoint.automaton, ProtocolEvent(event.part, endpoint.use.handle)
 
     def causes(self, automaton: SystemAutomaton, sent: ProtocolEvent) -> Iterator[ProtocolEvent]:
@@ -300,10 +300,10 @@ def comes_again(
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
 
-    def sends(solver: _Solver, automaton: SystemAutomaton, what: ProtocolEvent) -> Iterator[ProtocolEvent]:
-        for each in automaton.outline.charts:
-            if automaton is not receiver or each is not frozen:
-                yield from (cause for cause, event in each.reactions if event == what)
+    def sends(solver: _Solver, automaton: SystemAutomaton, sent_event: ProtocolEvent) -> Iterator[ProtocolEvent]:
+        for outline in automaton.outline.charts:
+            if automaton is not receiver or outline is not frozen:
+                yield from (cause for cause, event in outline.reactions if event == sent_event)
 
     def holds(solver: _Solver, number: int, awaited: ProtocolEvent) -> bool:
         automaton = system.automata[number]
@@ -324,10 +324,10 @@ def comes_again(
             answers = [(server.automaton, ProtocolEvent(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
         else:
             answers = list(solver.senders(automaton, awaited))
-        for sender, what in answers:
-            if (sender is receiver and what in sent) or not is_readable(system, sender):
+        for sender, answer in answers:
+            if (sender is receiver and answer in sent) or not is_readable(system, sender):
                 return True
-            if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, what)):
+            if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, answer)):
                 return True
         return False
 
@@ -337,16 +337,20 @@ def comes_again(
     senders = list(solver.senders(receiver, event))
     if may_be_sent(system, receiver, event) or not all(is_readable(system, sender) for sender, _ in senders):
         return True
-    if any(sender is receiver and what in sent for sender, what in senders):
+    if any(sender is receiver and sent_event in sent for sender, sent_event in senders):
         return True
     # Each copy of a thread is a sender of its own.
     several = len(senders) > 1 or (event.part is ProtocolPart.THREAD_FREE and max(copies[1:], default=1) > 1)
-    for sender, what in senders:
+    for sender, sent_event in senders:
         number = solver.number(sender)
-        if several and any(solver.solve(number, cause) for cause in sends(solver, sender, what)):
+        if several and any(solver.solve(number, cause) for cause in sends(solver, sender, sent_event)):
             return True
-        for each in sender.outline.charts:
-            needs = dict(each.repeats).get(what, frozenset()) if sender is not receiver or each is not frozen else ()
+        for outline in sender.outline.charts:
+            needs = (
+                dict(outline.repeats).get(sent_event, frozenset())
+                if sender is not receiver or outline is not frozen
+                else ()
+            )
             if any(all(solver.solve(number, need) for need in alternative) for alternative in needs):
                 return True
     return False

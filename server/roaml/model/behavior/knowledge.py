@@ -69,13 +69,13 @@ class Domain:
         below = value < self.high or (value == self.high and not self.high_open)
         return above and below
 
-    def narrowed(self, whole: bool) -> Domain | None:
-        """In its simplest form; `None` if no value is left. `whole` means that the values are integers."""
+    def narrowed(self, is_integer: bool) -> Domain | None:
+        """In its simplest form; `None` if no value is left. `is_integer` means that the values are integers."""
         if self.only is not None:
             only = frozenset(value for value in self.only if self.admits(value))
             return Domain(only) if only else None
         low, high, low_open, high_open = self.low, self.high, self.low_open, self.high_open
-        if whole:
+        if is_integer:
             if math.isfinite(low):
                 low, low_open = math.floor(low) + 1 if low_open else math.ceil(low), False
                 while low in self.excluded:
@@ -221,62 +221,62 @@ class ConditionFacts:
                 for first in self.assume(knowledge, left, value):
                     yield from self.assume(first, right, value if "=" in relation else not value)
             return
-        one, other = self.value(knowledge, left), self.value(knowledge, right)
-        if one is not None and other is not None:
-            if _stands(one, other) & relation:
+        left_value, right_value = self.value(knowledge, left), self.value(knowledge, right)
+        if left_value is not None and right_value is not None:
+            if _stands(left_value, right_value) & relation:
                 yield knowledge
-        elif other is not None:
-            yield from self._bound(knowledge, left, relation, other)
-        elif one is not None:
-            yield from self._bound(knowledge, right, frozenset(_MIRROR[r] for r in relation), one)
+        elif right_value is not None:
+            yield from self._bound(knowledge, left, relation, right_value)
+        elif left_value is not None:
+            yield from self._bound(knowledge, right, frozenset(_MIRROR[r] for r in relation), left_value)
         else:
             yield from self._relate(knowledge, left, right, relation)
 
     def _relate(self, knowledge: Knowledge, left: Expr, right: Expr, relation: frozenset[str]) -> Iterator[Knowledge]:
-        (one, roots, _, followed, _), (other, more, _, both, _) = self.term(left), self.term(right)
-        if one is None or other is None or not (followed and both):
+        (left_term, roots, _, followed, _), (right_term, more, _, both, _) = self.term(left), self.term(right)
+        if left_term is None or right_term is None or not (followed and both):
             yield knowledge
             return
-        if one == other:
+        if left_term == right_term:
             if "=" in relation:
                 yield knowledge
             return
-        if one > other:
-            one, other, relation = other, one, frozenset(_MIRROR[r] for r in relation)
-        yield from self._meet(knowledge, f"{one} ? {other}", roots | more, _RELATIONS, Domain(relation))
+        if left_term > right_term:
+            left_term, right_term, relation = right_term, left_term, frozenset(_MIRROR[r] for r in relation)
+        yield from self._meet(knowledge, f"{left_term} ? {right_term}", roots | more, _RELATIONS, Domain(relation))
 
     def _bound(
         self, knowledge: Knowledge, term: Expr, relation: frozenset[str], value: Constant
     ) -> Iterator[Knowledge]:
         if isinstance(value, bool):
-            wanted = Domain(frozenset((value if "=" in relation else not value,)))
+            domain = Domain(frozenset((value if "=" in relation else not value,)))
         elif isinstance(value, str):
             only = frozenset((value,))
-            wanted = Domain(only) if "=" in relation else Domain(excluded=only)
+            domain = Domain(only) if "=" in relation else Domain(excluded=only)
         elif relation == {"<", ">"}:
-            wanted = Domain(excluded=frozenset((value,)))
+            domain = Domain(excluded=frozenset((value,)))
         else:
-            wanted = Domain(
+            domain = Domain(
                 low=-math.inf if "<" in relation else value,
                 high=math.inf if ">" in relation else value,
                 low_open="=" not in relation and "<" not in relation,
                 high_open="=" not in relation and ">" not in relation,
             )
-        yield from self._narrow(knowledge, term, Domain(), wanted)
+        yield from self._narrow(knowledge, term, Domain(), domain)
 
-    def _narrow(self, knowledge: Knowledge, expr: Expr, before: Domain, wanted: Domain) -> Iterator[Knowledge]:
+    def _narrow(self, knowledge: Knowledge, expr: Expr, before: Domain, required: Domain) -> Iterator[Knowledge]:
         term = self.term(expr)
         if term.text is None or not term.followed:
             yield knowledge
         else:
-            yield from self._meet(knowledge, term.text, term.roots, before, wanted)
+            yield from self._meet(knowledge, term.text, term.roots, before, required)
 
     def _meet(
-        self, knowledge: Knowledge, term: str, roots: frozenset[str], before: Domain, wanted: Domain
+        self, knowledge: Knowledge, term: str, roots: frozenset[str], before: Domain, required: Domain
     ) -> Iterator[Knowledge]:
         known = knowledge.of(term) or before
-        whole = roots <= self.whole and "/" not in term and "Math." not in term
-        met = _both(known, wanted).narrowed(whole)
+        is_integer = roots <= self.whole and "/" not in term and "Math." not in term
+        met = _both(known, required).narrowed(is_integer)
         if met is not None:
             yield knowledge if met == known and knowledge.of(term) else knowledge._with(term, roots, met)
 
@@ -312,12 +312,12 @@ class ConditionFacts:
         if value is None or not isinstance(location, Name):
             return (knowledge.without(root),)
         if location.name in self.logical or isinstance(value, Boolean):
-            found = []
+            splits = []
             for truth in (True, False):
                 for known in self.assume(knowledge, value, truth):
                     after = known.without(root)
-                    found.append(after._with(root, frozenset((root,)), Domain(frozenset((truth,)))))
-            return tuple(dict.fromkeys(found))
+                    splits.append(after._with(root, frozenset((root,)), Domain(frozenset((truth,)))))
+            return tuple(dict.fromkeys(splits))
         domain = self.values(knowledge, value, root in self.counted)
         after = knowledge.without(root)
         return (after if domain == Domain() else after._with(root, frozenset((root,)), domain),)
@@ -380,14 +380,14 @@ def _stands(first: Constant, second: Constant) -> frozenset[str]:
     return frozenset("=" if first == second else "<" if first < second else ">")
 
 
-def _both(one: Domain, other: Domain) -> Domain:
-    if one.only is not None and other.only is not None:
-        only: frozenset[Constant] | None = one.only & other.only
+def _both(left: Domain, right: Domain) -> Domain:
+    if left.only is not None and right.only is not None:
+        only: frozenset[Constant] | None = left.only & right.only
     else:
-        only = one.only if one.only is not None else other.only
-    low, low_open = max((one.low, one.low_open), (other.low, other.low_open))
-    high, high_closed = min((one.high, not one.high_open), (other.high, not other.high_open))
-    return Domain(only, one.excluded | other.excluded, low, high, low_open, not high_closed)
+        only = left.only if left.only is not None else right.only
+    low, low_open = max((left.low, left.low_open), (right.low, right.low_open))
+    high, high_closed = min((left.high, not left.high_open), (right.high, not right.high_open))
+    return Domain(only, left.excluded | right.excluded, low, high, low_open, not high_closed)
 
 
 def _shifted(domain: Domain, by: float) -> Domain:

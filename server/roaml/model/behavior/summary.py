@@ -115,13 +115,13 @@ class _Summary:
 
     def _duties(self) -> list[Duty]:
         """The duties of the machine as a server."""
-        found: dict[Duty, None] = {}
+        duties: dict[Duty, None] = {}
         for event in self.events:
             if event.part in (ProtocolPart.REQUEST, ProtocolPart.GOAL):
-                found[Duty(event.part.value, event.name)] = None
+                duties[Duty(event.part.value, event.name)] = None
             if event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START):
-                found[Duty("result", event.name)] = None
-        return list(found)
+                duties[Duty("result", event.name)] = None
+        return list(duties)
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
         """The places where an answer is owed, and where a request is not even handled."""
@@ -159,8 +159,8 @@ class _Summary:
             after = {edge.target for edge in sending}
             if event in at_start:
                 after.update(range(self.behavior.starts))
-            found = {mask for number in after for mask in needs.get(number, ())} | ({0} if event in twice else set())
-            yield event, frozenset(map(self._set, _least(found)))
+            masks = {mask for number in after for mask in needs.get(number, ())} | ({0} if event in twice else set())
+            yield event, frozenset(map(self._set, _least(masks)))
 
     def _reactions(self) -> frozenset[tuple[ProtocolEvent, ProtocolEvent]]:
         before: list[set[ProtocolEvent]] = [set() for _ in self.behavior.configurations]
@@ -174,22 +174,22 @@ class _Summary:
                 if not causes <= before[edge.target]:
                     before[edge.target] |= causes
                     changed = True
-        found = {(START, event) for event in self.behavior.at_start}
+        pairs = {(START, event) for event in self.behavior.at_start}
         for edge in self.edges:
             causes = before[edge.source] if edge.taken is None else {edge.taken}
-            found |= {(cause, event) for cause in causes for event in edge.sent}
-        return frozenset(found)
+            pairs |= {(cause, event) for cause in causes for event in edge.sent}
+        return frozenset(pairs)
 
     def _needs(self, edges: Iterable[_Edge], reaching: Iterable[_Edge]) -> dict[int, tuple[int, ...]]:
         """For each configuration from which `edges` lead to one of `reaching`, the smallest sets of events that lead
         there."""
         goals = set(reaching)
         incoming: dict[int, list[_Edge]] = {}
-        found: dict[int, tuple[int, ...]] = {}
+        masks_of: dict[int, tuple[int, ...]] = {}
         waiting: dict[int, None] = {}
         for edge in edges:
             if edge in goals:
-                found[edge.source] = _least((*found.get(edge.source, ()), edge.event))
+                masks_of[edge.source] = _least((*masks_of.get(edge.source, ()), edge.event))
                 waiting[edge.source] = None
             elif edge.source != edge.target:
                 incoming.setdefault(edge.target, []).append(edge)
@@ -197,22 +197,22 @@ class _Summary:
             target = next(iter(waiting))
             del waiting[target]
             for edge in incoming.get(target, ()):
-                known = found.get(edge.source, ())
+                known = masks_of.get(edge.source, ())
                 if known == (0,):
                     continue
-                least = _least((*known, *(edge.event | mask for mask in found[target])))
+                least = _least((*known, *(edge.event | mask for mask in masks_of[target])))
                 if least != known:
-                    found[edge.source] = least
+                    masks_of[edge.source] = least
                     waiting[edge.source] = None
-        return found
+        return masks_of
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:
     """Without sets that contain another one; if there are many, only the smallest."""
-    found: list[int] = []
+    smallest: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
         if mask.bit_count() > MOST_EVENTS:
             break
-        if not any(known & mask == known for known in found):
-            found.append(mask)
-    return tuple(found[:MOST_ALTERNATIVES])
+        if not any(known & mask == known for known in smallest):
+            smallest.append(mask)
+    return tuple(smallest[:MOST_ALTERNATIVES])

@@ -17,7 +17,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue
         attribute, type_ = violation.attribute, violation.type
         if not attribute.value.strip():
-            wanted = "" if violation.wanted == "something" else f"; it should be {violation.wanted}"
+            wanted = "" if violation.required == "something" else f"; it should be {violation.required}"
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
             fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []
@@ -26,7 +26,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)
             hint = did_you_mean(close) if len(choices) > 1 else ""
-            message = f"`{attribute.name}` should be {violation.wanted}, not `{attribute.value[:40]}`{hint}"
+            message = f"`{attribute.name}` should be {violation.required}, not `{attribute.value[:40]}`{hint}"
             yield RULE.at(attribute.value_span, message, *replacements(attribute.value_span, close))
 
 

@@ -109,7 +109,7 @@ def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Ite
     (docs/spec/expressions.md#whole-reals)."""
     real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
     for name, value in sent:
-        if name in real and is_kind(value.sent, "int") and value.wanted and is_kind(value.wanted, "real"):
+        if name in real and is_kind(value.sent, "int") and value.required and is_kind(value.required, "real"):
             hint = ROUND if is_kind(value.type, "real") else ""
             message = f"`{name}` is an integer here, but a real number where it is sent elsewhere{hint}"
             yield RULE.at(value.value.span, message, severity=Severity.INFORMATION)

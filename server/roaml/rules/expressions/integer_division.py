@@ -18,7 +18,7 @@ WHOLE = ("floor", "ceil")
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if not isinstance(value.value, Expression) or (value.wanted is not None and is_kind(value.wanted, "int")):
+        if not isinstance(value.value, Expression) or (value.required is not None and is_kind(value.required, "int")):
             continue  # type-mismatch reports this with more detail
         problems = [problem for problem in value.problems if isinstance(problem, IntegerDivision)]
         meant = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()

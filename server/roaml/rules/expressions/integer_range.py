@@ -17,11 +17,11 @@ from roaml.text import Span
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if isinstance(value.value, Expression) and value.wanted is not None:
-            for span, number, type_ in outside(value.value.tree, value.wanted):
+        if isinstance(value.value, Expression) and value.required is not None:
+            for span, number, type_ in outside(value.value.tree, value.required):
                 low, high = INTEGER_RANGES[type_]
                 wider = wide_enough(number, type_)
-                fixes = as_type(context, value, wider) if wider and not _is_nested(value.wanted) else ()
+                fixes = as_type(context, value, wider) if wider and not _is_nested(value.required) else ()
                 message = f"{number} does not fit into `{type_}`, whose range is {low} to {high}"
                 yield RULE.at(span, message, *fixes)
 

@@ -21,10 +21,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, "strings cannot be joined: `+` requires numbers")
                 case BadOperand(operator="?"):
                     yield RULE.at(
-                        problem.span, f"the condition of `?` must be {problem.wanted}, not {phrase(problem.given)}"
+                        problem.span, f"the condition of `?` must be {problem.required}, not {phrase(problem.given)}"
                     )
                 case BadOperand():
-                    operand = "a boolean" if problem.wanted == BOOL else "a number"
+                    operand = "a boolean" if problem.required == BOOL else "a number"
                     message = f"`{problem.operator}` takes {operand}, not {phrase(problem.given)}"
                     yield RULE.at(problem.span, message, *_compare(problem))
                 case BadComparison():
@@ -44,7 +44,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _compare(problem: BadOperand) -> Iterator[Fix]:
     """Compare a number with 0 where a boolean is required."""
-    if problem.wanted == BOOL and is_number(problem.given):
+    if problem.required == BOOL and is_number(problem.given):
         yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
 
 

@@ -28,16 +28,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, WrongType):
-                message = f"{_what(value)} is `{problem.wanted}`, not {phrase(problem.given)}"
+                message = f"{_what(value)} is `{problem.required}`, not {phrase(problem.given)}"
                 yield RULE.at(
-                    problem.span, message, *_fixes(context, value, problem.given, problem.wanted, problem.span)
+                    problem.span, message, *_fixes(context, value, problem.given, problem.required, problem.span)
                 )
-        if value.wanted is None:
+        if value.required is None:
             continue
-        if (value.use in CHECKED or isinstance(value.value, PortRead)) and not can_hold(value.wanted, value.type):
-            yield _mismatch(context, value, value.wanted)
+        if (value.use in CHECKED or isinstance(value.value, PortRead)) and not can_hold(value.required, value.type):
+            yield _mismatch(context, value, value.required)
         if value.use in HOLDING and isinstance(value.value, Expression):
-            yield from _too_long(value.value.tree, value.wanted, size)
+            yield from _too_long(value.value.tree, value.required, size)
 
 
 def can_hold(wanted: Type, given: Type) -> bool:

@@ -67,7 +67,9 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
     for placed in context.gaps:
         yield placed.span, system.facts(placed.gap)
     if isinstance(context, SystemContext):
-        plugins = [f for f in context.files if f.input.section == "behavior_tree" and f.wanted is not FileKind.TREE]
+        plugins = [
+            f for f in context.files if f.input.section == "behavior_tree" and f.required_kind is not FileKind.TREE
+        ]
         yield from ((listed.span, _ANY_PLUGIN) for listed in plugins if not listed.usable)
         strange = system.ticked_nodes | system.idle_plugins
         yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in strange)

@@ -27,13 +27,13 @@ TYPES = {
 def check(context: SystemContext) -> Iterator[Finding]:
     for listed in context.files:
         src = listed.input.src
-        if src is None or listed.problem is not None or listed.wanted is None:
+        if src is None or listed.problem is not None or listed.required_kind is None:
             continue
         if listed.usable:
             yield from _other_machine(context, listed, src)
             continue
-        found = "" if listed.found is FileKind.UNKNOWN else f", but {_with_article(listed.found)}"
-        message = f"`{src.value}` is not {_with_article(listed.wanted)}{found}"
+        found = "" if listed.kind is FileKind.UNKNOWN else f", but {_with_article(listed.kind)}"
+        message = f"`{src.value}` is not {_with_article(listed.required_kind)}{found}"
         yield RULE.at(src.span, message, *_other_type(listed, context.files))
 
 
@@ -61,9 +61,9 @@ def _with_article(kind: FileKind) -> str:
 
 
 def _other_type(listed: ListedFile, files: Iterable[ListedFile]) -> Iterator[Fix]:
-    type_ = TYPES.get((listed.input.section, listed.found))
+    type_ = TYPES.get((listed.input.section, listed.kind))
     if type_ is not None and listed.input.type is not None:
-        second_tree = listed.found is FileKind.TREE and any(f.usable and f.found is FileKind.TREE for f in files)
+        second_tree = listed.kind is FileKind.TREE and any(f.usable and f.kind is FileKind.TREE for f in files)
         edits = (TextEdit(listed.input.type.span, type_),)
         yield Fix(f"Change the type to `{type_}`", edits, preferred=not second_tree)
 

@@ -42,7 +42,7 @@ def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
 
 def _unknown_package(found: NotFound, span: Span) -> Finding:
     """Report an unknown package. Its name may be misspelled; more often it is in a folder that is not searched."""
-    package = found.wanted.partition("/")[0]
+    package = found.type_name.partition("/")[0]
     meant = tuple(name for name in found.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
     where = f"; searched {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"

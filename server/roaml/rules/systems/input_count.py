@@ -22,13 +22,13 @@ class InputCount(Facts):
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
-    trees = [f for f in context.files if f.wanted is FileKind.TREE]
+    trees = [f for f in context.files if f.required_kind is FileKind.TREE]
     for extra in trees[1:]:
         related = (Related(trees[0].input.element.name_span, "the first one"),)
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     section = context.file.element.find("behavior_tree")
-    wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
+    wanted = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
     # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
     unread = "behavior_tree" in context.file.unread
     if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):

@@ -22,7 +22,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     first: dict[tuple[str, str], ListedFile] = {}
     generated = _generated(context.system)
     for listed in context.files:
-        outline = outlines.get(listed.path) if listed.wanted is FileKind.MACHINE else None
+        outline = outlines.get(listed.path) if listed.required_kind is FileKind.MACHINE else None
         if outline is None or listed.input.src is None or not outline.name:
             continue
         before = first.setdefault((listed.input.section, outline.name), listed)

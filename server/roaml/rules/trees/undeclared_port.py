@@ -51,7 +51,7 @@ def _declare(context: MachineContext, key: Name, direction: str) -> Iterator[Fix
 def _type_of(context: MachineContext, key: Name) -> str | None:
     for value in context.typed.values:
         if isinstance(value.value, PortRead) and value.value.key is key:
-            return value.wanted.name if isinstance(value.wanted, Scalar) and value.wanted.name else None
+            return value.required.name if isinstance(value.required, Scalar) and value.required.name else None
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, SetOutput) and statement.key is key:

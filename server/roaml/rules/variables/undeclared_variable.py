@@ -80,12 +80,12 @@ def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scal
     tree = value.value.tree
     if isinstance(tree, Name) and tree.name == name:
         if value.use is not ValueUse.LOCATION:
-            return _named(value.wanted)
+            return _named(value.required)
         assigned = (v for v in context.typed.values if v.use is ValueUse.ASSIGNED and v.element is value.element)
         return next((_named(v.type) for v in assigned), None)
     variables = context.typed.variables.get(value.place.chart.scope, {})
     return _beside(
-        tree, name, variables.get, BOOL if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) else value.wanted
+        tree, name, variables.get, BOOL if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) else value.required
     )
 
 
