@@ -476,7 +476,7 @@ class _Parser:
             self.at += 1
 
     def missing(self, operand: str) -> Expr:
-        """Report that `what` is missing before the next token, or at the end."""
+        """Report that `operand` is missing before the next token, or at the end."""
         token = self.peek()
         if token is not None:
             span = self.span(token)

@@ -52,18 +52,18 @@ def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[H
     if step.event is None or step.event.part is not ProtocolPart.GOAL_RESPONSE:
         return (step.handler,)
     sources, waiting = {step.source}, [step.source]
-    found: dict[Handler, None] = {}
+    handlers: dict[Handler, None] = {}
     while waiting:
         here = waiting.pop()
-        for each in behavior.steps:
-            if each.target != here:
+        for candidate in behavior.steps:
+            if candidate.target != here:
                 continue
-            if not behavior.configurations[each.source].owes(duty):
-                found[each.handler] = None
-            elif each.source not in sources:
-                sources.add(each.source)
-                waiting.append(each.source)
-    return found
+            if not behavior.configurations[candidate.source].owes(duty):
+                handlers[candidate.handler] = None
+            elif candidate.source not in sources:
+                sources.add(candidate.source)
+                waiting.append(candidate.source)
+    return handlers
 
 
 def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], instants: Instants) -> ProtocolEvent | None:
@@ -90,10 +90,10 @@ def _finding(
     reason = "; ".join(_reasons(system, delay))
     message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
     message += f", which takes time: {reason}" if reason else ""
-    what = "return RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
+    advice = "return RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
     if _not_taken(delay):
-        what = "handle the request in that state as well"
-    message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {what}"
+        advice = "handle the request in that state as well"
+    message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {advice}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
@@ -106,18 +106,18 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
     """One phrase for each link of the chain of machines that wait for each other, without the first link."""
     while delay is not None and delay.next is not None:
         then = delay.next
-        what = _named(system, then.automaton, then.event)
+        cause = _named(system, then.automaton, then.event)
         timed = then.event.part is ProtocolPart.TICK
         if delay.promise is not None and delay.server is not None:
             name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
             doing, state = _DOING[delay.event.part], delay.promise.state
             if not delay.promise.taken:
                 question = "request for" if delay.promise.duty.kind == "request" else "goal for"
-                yield f"`{name}` does not handle the {question} {channel} in its state `{state}` before {what}"
+                yield f"`{name}` does not handle the {question} {channel} in its state `{state}` before {cause}"
             else:
-                yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {what}"
+                yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {cause}"
         else:
-            yield f"`{then.automaton.name}` sends it only {'at' if timed else 'after'} {what}"
+            yield f"`{then.automaton.name}` sends it only {'at' if timed else 'after'} {cause}"
         delay = then
 
 
@@ -161,14 +161,14 @@ def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> 
 
 
 def _related(delay: EventDelay) -> Iterator[Related]:
-    each: EventDelay | None = delay
-    while each is not None:
-        if each.promise is not None and each.server is not None:
-            path, promise = each.server.automaton.path, each.promise
+    link: EventDelay | None = delay
+    while link is not None:
+        if link.promise is not None and link.server is not None:
+            path, promise = link.server.automaton.path, link.promise
             yield Related(Symbol(path, SymbolKind.STATE, promise.state, promise.scope), "the machine waits here")
-        elif each.next is None and each.event.part is ProtocolPart.TICK:
-            yield Related(Symbol(each.automaton.path, SymbolKind.TIMER, each.event.name), "the timer")
-        each = each.next
+        elif link.next is None and link.event.part is ProtocolPart.TICK:
+            yield Related(Symbol(link.automaton.path, SymbolKind.TIMER, link.event.name), "the timer")
+        link = link.next
 
 
 RULE = Rule(

@@ -89,24 +89,26 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
 
 
 def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statement | None) -> str:
-    what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
+    event, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
     if fault.kind == "wrong-kind":
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
-        return f"a {what} is answered with `<{tag}>`, but its parent waits for another answer; send `<{right}>` instead"
+        return (
+            f"a {event} is answered with `<{tag}>`, but its parent waits for another answer; send `<{right}>` instead"
+        )
     how = {"result": "ended", "goal": "accepted or rejected"}.get(fault.duty.kind, "answered")
-    tail = f"the second answer is used as the answer to the next {what}; send only one of them"
+    tail = f"the second answer is used as the answer to the next {event}; send only one of them"
     if first is None:
         if _twice(step, fault):
-            return f"a {what} is {how} twice on one path: {tail}"
-        return f"`<{tag}>` is sent while no {what} waits for it; send it where the {what} is handled"
+            return f"a {event} is {how} twice on one path: {tail}"
+        return f"`<{tag}>` is sent while no {event} waits for it; send it where the {event} is handled"
     earlier, place, other = f"`<{first.element.name}>`", _where(behavior, first), _where(behavior, fault.statement)
     if not _twice(step, fault):
         why = f"on a path to this place it was already {how} by {earlier} {place}"
-        return f"`<{tag}>` is sent while no {what} waits for it: {why}; {tail}"
+        return f"`<{tag}>` is sent while no {event} waits for it: {why}; {tail}"
     by = f"first by {earlier} {place}, then by `<{tag}>` {other}"
     if place == other:
         by = f"by {earlier} and then by `<{tag}>`, both {place}"
-    return f"a {what} is {how} twice on one path, {by}: {tail}"
+    return f"a {event} is {how} twice on one path, {by}: {tail}"
 
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
@@ -116,22 +118,22 @@ def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorSte
     events = _answers(fault)
     earlier = _executed_before(behavior, step, fault.statement)
     if sum(event in events for event in step.sent) > 1:
-        found = [s for s in earlier if _event(context, s) in events]
-        if found:
-            return found[-1]
+        answers = [s for s in earlier if _event(context, s) in events]
+        if answers:
+            return answers[-1]
     incoming: dict[int, list[BehaviorStep]] = {}
-    for each in behavior.steps:
-        incoming.setdefault(each.target, []).append(each)
+    for candidate in behavior.steps:
+        incoming.setdefault(candidate.target, []).append(candidate)
     seen, waiting = {step.source}, [step.source]
     for here in waiting:
-        for each in incoming.get(here, ()):
-            if any(event in events for event in each.sent):
-                sent = [s for s in _executed_before(behavior, each, None) if _event(context, s) in events]
+        for candidate in incoming.get(here, ()):
+            if any(event in events for event in candidate.sent):
+                sent = [s for s in _executed_before(behavior, candidate, None) if _event(context, s) in events]
                 if sent:
                     return sent[-1]
-            if each.source not in seen:
-                seen.add(each.source)
-                waiting.append(each.source)
+            if candidate.source not in seen:
+                seen.add(candidate.source)
+                waiting.append(candidate.source)
     return None
 
 
@@ -142,29 +144,29 @@ def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statemen
     left = states.get(behavior.configurations[step.source].state)
     target = step.handler.targets[step.choice]
     entered = states.get(target.state.value) if target.state else None
-    found: list[Statement] = []
+    executed: list[Statement] = []
     leave = left.exit.statements if left and left.exit else ()
     enter = entered.entry.statements if entered and entered.entry else ()
     for body in (leave, target.body, enter):
-        if not _append(found, body, statement):
+        if not _append(executed, body, statement):
             break
-    return found
+    return executed
 
 
-def _append(found: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
+def _append(executed: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
     """Append the statements that a body executes before `last`, without those in other branches; return whether the
     body ends first."""
-    for each in body:
-        if each is last:
+    for child in body:
+        if child is last:
             return False
-        if isinstance(each, If):
-            parts = [part.body for part in (*each.branches, each.otherwise) if part is not None]
+        if isinstance(child, If):
+            parts = [part.body for part in (*child.branches, child.otherwise) if part is not None]
             chosen = [part for part in parts if last is not None and last in statements(part)]
             for part in chosen or parts:
-                if not _append(found, part, last):
+                if not _append(executed, part, last):
                     return False
         else:
-            found.append(each)
+            executed.append(child)
     return True
 
 
@@ -185,7 +187,7 @@ def _where(behavior: Behavior, statement: Statement) -> str:
     for state in behavior.chart.states:
         name = state.id.value if state.id else ""
         for content, tag in ((state.entry, "onentry"), (state.exit, "onexit")):
-            if content is not None and any(each is statement for each in statements(content.statements)):
+            if content is not None and any(candidate is statement for candidate in statements(content.statements)):
                 return f"in the `<{tag}>` of the state `{name}`"
         for handler in state.handlers:
             if handler.element.span.start <= at.start and at.end <= handler.element.span.end:

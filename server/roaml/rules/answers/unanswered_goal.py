@@ -52,8 +52,8 @@ def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     tag, ends = f"<{step.handler.element.name}>", duty.kind == "result"
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
-        what = "events are dropped while this condition does not hold, so a goal"
-        return f"{what} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
+        reason = "events are dropped while this condition does not hold, so a goal"
+        return f"{reason} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
     how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"

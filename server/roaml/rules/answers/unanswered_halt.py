@@ -67,9 +67,9 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 def _message(step: BehaviorStep, certain: bool) -> str:
     if step.ignored:
-        what = "events are dropped while this condition does not hold, so the halt is never answered"
+        reason = "events are dropped while this condition does not hold, so the halt is never answered"
         tag = f"<{step.handler.element.name}>"
-        return f"{what} and the tree waits for ever; add a `{tag}` without `cond` after it"
+        return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
     where = "a halt that is handled here" if halted else "the halt that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"

@@ -42,11 +42,11 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Ha
 def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
     if step.ignored:
-        what = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
+        reason = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
         if not asked:
-            what = f"events are dropped while this condition does not hold, so the request for `{duty.handle}` is"
+            reason = f"events are dropped while this condition does not hold, so the request for `{duty.handle}` is"
         tag = f"<{step.handler.element.name}>"
-        return f"{what} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
+        return f"{reason} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
     where = "a request that is handled here" if asked else f"the request for `{duty.handle}` that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the client waits for ever; send one `<ros_service_send_response>` on every path"

@@ -61,10 +61,10 @@ def _message(step: BehaviorStep, certain: bool) -> str:
     ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
     if step.ignored:
         tag = f"<{step.handler.element.name}>"
-        what = "a tick that arrives while this condition does not hold is dropped and never answered,"
+        reason = "a tick that arrives while this condition does not hold is dropped and never answered,"
         if not ticked:
-            what = "events are dropped while this condition does not hold, so the tick is never answered,"
-        return f"{what} and the tree waits for ever; add a `{tag}` without `cond` after it"
+            reason = "events are dropped while this condition does not hold, so the tick is never answered,"
+        return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     where = "a tick that is handled here" if ticked else "the tick that waits here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
@@ -90,11 +90,15 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:
     """Return RUNNING in a state that does not handle ticks."""
-    for each in context.machine.chart.states:
-        if each.element is state and each.id is not None and each.element.complete:
-            lines = (f'<bt_tick target="{each.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
-            edit = last_in(context.document, each.element, *lines)
-            yield Fix(f"Answer ticks in the state `{each.id.value}` with `RUNNING`", (edit,), preferred=False)
+    for candidate in context.machine.chart.states:
+        if candidate.element is state and candidate.id is not None and candidate.element.complete:
+            lines = (
+                f'<bt_tick target="{candidate.id.value}">',
+                '    <bt_return_status status="RUNNING" />',
+                "</bt_tick>",
+            )
+            edit = last_in(context.document, candidate.element, *lines)
+            yield Fix(f"Answer ticks in the state `{candidate.id.value}` with `RUNNING`", (edit,), preferred=False)
 
 
 def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:

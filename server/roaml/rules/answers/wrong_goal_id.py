@@ -53,15 +53,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _faults(behavior: Behavior) -> dict[Statement, tuple[BehaviorStep, Fault]]:
     """For each element that names a wrong goal, the most specific fault, with a step in which it happens."""
     order = list(_WHY)
-    found: dict[Statement, tuple[BehaviorStep, Fault]] = {}
+    fault_of: dict[Statement, tuple[BehaviorStep, Fault]] = {}
     for step in behavior.steps:
         for fault in step.faults:
             if fault.kind not in _WHY or (behavior.approximate and not fault.certain):
                 continue
-            known = found.get(fault.statement)
+            known = fault_of.get(fault.statement)
             if known is None or order.index(fault.kind) < order.index(known[1].kind):
-                found[fault.statement] = (step, fault)
-    return found
+                fault_of[fault.statement] = (step, fault)
+    return fault_of
 
 
 def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend, variable: str) -> Finding:
@@ -112,10 +112,10 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
 def _constant_finding(statements: list[RosSend], why: str) -> Finding:
     first, *others = statements
     assert first.goal_id is not None
-    what = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
+    subject = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
     advice = "store `_action.goal_id` in a variable where the goal is handled, and use that"
     related = [Related(statement.element.name_span, "here, too") for statement in others]
-    return RULE.at(first.goal_id.span, f"{what}; {advice}", related=related)
+    return RULE.at(first.goal_id.span, f"{subject}; {advice}", related=related)
 
 
 def _wrong_constant(system: System, channel: Channel, value: float) -> str:

@@ -99,17 +99,17 @@ def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:
     """Remove the surplus children of a node."""
     extra = node.children[most:]
     edits = tuple(removal(context.source.text, child.element.span) for child in extra)
-    one = "this child" if len(extra) == 1 else "the surplus children"
-    return Fix(f"Remove {one}", edits, preferred=False)
+    surplus = "this child" if len(extra) == 1 else "the surplus children"
+    return Fix(f"Remove {surplus}", edits, preferred=False)
 
 
 def _too_few(node: TreeNode, least: int, most: int) -> Finding:
     assert node.plugin is not None
     if most >= UNBOUNDED:
-        wanted = f"at least {_children(least)}"
+        needed = f"at least {_children(least)}"
     else:
-        wanted = _children(least) if least == most else f"{least} to {_children(most)}"
-    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {wanted} and has {len(node.children) or 'none'}")
+        needed = _children(least) if least == most else f"{least} to {_children(most)}"
+    return RULE.at(node.plugin.span, f"`{node.plugin.value}` needs {needed} and has {len(node.children) or 'none'}")
 
 
 def _children(count: int) -> str:

@@ -15,9 +15,9 @@ from roaml.xml_syntax import Element
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        found: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
-        found += [h.element for state in chart.states for h in state.handlers if not h.effective]
-        for element in found:
+        ignored: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
+        ignored += [h.element for state in chart.states for h in state.handlers if not h.effective]
+        for element in ignored:
             # An element whose only content it is needs content (empty-branch), so it is removed as well.
             alone = stands_alone(context.document, element)
             edit = removal(context.source.text, element.span)

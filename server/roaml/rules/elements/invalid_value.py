@@ -17,11 +17,11 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue
         attribute, type_ = violation.attribute, violation.type
         if not attribute.value.strip():
-            wanted = "" if violation.required == "something" else f"; it should be {violation.required}"
+            advice = "" if violation.required == "something" else f"; it should be {violation.required}"
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
             fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []
-            yield RULE.at(attribute.span, f"`{attribute.name}` is empty{wanted}", *fixes)
+            yield RULE.at(attribute.span, f"`{attribute.name}` is empty{advice}", *fixes)
         elif type_.value != "ros-type":  # unknown-ros-type reports these with more detail
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)

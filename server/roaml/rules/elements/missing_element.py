@@ -31,15 +31,15 @@ def check(context: FileContext) -> Iterator[Finding]:
     for violation in context.violations:
         if not isinstance(violation, MissingElement):
             continue
-        element, wanted = violation.element, violation.type.any_child
+        element, child_count = violation.element, violation.type.any_child
         assert context.grammar is not None
-        if wanted is None:
+        if child_count is None:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
                 message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
                 facts = MissingChild(element.name, violation.names[0])
                 yield RULE.at(element.name_span, message, *_leave_out(context, element), facts=facts)
         elif not has_counted_children(violation.type):
-            children = "a child" if wanted.least == 1 else f"at least {wanted.least} children"
+            children = "a child" if child_count.least == 1 else f"at least {child_count.least} children"
             yield RULE.at(element.name_span, f"`<{element.name}>` needs {children}")
 
 
@@ -58,8 +58,8 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
     """The datamodel of a machine is optional, that of a thread is not (docs/spec/ros.md#threads)."""
     element = thread.element
-    wanted = element.complete and element.find("datamodel") is None
-    if wanted and not misspelled.among(element.elements, "datamodel", HL_SCXML):
+    needs_datamodel = element.complete and element.find("datamodel") is None
+    if needs_datamodel and not misspelled.among(element.elements, "datamodel", HL_SCXML):
         message = f"`<{element.name}>` needs a `<datamodel>`, even if it is empty"
         edit = first_in(context.document, element, "<datamodel />")
         yield RULE.at(element.name_span, message, Fix("Add an empty `<datamodel>`", (edit,), safe=True))

@@ -62,8 +62,8 @@ def _generated(context: MachineContext, system: System) -> frozenset[str]:
     timers = (f"{TIMER_PREFIX}{timer.name}" for a in system.automata for timer in a.outline.timers)
 
     def interface(kind: str, name: str) -> InterfaceType | None:
-        found = context.interface(kind, name)
-        return None if isinstance(found, NotFound) else found
+        interface_type = context.interface(kind, name)
+        return None if isinstance(interface_type, NotFound) else interface_type
 
     variables = global_variables(system, interface).values()
     return frozenset((*timers, *(variable.event for variable in variables)))

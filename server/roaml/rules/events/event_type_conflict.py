@@ -96,12 +96,12 @@ def same(left: Type, right: Type) -> bool:
 
 def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPart], list[Param]]:
     """The fields that the machine sends, by declaration and part of the interface."""
-    found: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
+    sent_fields: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, RosSend) and (declaration := find_handle(context.machine, statement)):
-                found[declaration, statement.part] += statement.fields
-    return found
+                sent_fields[declaration, statement.part] += statement.fields
+    return sent_fields
 
 
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:

@@ -26,24 +26,24 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(span, message, *fixes)
 
 
-def _is_nested(wanted: Type) -> bool:
+def _is_nested(required: Type) -> bool:
     """Whether the integer is a member of a struct, whose type is declared elsewhere."""
-    return isinstance(unwrap(wanted)[0], Struct)
+    return isinstance(unwrap(required)[0], Struct)
 
 
-def outside(expr: Expr, wanted: Type) -> Iterator[tuple[Span, int, str]]:
+def outside(expr: Expr, required: Type) -> Iterator[tuple[Span, int, str]]:
     """Constants in `expr` outside the range of the integer type that they must have."""
-    match expr, wanted:
+    match expr, required:
         case ArrayLiteral(), Array():
             for element in expr.elements:
-                yield from outside(element, wanted.element)
+                yield from outside(element, required.element)
         case ObjectLiteral(), Struct():
             for member in expr.members:
-                if type_ := wanted.member(member.key):
+                if type_ := required.member(member.key):
                     yield from outside(member.value, type_)
         case Conditional(), _:
-            yield from outside(expr.then, wanted)
-            yield from outside(expr.otherwise, wanted)
+            yield from outside(expr.then, required)
+            yield from outside(expr.otherwise, required)
         case _, Scalar(kind="int", name=name) if name in INTEGER_RANGES:
             number = constant(expr)
             if isinstance(number, int) and not INTEGER_RANGES[name][0] <= number <= INTEGER_RANGES[name][1]:

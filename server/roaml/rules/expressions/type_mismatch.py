@@ -40,27 +40,27 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield from _too_long(value.value.tree, value.required, size)
 
 
-def can_hold(wanted: Type, given: Type) -> bool:
+def can_hold(required: Type, given: Type) -> bool:
     """Whether a value fits. Structs are assigned leaf by leaf, so another struct with the same leaves fits as well."""
-    inner, bounds = unwrap(wanted)
+    inner, bounds = unwrap(required)
     other, more = unwrap(given)
     if isinstance(inner, Struct) and isinstance(other, Struct) and len(bounds) == len(more):
         known = dict(leaves(other))
         return all(path in known and fits(known[path], leaf) for path, leaf in leaves(inner))
-    return fits(given, wanted)
+    return fits(given, required)
 
 
-def _mismatch(context: MachineContext, value: TypedValue, wanted: Type) -> Finding:
-    message = f"{_what(value)} is `{wanted}`, not {phrase(value.type)}"
-    edits = _without_points(context, value, wanted)
+def _mismatch(context: MachineContext, value: TypedValue, required: Type) -> Finding:
+    message = f"{_what(value)} is `{required}`, not {phrase(value.type)}"
+    edits = _without_points(context, value, required)
     if not edits:
-        return RULE.at(value.value.span, message, *_fixes(context, value, value.type, wanted, value.value.span))
+        return RULE.at(value.value.span, message, *_fixes(context, value, value.type, required, value.value.span))
     new = "remove `.0`" if len(edits) == 1 else "remove each `.0`"
     fix = Fix(new.capitalize(), tuple(edits))
     return RULE.at(value.value.span, f"{message}; {new}", fix, severity=Severity.WARNING)
 
 
-def _without_points(context: MachineContext, value: TypedValue, wanted: Type) -> list[TextEdit]:
+def _without_points(context: MachineContext, value: TypedValue, required: Type) -> list[TextEdit]:
     """The edits that write a real value as the integer to which the translation converts it
     (docs/spec/expressions.md#whole-reals); empty if the translation does not convert it."""
     if not isinstance(value.value, Expression):
@@ -72,31 +72,31 @@ def _without_points(context: MachineContext, value: TypedValue, wanted: Type) ->
         return []
     variables = context.typed.variables.get(value.place.chart.scope, {})
     reprinted, _ = infer(tree, variables.get, reprinted=True)
-    if isinstance(reprinted, Unknown) or not fits(reprinted, wanted):
+    if isinstance(reprinted, Unknown) or not fits(reprinted, required):
         return []
     return [TextEdit(node.span, str(int(node.value))) for node in points]
 
 
-def _too_long(tree: Expr, wanted: Type, size: int | None) -> Iterator[Finding]:
+def _too_long(tree: Expr, required: Type, size: int | None) -> Iterator[Finding]:
     """Literals with more elements than the array can hold; `size` is the size of arrays without a bound, if known."""
-    match tree, wanted:
+    match tree, required:
         case ArrayLiteral(), Array():
-            yield from _longer(tree.span, f"`{wanted}` holds", "elements", len(tree.elements), wanted.bound or size)
+            yield from _longer(tree.span, f"`{required}` holds", "elements", len(tree.elements), required.bound or size)
             for element in tree.elements:
-                yield from _too_long(element, wanted.element, size)
+                yield from _too_long(element, required.element, size)
         case ObjectLiteral(), Struct():
             for member in tree.members:
-                type_ = wanted.member(member.key)
+                type_ = required.member(member.key)
                 if type_ is not None:
                     yield from _too_long(member.value, type_, size)
-        case String(), _ if is_kind(wanted, "string"):
+        case String(), _ if is_kind(required, "string"):
             length = len(tree.value.encode("utf-8", "replace"))
             yield from _longer(tree.span, "a string holds", "bytes", length, size)
 
 
-def _longer(span: Span, holder: str, what: str, length: int, most: int | None) -> Iterator[Finding]:
+def _longer(span: Span, holder: str, parts: str, length: int, most: int | None) -> Iterator[Finding]:
     if most is not None and length > most:
-        yield RULE.at(span, f"{holder} {most} {what}; these are {length}")
+        yield RULE.at(span, f"{holder} {most} {parts}; these are {length}")
 
 
 def _what(value: TypedValue) -> str:
@@ -113,32 +113,32 @@ def _what(value: TypedValue) -> str:
     return f"the variable{target}"
 
 
-def _fixes(context: MachineContext, value: TypedValue, given: Type, wanted: Type, span: Span) -> Iterator[Fix]:
+def _fixes(context: MachineContext, value: TypedValue, given: Type, required: Type, span: Span) -> Iterator[Fix]:
     """Rewrite the value, or change the type of the variable to that of the value."""
     if not isinstance(value.value, Expression):
         return
-    whole = span == value.value.span
-    if whole:
-        yield from _other_value(value.value, value.use, given, wanted)
-    if whole and is_number(given) and is_number(wanted) and isinstance(given, Scalar):
+    is_whole_value = span == value.value.span
+    if is_whole_value:
+        yield from _other_value(value.value, value.use, given, required)
+    if is_whole_value and is_number(given) and is_number(required) and isinstance(given, Scalar):
         yield from as_type(context, value, given.name or DEFAULT_TYPES[given.kind])
 
 
-def _other_value(value: Expression, use: ValueUse, given: Type, wanted: Type) -> Iterator[Fix]:
+def _other_value(value: Expression, use: ValueUse, given: Type, required: Type) -> Iterator[Fix]:
     span, text = value.span, value.text.strip()
-    if isinstance(value.tree, String) and is_number(wanted) | is_kind(wanted, "bool"):
-        written, pattern = value.tree.value, r"-?\d+" if is_kind(wanted, "int") else r"-?\d+(\.\d+)?"
-        if re.fullmatch("true|false" if is_kind(wanted, "bool") else pattern, written):
+    if isinstance(value.tree, String) and is_number(required) | is_kind(required, "bool"):
+        written, pattern = value.tree.value, r"-?\d+" if is_kind(required, "int") else r"-?\d+(\.\d+)?"
+        if re.fullmatch("true|false" if is_kind(required, "bool") else pattern, written):
             yield Fix(f"Change to `{written}`", (TextEdit(span, written),))
-    if is_kind(given, "real") and is_kind(wanted, "int"):
+    if is_kind(given, "real") and is_kind(required, "int"):
         if text.endswith(".0") and text[:-2].isdigit():
             yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
         elif use not in (ValueUse.INITIAL, ValueUse.BOUND):
             edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
             yield Fix(f"Change to `Math.floor({text})`", edits)
-    elif is_kind(given, "int") and is_kind(wanted, "real") and text.removeprefix("-").isdigit():
+    elif is_kind(given, "int") and is_kind(required, "real") and text.removeprefix("-").isdigit():
         yield Fix(f"Change to `{text}.0`", (TextEdit(span, f"{text}.0"),))
-    elif is_kind(given, "int") and is_kind(wanted, "bool") and text in ("0", "1"):
+    elif is_kind(given, "int") and is_kind(required, "bool") and text in ("0", "1"):
         literal = "true" if text == "1" else "false"
         yield Fix(f"Change to `{literal}`", (TextEdit(span, literal),))
 

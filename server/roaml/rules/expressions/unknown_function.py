@@ -56,8 +56,8 @@ def _unknown(problem: UnknownFunction, value: Value) -> Finding:
     if not close and f"Math.{name}" in known:
         close = (f"Math.{name}",)
     hint = did_you_mean(close) or "; only functions of `Math` can be called"
-    what = f"there is no function `{name}`" if name else "this cannot be called"
-    return RULE.at(problem.span, f"{what}{hint}", *replacements(problem.span, close))
+    problem_text = f"there is no function `{name}`" if name else "this cannot be called"
+    return RULE.at(problem.span, f"{problem_text}{hint}", *replacements(problem.span, close))
 
 
 def _rewrite(problem: UnknownFunction, value: Value) -> Iterator[Fix]:

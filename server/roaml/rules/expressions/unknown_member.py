@@ -78,9 +78,9 @@ def _without_quotes(span: Span, text: str) -> Span:
 def _unknown(problem: UnknownMember) -> Finding | None:
     inner, _ = unwrap(problem.owner)
     if not isinstance(inner, Struct):
-        what = "an array" if isinstance(problem.owner, Array) else f"of type `{problem.owner}`"
+        phrase = "an array" if isinstance(problem.owner, Array) else f"of type `{problem.owner}`"
         only = "; its only member is `.length`" if isinstance(problem.owner, Array) else ""
-        return RULE.at(problem.span, f"this is {what} and has no member `{problem.name}`{only}")
+        return RULE.at(problem.span, f"this is {phrase} and has no member `{problem.name}`{only}")
     if is_ros(inner) or inner.kind is StructKind.EVENT:
         return None  # unknown-field and unknown-event-parameter report these with more detail
     close = close_names(problem.name, [name for name, _ in inner.members])

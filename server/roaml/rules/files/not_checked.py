@@ -95,12 +95,12 @@ def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFo
             )
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
             yield _Want("publisher message", topic.name, f"which machine publishes on the topic `{topic.name}`")
-    for what, channels in (("service", system.services), ("action", system.actions)):
+    for noun, channels in (("service", system.services), ("action", system.actions)):
         for channel in channels.values():
             if not channel.sources:
-                yield _Want(f"{what}-server", channel.name, f"which machine serves the {what} `{channel.name}`")
+                yield _Want(f"{noun}-server", channel.name, f"which machine serves the {noun} `{channel.name}`")
             elif not channel.users:
-                yield _Want(f"{what}-client", channel.name, f"which machine uses the {what} `{channel.name}`")
+                yield _Want(f"{noun}-client", channel.name, f"which machine uses the {noun} `{channel.name}`")
     for event in system.events.values():
         if not event.senders:
             yield _Want(SENDS, event.name, f"which machine sends the event `{event.name}`")

@@ -32,8 +32,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
         if listed.usable:
             yield from _other_machine(context, listed, src)
             continue
-        found = "" if listed.kind is FileKind.UNKNOWN else f", but {_with_article(listed.kind)}"
-        message = f"`{src.value}` is not {_with_article(listed.required_kind)}{found}"
+        actual = "" if listed.kind is FileKind.UNKNOWN else f", but {_with_article(listed.kind)}"
+        message = f"`{src.value}` is not {_with_article(listed.required_kind)}{actual}"
         yield RULE.at(src.span, message, *_other_type(listed, context.files))
 
 

@@ -22,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield from _twice(context, statement.params, "parameter")
 
 
-def _twice(context: MachineContext, params: tuple[Param, ...], what: str) -> Iterator[Finding]:
+def _twice(context: MachineContext, params: tuple[Param, ...], kind: str) -> Iterator[Finding]:
     """In the translation, `a.b` and `a__b` are the same (docs/spec/plain-scxml.md#flattening)."""
     first: dict[str, Name] = {}
     for param in params:
@@ -33,7 +33,7 @@ def _twice(context: MachineContext, params: tuple[Param, ...], what: str) -> Ite
             again = "" if before.value == param.name.value else f" (as `{before.value}`)"
             yield RULE.at(
                 param.name.span,
-                f"the {what} `{param.name.value}` is set twice{again}",
+                f"the {kind} `{param.name.value}` is set twice{again}",
                 Fix("Remove this one", (removal(context.source.text, param.element.span),), preferred=False),
                 related=(Related(before.span, "set first here"),),
             )

@@ -16,7 +16,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for kind, what, channels in (
+    for kind, kind_name, channels in (
         (SymbolKind.SERVICE_SERVER, "service", system.services),
         (SymbolKind.ACTION_SERVER, "action", system.actions),
     ):
@@ -25,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for declaration, channel in unused:
             if not system.may(other_kind(kind).value, channel.name):
                 close = close_names(channel.name, unserved)
-                message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
+                message = f"no machine uses the {kind_name} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
                 yield RULE.at(name_span(declaration), message, *fixes)
 

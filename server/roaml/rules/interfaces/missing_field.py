@@ -49,12 +49,12 @@ def _finding(context: MachineContext, statement: RosSend, missing: list[tuple[st
     part = sent_part(context, statement)
     assert isinstance(part, Struct)
     names = _shortened([name for name, _ in missing])
-    one = len(missing) == 1
-    fields = "field" if one else "fields"
+    is_single = len(missing) == 1
+    fields = "field" if is_single else "fields"
     new = [f'<field name="{name}" expr="{zero_text(type_)}" />' for name, type_ in missing]
     fix = Fix(f"Add the missing {fields}", (last_in(context.document, element, *new),))
     if context.older:
-        defaults = "is not set and gets its ROS default" if one else "are not set and get their ROS defaults"
+        defaults = "is not set and gets its ROS default" if is_single else "are not set and get their ROS defaults"
         message = f"the {fields} {names} of `{part}` {defaults}"
         return RULE.at(element.name_span, message, fix, severity=Severity.INFORMATION)
     return RULE.at(element.name_span, f"the {fields} {names} of `{part}` must be set", fix)

@@ -19,26 +19,26 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for kind, what in ((SymbolKind.SERVICE_CLIENT, "service"), (SymbolKind.ACTION_CLIENT, "action")):
+    for kind, kind_name in ((SymbolKind.SERVICE_CLIENT, "service"), (SymbolKind.ACTION_CLIENT, "action")):
         for naming in named_here(context, kind):
             if not naming.channel.sources and not system.may(other_kind(kind).value, naming.channel.name):
-                yield _finding(context, system, naming, what)
+                yield _finding(context, system, naming, kind_name)
 
 
-def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, what: str) -> Finding:
-    channels = system.services if what == "service" else system.actions
+def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, kind_name: str) -> Finding:
+    channels = system.services if kind_name == "service" else system.actions
     served = [c for c in channels.values() if c.sources]
     span, channel = naming.span, naming.channel
     for other in served:
         if other.name.lstrip("/") == channel.name.lstrip("/"):
             message = (
                 f"no machine serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference "
-                f"for {what}s"
+                f"for {kind_name}s"
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
-    message = f"no machine serves the {what} `{channel.name}`{did_you_mean(close)}"
+    message = f"no machine serves the {kind_name} `{channel.name}`{did_you_mean(close)}"
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 

@@ -16,7 +16,7 @@ from roaml.rules.support.interfaces import declared, name_span
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
-    for kind, what, channels in (
+    for kind, noun, channels in (
         (SymbolKind.SERVICE_SERVER, "service", context.system.services),
         (SymbolKind.ACTION_SERVER, "action", context.system.actions),
     ):
@@ -28,32 +28,36 @@ def check(context: MachineContext) -> Iterator[Finding]:
             own = declaration.handle.value if declaration.handle else ""
             others = [e for e in channel.sources if e.automaton is not automaton or e.use.handle != own]
             if others:
-                yield _finding(declaration, automaton, channel, others, what)
+                yield _finding(declaration, automaton, channel, others, noun)
             alike = [other for other in served[sanitise(channel.name)] if other is not channel]
             if alike:
-                yield _same_events(declaration, channel, alike[0], what)
+                yield _same_events(declaration, channel, alike[0], noun)
 
 
-def _same_events(declaration: Declaration, channel: Channel, other: Channel, what: str) -> Finding:
+def _same_events(declaration: Declaration, channel: Channel, other: Channel, noun: str) -> Finding:
     """Two names of which one form is used in the names of events (docs/spec/plain-scxml.md#interface-names)."""
     message = (
-        f"the {what}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
+        f"the {noun}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
         f"translation, which cannot tell them apart; rename one of them"
     )
     return RULE.at(name_span(declaration), message, related=[Related(other.sources[0].symbol, "the other one")])
 
 
 def _finding(
-    declaration: Declaration, automaton: SystemAutomaton, channel: Channel, others: list[ChannelEndpoint], what: str
+    declaration: Declaration,
+    automaton: SystemAutomaton,
+    channel: Channel,
+    others: list[ChannelEndpoint],
+    noun: str,
 ) -> Finding:
     span, count = name_span(declaration), len(channel.sources)
     elsewhere = [e for e in others if e.automaton.path != automaton.path or e.automaton is automaton]
     if elsewhere:
-        message = f"the {what} `{channel.name}` has {count} servers; it must have exactly one"
+        message = f"the {noun} `{channel.name}` has {count} servers; it must have exactly one"
         return RULE.at(span, message, related=[Related(other.symbol, "another server") for other in elsewhere])
     where = "is used in the tree" if automaton.instance is not None else "is listed in the system"
     message = (
-        f"the {what} `{channel.name}` has {count} servers, because `{automaton.outline.name}` {where} {count} times"
+        f"the {noun} `{channel.name}` has {count} servers, because `{automaton.outline.name}` {where} {count} times"
     )
     return RULE.at(span, f"{message}; it must have exactly one")
 

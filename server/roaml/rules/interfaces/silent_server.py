@@ -52,12 +52,12 @@ def _service(
     clients: list[ChannelEndpoint],
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
-    what = f"the service `{channel.name}` is called but"
+    subject = f"the service `{channel.name}` is called but"
     if not sends(automaton, declaration, ProtocolPart.RESPONSE):
-        message = f"{what} never answers: `<ros_service_send_response>` is missing"
+        message = f"{subject} never answers: `<ros_service_send_response>` is missing"
         yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
     elif not receives(automaton, declaration, ProtocolPart.REQUEST):
-        message = f"{what} does not handle requests: `<ros_service_handle_request>` is missing"
+        message = f"{subject} does not handle requests: `<ros_service_handle_request>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
 
 
@@ -67,8 +67,8 @@ def _action(
     related = [Related(clients[0].symbol, "a client")]
     if not sends(automaton, declaration, ProtocolPart.GOAL_ACCEPTED):
         rejects = sends(automaton, declaration, ProtocolPart.GOAL_REJECTED)
-        what = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
-        message = f"the action `{channel.name}` {what}: `<ros_action_accept_goal>` is missing"
+        omission = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
+        message = f"the action `{channel.name}` {omission}: `<ros_action_accept_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
     elif not receives(automaton, declaration, ProtocolPart.GOAL):
         message = f"the action `{channel.name}` does not handle goals: `<ros_action_handle_goal>` is missing"

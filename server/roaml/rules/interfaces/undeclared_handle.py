@@ -70,10 +70,10 @@ def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred:
     if kind is SymbolKind.TIMER:
         text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False
     else:
-        found = _elsewhere(context, name, kind)
-        if found is None:
+        declared = _elsewhere(context, name, kind)
+        if declared is None:
             return
-        interface, type_ = found
+        interface, type_ = declared
         attribute = next(a for a in INTERFACE_ATTRIBUTES if a in HL_SCXML.elements[DECLARING_ELEMENTS[kind]].attributes)
         text = f'<{DECLARING_ELEMENTS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
     siblings = [d.element for d in context.machine.declarations if d.element in root.elements]

@@ -20,15 +20,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration in context.machine.declarations:
         if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
             continue
-        found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+        interface_type = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
         span = declaration.type.span
-        if not isinstance(found, NotFound):
+        if not isinstance(interface_type, NotFound):
             yield from _with_kind(declaration.type.value, span)
             continue
-        if found.reason is Reason.UNKNOWN_PACKAGE:
-            yield _unknown_package(found, span)
+        if interface_type.reason is Reason.UNKNOWN_PACKAGE:
+            yield _unknown_package(interface_type, span)
         else:
-            yield RULE.at(span, found.message, *replacements(span, found.close))
+            yield RULE.at(span, interface_type.message, *replacements(span, interface_type.close))
 
 
 def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
@@ -40,13 +40,13 @@ def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
         yield RULE.at(span, f"a type in a model has no `/{kind[0]}/`; write `{short}`", *replacements(span, (short,)))
 
 
-def _unknown_package(found: NotFound, span: Span) -> Finding:
+def _unknown_package(problem: NotFound, span: Span) -> Finding:
     """Report an unknown package. Its name may be misspelled; more often it is in a folder that is not searched."""
-    package = found.type_name.partition("/")[0]
-    meant = tuple(name for name in found.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
-    where = f"; searched {', '.join(found.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
+    package = problem.type_name.partition("/")[0]
+    meant = tuple(name for name in problem.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
+    where = f"; searched {', '.join(problem.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"
-    others = (name for name in found.close if name not in meant)
+    others = (name for name in problem.close if name not in meant)
     elsewhere = (Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=False) for name in others)
     return RULE.at(span, message, *replacements(span, meant), *elsewhere)
 

@@ -27,8 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if declaration.kind is SymbolKind.ACTION_SERVER and declaration.handle.value in with_threads:
                 continue
             is_timer = declaration.kind is SymbolKind.TIMER
-            what = "timer" if is_timer else f"`<{DECLARING_ELEMENTS[declaration.kind]}>`"
-            message = f"the {what} `{declaration.handle.value}` is never used"
+            kind_name = "timer" if is_timer else f"`<{DECLARING_ELEMENTS[declaration.kind]}>`"
+            message = f"the {kind_name} `{declaration.handle.value}` is never used"
             drop = remove(context.document, declaration.element, "Remove the declaration", preferred=True)
             yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))
 

@@ -28,10 +28,10 @@ _KINDS = {"bool": BOOL, "int": INT, "real": REAL}
 
 def _jani_type(type_: Type) -> JaniType:
     element, bounds = unwrap(type_)
-    found: JaniType = _KINDS.get(element.kind, UnknownType()) if isinstance(element, Scalar) else UnknownType()
+    jani_type: JaniType = _KINDS.get(element.kind, UnknownType()) if isinstance(element, Scalar) else UnknownType()
     for _ in bounds:
-        found = ArrayType(found)
-    return found
+        jani_type = ArrayType(jani_type)
+    return jani_type
 
 
 RULE = Rule(

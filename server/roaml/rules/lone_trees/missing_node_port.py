@@ -40,8 +40,8 @@ def _check(forest: Forest, node: TreeNode, known: Node, severity: Severity) -> I
             continue
         at = node.plugin.span.end if node.compact else node.element.attributes[-1].span.end
         fix = Fix(f"Add `{port.name}`", (TextEdit(Span(at, at), f' {port.name}="{_value(port)}"'),), preferred=False)
-        what = "the subtree" if node.is_subtree else "the node"
-        message = f"{what} `{known.name}` needs the port `{port.name}`"
+        kind_name = "the subtree" if node.is_subtree else "the node"
+        message = f"{kind_name} `{known.name}` needs the port `{port.name}`"
         yield RULE.at(node.plugin.span, message, fix, severity=severity)
 
 

@@ -81,8 +81,8 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
     if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
-        what = f"`{name}` is a text" if name else "nothing is given"
-        message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {what}"
+        reason = f"`{name}` is a text" if name else "nothing is given"
+        message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
         yield RULE.at(span, message, *fixes, severity=_severity(known))
         return
     problem = mismatch(port.type, text)

@@ -32,15 +32,15 @@ def check(context: TreeContext) -> Iterator[Finding]:
     yield from _models(context)
 
 
-def _id(name: Name, what: str) -> Iterator[Finding]:
+def _id(name: Name, kind_name: str) -> Iterator[Finding]:
     text = name.value
     if not text:
-        yield RULE.at(name.span, f"the name of a {what} must not be empty")
+        yield RULE.at(name.span, f"the name of a {kind_name} must not be empty")
     elif text in ("Root", "root"):
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {what}")
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {kind_name}")
     elif match := _FORBIDDEN.search(text):
         shown = "white space" if match[0].isspace() else f"`{match[0]}`"
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a {what}")
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a {kind_name}")
 
 
 def _like_a_node(forest: Forest, name: Name) -> Iterator[Finding]:

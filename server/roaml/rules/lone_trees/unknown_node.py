@@ -59,10 +59,10 @@ def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
     trees = tuple(forest.trees)
     near = probably_meant(name, forest.names) or probably_meant(name, trees, most=1)
     if near is not None:
-        what = "tree" if near in trees and near not in forest.names else "node"
+        kind_name = "tree" if near in trees and near not in forest.names else "node"
         known = forest.node(near)
         library = f" of {known.library}" if known is not None and known.library else ""
-        message = f"there is no node `{name}`; did you mean the {what} `{near}`{library}?"
+        message = f"there is no node `{name}`; did you mean the {kind_name} `{near}`{library}?"
         yield RULE.at(node.plugin.span, message, _renaming(node, near))
     elif forest.has_own_models or forest.libraries:
         severity = Severity.WARNING if forest.has_all_models else Severity.INFORMATION

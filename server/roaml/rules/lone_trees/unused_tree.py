@@ -46,13 +46,13 @@ def _subtrees(forest: Forest, name: str) -> Iterator[str]:
 
 
 def _reached(forest: Forest, main: str) -> set[str]:
-    found, pending = {main}, [main]
+    reached, pending = {main}, [main]
     while pending:
         for name in _subtrees(forest, pending.pop()):
-            if name not in found:
-                found.add(name)
+            if name not in reached:
+                reached.add(name)
                 pending.append(name)
-    return found
+    return reached
 
 
 RULE = Rule("unused-tree", Severity.INFORMATION, "A tree is not part of the executed tree.", tree=check)

@@ -29,7 +29,7 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
 def _is_part_of_unknown(name: str, variables: Mapping[str, GlobalVariable]) -> bool:
     """Whether a variable may be part of a parameter of unknown type, which another rule reports."""
     unknown = (v.name for v in variables.values() if isinstance(unwrap(v.type)[0], Unknown))
-    return any(name.startswith((f"{whole}__", f"{whole}.")) for whole in unknown)
+    return any(name.startswith((f"{prefix}__", f"{prefix}.")) for prefix in unknown)
 
 
 def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:

@@ -19,17 +19,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if not isinstance(statement, If) or len(statement.branches) < 2:
                 continue
             branches = statement.branches
-            for found in covered(condition_facts(chart), [branch.cond for branch in branches]):
-                earlier = [branches[n] for n in found.by or range(found.number)]
-                if found.same:
+            for cover in covered(condition_facts(chart), [branch.cond for branch in branches]):
+                earlier = [branches[n] for n in cover.by or range(cover.number)]
+                if cover.same:
                     why = "an earlier branch has the same condition"
-                elif found.by:
+                elif cover.by:
                     why = "whenever its condition holds, that of an earlier branch holds as well"
                 else:
                     why = "whenever its condition holds, that of one of the earlier branches holds as well"
                 message = f"this branch is never executed: {why}; change one of the conditions"
                 related = [Related(branch.element.name_span, "tried first") for branch in earlier]
-                yield RULE.at(branches[found.number].element.name_span, message, related=related)
+                yield RULE.at(branches[cover.number].element.name_span, message, related=related)
 
 
 RULE = Rule(

@@ -31,11 +31,11 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
             continue
         before = certain.get(key)
         if before is not None:
-            what = "without an event" if handler.trigger is None else "on the same event"
+            when = "without an event" if handler.trigger is None else "on the same event"
             yield RULE.at(
                 handler.element.name_span,
                 (
-                    f"this is never taken: an earlier transition {what} has no condition; add one, or move this one "
+                    f"this is never taken: an earlier transition {when} has no condition; add one, or move this one "
                     "before it"
                 ),
                 *_fixes(context, handler, before),
@@ -54,19 +54,19 @@ def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iter
 
 
 def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Handler]) -> Iterator[Finding]:
-    for found in covered(facts, [handler.cond for handler in handlers]):
-        handler = handlers[found.number]
-        earlier = [handlers[n] for n in found.by or range(found.number)]
-        what = "without an event" if handler.trigger is None else "on the same event"
-        if found.same:
-            why = f"an earlier transition {what} has the same condition"
-        elif found.by:
-            why = f"whenever its condition holds, that of an earlier transition {what} holds as well"
+    for cover in covered(facts, [handler.cond for handler in handlers]):
+        handler = handlers[cover.number]
+        earlier = [handlers[n] for n in cover.by or range(cover.number)]
+        when = "without an event" if handler.trigger is None else "on the same event"
+        if cover.same:
+            why = f"an earlier transition {when} has the same condition"
+        elif cover.by:
+            why = f"whenever its condition holds, that of an earlier transition {when} holds as well"
         else:
-            why = f"whenever its condition holds, one of the earlier transitions {what} is taken"
+            why = f"whenever its condition holds, one of the earlier transitions {when} is taken"
         drop = remove(context.document, handler.element, "Remove this transition")
         message = f"this is never taken: {why}; change one of the conditions"
-        related = [Related(each.element.name_span, "taken first") for each in earlier]
+        related = [Related(earlier_handler.element.name_span, "taken first") for earlier_handler in earlier]
         yield RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
 
 

@@ -69,14 +69,14 @@ def is_spelled(context: MachineContext, duty: Duty) -> bool:
 def answered_in(machine: Machine, duty: Duty) -> set[str]:
     """The scopes of the charts that send answers to a duty."""
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
-    found = set()
+    scopes = set()
     for chart in machine.charts:
         for statement in chart.executed:
             if statement.element.name in names:
                 declaration = find_handle(machine, statement) if isinstance(statement, RosSend) else None
                 if not duty.handle or (declaration and declaration.handle and declaration.handle.value == duty.handle):
-                    found.add(chart.scope)
-    return found
+                    scopes.add(chart.scope)
+    return scopes
 
 
 def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
@@ -90,10 +90,10 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
         wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
             steps.setdefault(step.handler, []).append(step)
-    for handler, found in steps.items():
-        if all(step.ignored for step in found) and has_shadowed(context.machine, behavior.chart, handler):
+    for handler, handler_steps in steps.items():
+        if all(step.ignored for step in handler_steps) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        told = [step for step in found if not _may_be_unread(context.machine, behavior, duty, step)]
+        told = [step for step in handler_steps if not _may_be_unread(context.machine, behavior, duty, step)]
         if told:
             certain = [step for step in told if step.certain and not step.ignored]
             yield (certain or told)[0], bool(certain)
@@ -244,16 +244,16 @@ def deaf_states(
     if not deaf:
         return
     may_come = _coming(context.system, automaton, duty)
-    found: dict[str, str] = {}
+    tree_status: dict[str, str] = {}
     for number in untaken(behavior, duty, possible):
         configuration = behavior.configurations[number]
         if configuration.tree in may_come:
-            found.setdefault(configuration.state, configuration.tree)
+            tree_status.setdefault(configuration.state, configuration.tree)
     for state in behavior.chart.states:
-        if state.id is None or state.id.value not in found or _is_for_errors(behavior, state):
+        if state.id is None or state.id.value not in tree_status or _is_for_errors(behavior, state):
             continue
         if not misspelled.among(state.element.walk(), tag, HL_SCXML):
-            yield state, found.pop(state.id.value)
+            yield state, tree_status.pop(state.id.value)
 
 
 def _is_for_errors(behavior: Behavior, state: State) -> bool:

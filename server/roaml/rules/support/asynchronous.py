@@ -60,22 +60,22 @@ def _edits(
 
 def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
     """The states in which the answer is waited for; `None` if one of them also has another purpose."""
-    found: list[State] = []
+    region: list[State] = []
     waiting = [target.state for target in tick.targets]
     while waiting:
         name = waiting.pop(0)
         state = states.get(name.value) if name else None
         if state is None or state.entry or state.exit or not state.element.complete:
             return None
-        if state in found:
+        if state in region:
             continue
-        found.append(state)
+        region.append(state)
         for handler in state.handlers:
             if handler.trigger in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT):
                 return None
             if handler.effective and not _answers(handler):
                 waiting += [target.state for target in handler.targets]
-    return found
+    return region
 
 
 def _fresh(name: str, names: set[str]) -> str:

@@ -48,6 +48,6 @@ def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> I
             return
 
 
-def _beside(facts: ConditionFacts, one: Expr, other: Expr) -> bool:
+def _beside(facts: ConditionFacts, first: Expr, other: Expr) -> bool:
     """Whether `other` may hold where `one` does not."""
-    return any(facts.assume(known, other) for known in facts.assume(NOTHING, one, False))
+    return any(facts.assume(known, other) for known in facts.assume(NOTHING, first, False))

@@ -20,9 +20,9 @@ def sent_part(context: MachineContext, statement: RosSend) -> Struct | None:
     declaration = find_handle(context.machine, statement)
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
         return None
-    found = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
-    if not isinstance(found, InterfaceType):
+    interface_type = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    if not isinstance(interface_type, InterfaceType):
         return None
-    part = dict(found.parts).get(section_of(statement.part))
+    part = dict(interface_type.parts).get(section_of(statement.part))
     # Some elements send no fields at all: decisions on goals, and results other than success.
-    return part if "field" in statement.type.children else Struct(found.name, ())
+    return part if "field" in statement.type.children else Struct(interface_type.name, ())

@@ -22,6 +22,6 @@ def instances(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton]
     for automaton in context.system.automata:
         if automaton.instance is not None and automaton.instance.source.path == context.source.path:
             source = automaton.instance.source
-            found = at.get((source.tree, source.position))
-            if found is not None:
-                yield found, automaton
+            source_node = at.get((source.tree, source.position))
+            if source_node is not None:
+                yield source_node, automaton

@@ -73,4 +73,4 @@ def is_hidden(root: Element, name: str, grammar: Grammar) -> bool:
     """Whether there may be a `<name>` below `root` that is not read: its own name, or that of an element around it, is
     misspelled."""
     unknown = [element for element in root.walk() if not element.prefix and grammar.find(element.name) is None]
-    return among(unknown, name, grammar) or any(inner.name == name for each in unknown for inner in each.walk())
+    return among(unknown, name, grammar) or any(inner.name == name for element in unknown for inner in element.walk())

@@ -19,14 +19,14 @@ def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
     """The declaration of the variable that receives a value; `None` if only a part of the variable receives it."""
     data = value.place.chart.data
     if value.use is ValueUse.INITIAL:
-        return next((each for each in data if each.element is value.element), None)
+        return next((declaration for declaration in data if declaration.element is value.element), None)
     if value.use is not ValueUse.ASSIGNED:
         return None
     for other in context.typed.values:
         if other.use is ValueUse.LOCATION and other.element is value.element and isinstance(other.value, Expression):
             tree = other.value.tree
             name = tree.name if isinstance(tree, Name) else ""
-            return next((each for each in data if each.id and each.id.value == name), None)
+            return next((declaration for declaration in data if declaration.id and declaration.id.value == name), None)
     return None
 
 

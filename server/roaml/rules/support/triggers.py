@@ -33,7 +33,7 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
     state = next((state for state in chart.states if handler in state.handlers), None)
     groups = conditional(machine, state) if state is not None else ()
     return any(
-        any(covered(condition_facts(chart), [each.cond for each in handlers]))
+        any(covered(condition_facts(chart), [earlier.cond for earlier in handlers]))
         for handlers in groups
         if handler in handlers
     )

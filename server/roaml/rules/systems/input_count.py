@@ -28,10 +28,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     section = context.file.element.find("behavior_tree")
-    wanted = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
+    kinds = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
     # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
     unread = "behavior_tree" in context.file.unread
-    if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
+    if section is not None and not unread and kinds and all(kind is FileKind.MACHINE for kind in kinds):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
         yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))
 

@@ -33,22 +33,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration in context.machine.declarations:
         for read in (declaration.interface, declaration.rate):
             if isinstance(read, PortRead) and read.key and read.key.value in bound:
-                what = _what(declaration)
+                subject = _what(declaration)
                 where = bound[read.key.value]
                 yield RULE.at(
-                    read.span, f"{what} must be constant; `{where}` in the tree binds the port to the blackboard"
+                    read.span, f"{subject} must be constant; `{where}` in the tree binds the port to the blackboard"
                 )
 
 
 def _bound(context: MachineContext) -> dict[str, str]:
     """The ports that a node of the tree binds to the blackboard, with the variable in the tree."""
-    found: dict[str, str] = {}
+    bindings: dict[str, str] = {}
     for automaton in context.automata:
         for port in automaton.outline.ports:
             value = automaton.port(port.key)
             if isinstance(value, Reference):
-                found.setdefault(port.key, f'{port.key}="{{{value.variable}}}"')
-    return found
+                bindings.setdefault(port.key, f'{port.key}="{{{value.variable}}}"')
+    return bindings
 
 
 def _what(declaration: Declaration) -> str:

@@ -37,14 +37,16 @@ def check(context: SystemContext) -> Iterator[Finding]:
 def _generated(system: System) -> dict[str, str]:
     """The names of automata that the translation adds for events and threads, with phrases for them."""
     events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
-    found = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
+    generated = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
     for automaton in system.automata:
         for thread in automaton.outline.threads:
             servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
             for name in filter(None, map(automaton.interface_name, servers)):
                 words = f"a thread of the action `{name}`"
-                found.update({f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MOST_THREADS))})
-    return found
+                generated.update(
+                    {f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MOST_THREADS))}
+                )
+    return generated
 
 
 MOST_THREADS = 1000
@@ -62,16 +64,18 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     assert src is not None
     assert earlier is not None
     first = Related(earlier.span, "the first one")
-    what = "node" if listed.input.section == "node_models" else "plugin"
+    kind_name = "node" if listed.input.section == "node_models" else "plugin"
     if before.path == listed.path:
         # A plugin that is listed twice still exists once; a node would exist twice.
-        same = f", so there would be two nodes `{name}`" if what == "node" else ""
+        same = f", so there would be two nodes `{name}`" if kind_name == "node" else ""
         remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
-        severity = Severity.ERROR if what == "node" else Severity.WARNING
+        severity = Severity.ERROR if kind_name == "node" else Severity.WARNING
         message = f"`{src.value}` is listed twice{same}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
     named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
-    return RULE.at(src.span, f"there are two {what}s `{name}`, here and in `{earlier.value}`", related=[first, named])
+    return RULE.at(
+        src.span, f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`", related=[first, named]
+    )
 
 
 RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)

@@ -38,7 +38,7 @@ def missing_ports(node: TreeNode, plugin: MachineOutline) -> list[PortOutline]:
     builtin = BEHAVIOR_TREE.elements[plugin.name] if plugin.name in builtin_plugins() else None
     known = {a.name for a in builtin.ports if a.port and not a.port.required} if builtin else set()
     known.add(CHILDREN_COUNT)
-    given = {attribute.name for attribute in node.element.attributes} | {each.key.value for each in node.ports}
+    given = {attribute.name for attribute in node.element.attributes} | {setting.key.value for setting in node.ports}
     missing = [port for port in plugin.ports if port.key not in known and port.key not in given]
     # A port that is only misspelled is reported as an unknown port.
     strange = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]

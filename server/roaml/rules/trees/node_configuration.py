@@ -40,7 +40,7 @@ _COUNTS = ("success_count", "failure_count", "max_failures", "num_cycles", "num_
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
     """The finding for a setting; `instead` is the nearest valid value."""
-    setting = next((each.value for each in node.ports if each.key.value == key), None)
+    setting = next((port.value for port in node.ports if port.key.value == key), None)
     assert node.plugin is not None
     if setting is None:
         return RULE.at(node.plugin.span, reason)

@@ -134,25 +134,25 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
     (docs/spec/nodes.md#control)."""
     for node, automaton in instances(context):
         assert context.system is not None
-        wanted = context.system.any_type(automaton)
+        any_type = context.system.any_type(automaton)
         values = [(p, v) for p in automaton.outline.ports if p.type == ANY_TYPE and (v := automaton.port(p.key))]
         variables = [(port, value) for port, value in values if isinstance(value, Reference)]
-        if wanted != "string" and wanted not in INTEGER_RANGES:
+        if any_type != "string" and any_type not in INTEGER_RANGES:
             port, reference = variables[0]
-            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{wanted}`")
+            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{any_type}`")
             continue
         if values and not variables:
             yield from _literal_choice(node)
         for port, value in values:
             if isinstance(value, PortConstant):
-                problem = problem_of(value.text.strip(), replace(port, type=wanted))
+                problem = problem_of(value.text.strip(), replace(port, type=any_type))
                 if problem is not None and not looks_like_reference(value.text):
                     yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
                 continue
             given = context.system.variable_type(value.variable)
-            if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[wanted]):
+            if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[any_type]):
                 message = (
-                    f"`{port.key}` is compared with values of type `{wanted}`, but `{value.variable}` is `{given}`"
+                    f"`{port.key}` is compared with values of type `{any_type}`, but `{value.variable}` is `{given}`"
                 )
                 yield RULE.at(_place(node, port), message)
 
@@ -192,15 +192,15 @@ class ConstantProblem:
 
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
-    wanted = BASE_TYPES.get(port.type)
-    if wanted is None or is_kind(wanted, "string"):
+    type_ = BASE_TYPES.get(port.type)
+    if type_ is None or is_kind(type_, "string"):
         return None
     if not text:
         return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
     tree, findings = parse(Decoded(text, 0))
     given, problems = infer(tree, lambda _: None)
     sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
-    if wanted == BOOL:
+    if type_ == BOOL:
         if sound and given == BOOL:
             return None
         close = {"1": "true", "0": "false"}.get(text, text.lower())
@@ -210,7 +210,7 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     if not sound or not is_number(given):
         return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
     value = constant(tree)
-    if not fits(given, wanted):
+    if not fits(given, type_):
         if value is None or not float(value).is_integer():
             return ConstantProblem(f"the port `{port.key}` must be `{port.type}`, not `{text}`")
         new = str(int(value))

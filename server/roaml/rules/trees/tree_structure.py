@@ -149,14 +149,14 @@ def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
     for name, inners in uses.items():
         for inner in inners:
             users.setdefault(inner, []).append(name)
-    found = {own}
+    containing = {own}
     pending = [own]
     while pending:
         for user in users.get(pending.pop(), ()):
-            if user not in found:
-                found.add(user)
+            if user not in containing:
+                containing.add(user)
                 pending.append(user)
-    return found
+    return containing
 
 
 def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
@@ -191,15 +191,15 @@ def _subtrees(node: NodeOutline | None) -> Iterator[str]:
 
 
 def _main(context: TreeContext) -> Iterator[Finding]:
-    found, main = main_tree(context.files), context.file.main
-    if not isinstance(found, tuple):
-        if main is not None and found.id and found.id != main.value:
-            yield from _another(context, main, found.id)
-    elif main is not None and found:
-        yield from _no_tree(context, main, found)
+    executed, main = main_tree(context.files), context.file.main
+    if not isinstance(executed, tuple):
+        if main is not None and executed.id and executed.id != main.value:
+            yield from _another(context, main, executed.id)
+    elif main is not None and executed:
+        yield from _no_tree(context, main, executed)
     elif context.system is not None and not context.missing_includes:
-        if found:
-            yield from _ambiguous(context, found)
+        if executed:
+            yield from _ambiguous(context, executed)
         elif not _has_misspelled_tree(context):
             yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that can be executed")
 
@@ -232,13 +232,13 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
     return misspelled.among(context.file.element.elements, "BehaviorTree", BEHAVIOR_TREE)
 
 
-def _another(context: TreeContext, wanted: Name, executed: str) -> Iterator[Finding]:
+def _another(context: TreeContext, main: Name, executed: str) -> Iterator[Finding]:
     """Report a wrong name of the only tree, which is executed whatever its name is (docs/spec/trees.md#main-tree). See
     `_no_tree`."""
-    known = context.system is not None or are_similar(wanted.value, executed)
+    known = context.system is not None or are_similar(main.value, executed)
     if known and not context.missing_includes:
-        message = f"there is no tree `{wanted.value}`; the only tree, `{executed}`, is executed instead"
-        yield RULE.at(wanted.span, message, *replacements(wanted.span, [executed]), severity=Severity.WARNING)
+        message = f"there is no tree `{main.value}`; the only tree, `{executed}`, is executed instead"
+        yield RULE.at(main.span, message, *replacements(main.span, [executed]), severity=Severity.WARNING)
 
 
 RULE = Rule("tree-structure", Severity.ERROR, "Trees are missing, ambiguous or contain themselves.", tree=check)

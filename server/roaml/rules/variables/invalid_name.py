@@ -56,40 +56,40 @@ def _parameter(name: Name) -> Iterator[Finding]:
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:
     """Check names that become parts of event names."""
-    what = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
+    kind_name = CHANNEL_KINDS.get(declaration.kind, declaration.kind).value
     name = declaration.handle if declaration.kind is SymbolKind.TIMER else declaration.interface
     if isinstance(name, Name) and not is_interface_name(name.value):
-        yield _wrong(name, _with_spaces(name.value, what))
+        yield _wrong(name, _with_spaces(name.value, kind_name))
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
     """Check the names that ports pass. An error in a node with several instances is reported once."""
-    found: dict[Finding, None] = {}
+    findings: dict[Finding, None] = {}
     for node, automaton, use in named_by_ports(context):
         value = automaton.port(use.port)
         text = value.text.strip() if isinstance(value, PortConstant) else None
         if text is not None and not is_interface_name(text):
-            what = CHANNEL_KINDS[use.kind].value
-            empty = f"`{use.port}` names {_a(what)} and cannot be empty"
-            message = _with_spaces(text, what) if text else empty
+            kind_name = CHANNEL_KINDS[use.kind].value
+            empty = f"`{use.port}` names {_a(kind_name)} and cannot be empty"
+            message = _with_spaces(text, kind_name) if text else empty
             related = (Related(automaton.symbol(use), "it is used here"),)
             # A default is reported at the name of the node, which is no wrong name.
             is_here = any(setting.key.value == use.port for setting in node.ports)
             facts = WrongName(text) if is_here else None
-            found[RULE.at(port_span(node, use.port), message, related=related, facts=facts)] = None
-    yield from found
+            findings[RULE.at(port_span(node, use.port), message, related=related, facts=facts)] = None
+    yield from findings
 
 
 def _wrong(name: Name, message: str, severity: Severity | None = None) -> Finding:
     return RULE.at(name.span, message, severity=severity, facts=WrongName(name.value))
 
 
-def _with_spaces(name: str, what: str) -> str:
-    return f"`{name}` is not a valid name of {_a(what)}: it contains spaces"
+def _with_spaces(name: str, kind_name: str) -> str:
+    return f"`{name}` is not a valid name of {_a(kind_name)}: it contains spaces"
 
 
-def _a(what: str) -> str:
-    return f"{'an' if what == 'action' else 'a'} {what}"
+def _a(noun: str) -> str:
+    return f"{'an' if noun == 'action' else 'a'} {noun}"
 
 
 RULE = Rule(

@@ -69,10 +69,10 @@ def _too_large(declaration: StructDeclaration, sizes: Mapping[str, TypeExtent]) 
     if any(extent.is_too_large for extent, _ in inner):
         return
     extent = sizes[declaration.name.value]
-    largest = max(inner, key=lambda each: (each[0].depth, each[0].fields), default=None)
-    what = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"{extent.depth:,} nested structs"
+    largest = max(inner, key=lambda entry: (entry[0].depth, entry[0].fields), default=None)
+    amount = f"{extent.fields:,} fields" if extent.fields > MAX_FIELDS else f"{extent.depth:,} nested structs"
     most = f"{MAX_FIELDS:,}" if extent.fields > MAX_FIELDS else f"{MAX_DEPTH}"
-    message = f"with all nested members, `{declaration.name.value}` has {what}, but at most {most} are read"
+    message = f"with all nested members, `{declaration.name.value}` has {amount}, but at most {most} are read"
     yield RULE.at(largest[1].span if largest else declaration.name.span, message)
 
 

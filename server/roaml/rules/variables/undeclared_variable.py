@@ -41,8 +41,8 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         return RULE.at(problem.span, f"there is no `{name}`: every variable always has a value of its type")
     variables = context.typed.variables.get(value.place.chart.scope, {})
     if value.use in (ValueUse.INITIAL, ValueUse.BOUND):
-        what = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
-        return RULE.at(problem.span, f"an initial value must be constant; it cannot use {what}")
+        subject = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
+        return RULE.at(problem.span, f"an initial value must be constant; it cannot use {subject}")
     if name in STATUSES:
         number = str(STATUSES[name])
         message = f"`{name}` is only available in the condition of `<bt_child_status>`; write `{number}`"
@@ -89,34 +89,39 @@ def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scal
     )
 
 
-def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], wanted: Type | None) -> Scalar | None:
-    """The type of a name inside an expression that should have the type `wanted`."""
+def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], required: Type | None) -> Scalar | None:
+    """The type of a name inside an expression that should have the type `required`."""
     match tree:
-        case Name(name=found) if found == name:
-            return _named(wanted)
+        case Name(name=written) if written == name:
+            return _named(required)
         case Unary(operator=operator, operand=operand):
             is_not = operator is UnaryOperator.NOT
-            return _beside(operand, name, variables, BOOL if is_not else wanted)
+            return _beside(operand, name, variables, BOOL if is_not else required)
         case Binary(operator=Operator.AND | Operator.OR, left=left, right=right):
             return _beside(left, name, variables, BOOL) or _beside(right, name, variables, BOOL)
         case Binary(operator=operator, left=left, right=right):
-            whole = wanted if operator.kind == "arithmetic" else None
-            types = (_closer(infer(side, variables)[0], whole) for side in (right, left))
+            result_type = required if operator.kind == "arithmetic" else None
+            types = (_closer(infer(side, variables)[0], result_type) for side in (right, left))
             found_types = (
                 _beside(side, name, variables, type_) for side, type_ in zip((left, right), types, strict=True)
             )
             return next((type_ for type_ in found_types if type_), None)
         case Conditional(test=test, then=then, otherwise=otherwise):
             return _beside(test, name, variables, BOOL) or next(
-                (type_ for side in (then, otherwise) if (type_ := _beside(side, name, variables, wanted))), None
+                (type_ for side in (then, otherwise) if (type_ := _beside(side, name, variables, required))), None
             )
     return None
 
 
-def _closer(beside: Type, whole: Type | None) -> Type:
+def _closer(beside: Type, result_type: Type | None) -> Type:
     """The more reliable type: that of the other operand, or that of the result if the other operand is a literal."""
-    if isinstance(beside, Scalar) and not beside.name and isinstance(whole, Scalar) and whole.kind == beside.kind:
-        return whole
+    if (
+        isinstance(beside, Scalar)
+        and not beside.name
+        and isinstance(result_type, Scalar)
+        and result_type.kind == beside.kind
+    ):
+        return result_type
     return beside
 
 
