@@ -41,7 +41,7 @@ def _property_files(context: SystemContext) -> Iterator[Finding]:
     """The property files that are listed again: each of their properties would exist twice."""
     first: dict[str, ListedFile] = {}
     for listed in context.files:
-        if listed.wanted not in _PROPERTY_FILES or not listed.path:
+        if listed.required_kind not in _PROPERTY_FILES or not listed.path:
             continue
         original = first.setdefault(listed.path, listed)
         if original is not listed and listed.input.src is not None:
