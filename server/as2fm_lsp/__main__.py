@@ -17,8 +17,8 @@ def main() -> None:
 def spare_the_collector() -> None:
     """Reduce the frequency of cyclic garbage collection.
 
-    Our trees are large and contain almost no cycles. With the default thresholds, the collector takes a sixth of the
-    time of a check, more for larger systems, and delays every fifth keystroke in an editor by 80 ms.
+    The trees of the parsers are large and contain almost no cycles. With the default thresholds, the collector takes a
+    sixth of the time of a check, more for larger systems, and delays every fifth keystroke in an editor by 80 ms.
     """
     gc.set_threshold(50_000)
 

@@ -41,7 +41,7 @@ class Units:
         return len(text) + sum(character > "\uffff" for character in text)
 
     def column(self, line: str, units: int) -> tuple[int, bool]:
-        """The column in code points at `units` units, and whether the position is inside of the character there. A
+        """The column in code points at `units` units, and whether this position splits a character. A
         column beyond the end of the line is replaced by the end."""
         if self._encoding is types.PositionEncodingKind.Utf32 or line.isascii():
             return min(units, len(line)), False
@@ -55,7 +55,7 @@ class Units:
         return len(line), False
 
     def place(self, text: str, lines: LineIndex, position: types.Position) -> tuple[int, bool]:
-        """The offset of a position in a text with these lines, and whether the position is inside of the character
+        """The offset of a position in a text with these lines, and whether the position splits a character
         there."""
         if position.line >= lines.line_count:
             return len(text), False

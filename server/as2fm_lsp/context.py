@@ -37,7 +37,7 @@ class Context:
         session: open documents, folders, settings.
         client: the client's capabilities; notifications and requests to it.
         requests: whether an answer is still needed.
-        progress: shows long work at the client.
+        progress: shows the progress of long work in the client.
         diagnostics: computes and sends diagnostics.
         results: the known results of properties.
         refresh: asks the client to request hints and lenses again.

@@ -36,10 +36,10 @@ T = TypeVar("T")
 
 TITLE = "Checking models"
 PROGRESS_DELAY_S = 0.5
-"""The time after which work is shown at the client."""
+"""The time after which progress is shown in the client."""
 
 IDLE_DELAY_S = 0.3
-"""The time after which it is likely that nothing more is typed for a while."""
+"""The time without input after which the user is considered idle."""
 
 MAX_INTERRUPTIONS = 5
 """How often a computation gives way to messages before it is completed."""
@@ -47,8 +47,8 @@ MAX_INTERRUPTIONS = 5
 
 class Diagnostics:
     """Attributes:
-    pushes: whether the client wants to be told, or asks by itself.
-    finished: called when all that is known of a change has been told.
+    pushes: whether diagnostics are sent to the client; otherwise the client requests them.
+    finished: called when all diagnostics after a change have been sent.
     """
 
     def __init__(self, client: Client, session: Session, inbox: Inbox, progress: ProgressReporter) -> None:
@@ -129,7 +129,7 @@ class Diagnostics:
             self._send(path, diagnostics, moment.versions.get(path))
 
     async def _giving_way(self, compute: Callable[[], T]) -> T:
-        """A computation between messages. Under a steady stream of messages, it is not interrupted for ever."""
+        """A computation between messages. A steady stream of messages does not delay it for ever."""
         for _ in range(MAX_INTERRUPTIONS):
             await self._let_messages_by()
             self._gives_way = True

@@ -3,7 +3,7 @@
 
 - A separate thread reads them, so that they are available during computations; they are handled one after the other, in
   their order, on the event loop.
-- A request is cancelled from the moment at which the cancellation is read, although its turn is later.
+- A cancellation takes effect as soon as it is read, before the messages that precede it are handled.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FIELD = re.compile(rb"[A-Za-z-]+:")
 """The beginning of a header line."""
 
 MAX_MESSAGE_BYTES = 1 << 28
-"""What claims to be longer is no message."""
+"""The maximum length of a message, in bytes; longer input is invalid."""
 
 _MAX_LINE_BYTES = 1 << 16
 _PIECE_BYTES = 1 << 20

@@ -18,5 +18,5 @@ def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> type
 
 
 def documentation(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent | str:
-    """The same for requests in which a client without declared formats gets a plain string."""
+    """Like `content`, but a plain string for clients that have declared no formats."""
     return content(text, formats) if formats else plain(text)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 
 POLL_INTERVAL_S = 1.0
-"""For systems that do not report the end of a process."""
+"""The interval between checks, in s, on systems that do not report the end of a process."""
 
 EXIT_TIMEOUT_S = 10.0
 """The time after which a server that is still busy is ended."""
@@ -19,7 +19,7 @@ UNEXPECTED_END = 1
 
 
 def watch(process_id: int, ended: Callable[[], None]) -> None:
-    """Wait, in a thread of its own, for the end of a process; a process that is not there has ended.
+    """Wait in a separate thread for the end of a process; a process that does not exist has ended.
 
     Args:
         ended: called in that thread, once. The server then has `EXIT_TIMEOUT_S` seconds to end by itself.

@@ -43,7 +43,7 @@ class Progress:
         """Begin a part of the work, after pending messages of the client are handled.
 
         Raises:
-            Interrupted: the work is not needed any more.
+            Interrupted: the work is no longer needed.
         """
         self.say(message)
         await asyncio.sleep(0)
@@ -63,7 +63,7 @@ class Progress:
 
 
 class ProgressReporter:
-    """Shows work at the client."""
+    """Shows the progress of work in the client."""
 
     def __init__(self, client: Client, inbox: Inbox, requests: Requests) -> None:
         self._client = client

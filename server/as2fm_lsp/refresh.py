@@ -26,7 +26,7 @@ class Refresh:
         self._known: object = None
 
     def look(self) -> None:
-        """Something may have changed."""
+        """Request hints and lenses again if something has changed."""
         workspace = self._client.capabilities.workspace
         hints = bool(workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support)
         lenses = bool(workspace and workspace.code_lens and workspace.code_lens.refresh_support)

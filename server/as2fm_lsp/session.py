@@ -2,7 +2,7 @@
 """The state of the server: open documents, folders, settings.
 
 - Each folder of the client is a workspace with its own configuration, so that it is checked as in CI.
-- A file outside all folders and their systems is checked in a workspace of its own, around its repository or folder,
+- A file outside all folders and their systems is checked in a separate workspace, around its repository or folder,
   while it is open.
 - All workspaces see all open documents. Each file is analysed and reported in one of them (`Moment`).
 """
@@ -29,7 +29,7 @@ from roaml.project.workspace import Snapshot, Workspace
 log = logging.getLogger(__name__)
 
 MAX_SNAPSHOT_AGE_S = 0.5
-"""The time after which the disk is looked at again, even if no changes are reported there."""
+"""The time after which files are read again even if no change is reported."""
 
 
 class Moment:
@@ -81,8 +81,8 @@ class Moment:
 
 class Session:
     """Attributes:
-    problems: what is wrong with the configuration, until it is told.
-    checkpoint: called again and again during all work (`Workspace`).
+    problems: errors in the configuration that have not been shown yet.
+    checkpoint: called repeatedly during all work (`Workspace`).
     """
 
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
@@ -106,7 +106,7 @@ class Session:
         return self._moment
 
     def look_again(self) -> None:
-        """Something has changed, in the editor or on the disk."""
+        """Discard the current moment, because a file has changed in the editor or on the disk."""
         self._moment = None
 
     # ------------------------------------------------------------- documents
@@ -155,7 +155,7 @@ class Session:
     # ------------------------------------------------------------ workspaces
 
     def set_folders(self, folders: Iterable[str]) -> None:
-        """Set the open folders of the client. Workspaces of folders that stay keep their caches."""
+        """Set the open folders of the client. Workspaces of folders that remain open keep their caches."""
         folders = tuple(dict.fromkeys(os.path.normpath(folder) for folder in folders))
         known, self._around = self._folders, {}
         self.look_again()
@@ -164,7 +164,7 @@ class Session:
             workspace.look_for_packages_in(self._packages(folder, workspace.roots))
 
     def refresh(self) -> None:
-        """Files were created or deleted."""
+        """List the folders again, because files were created or deleted."""
         self.look_again()
         for workspace in self._workspaces():
             workspace.refresh()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Waiting for one client on sockets.
 
-Whoever can reach a port can send to it: other users of the machine, and every web page that is open in a browser, which
-posts whatever it likes. So a client is served only after its first message, and that must be an `initialize` with the
-token that the server was started with. Who begins in any other way, as HTTP does, is disconnected before anything that
-it has sent is looked at. A socket file needs no token: the system lets nobody but its owner connect.
+Anyone who can reach a port can send data to it: other users of the machine, and every web page that is open in a
+browser, which posts whatever it likes. So a client is served only after its first message, and that must be an
+`initialize` with the token that the server was started with. Who begins in any other way, as HTTP does, is disconnected
+before anything that it has sent is looked at. A socket file needs no token: the system lets nobody but its owner
+connect.
 """
 
 from __future__ import annotations

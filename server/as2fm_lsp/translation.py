@@ -50,7 +50,7 @@ def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
 
 
 def summary(model: Model) -> str:
-    """The size of a model in words."""
+    """The size of a model, as a phrase."""
     edges = sum(len(automaton.edges) for automaton in model.automata)
     counts = (
         (len(model.automata), "automaton", "automata"),

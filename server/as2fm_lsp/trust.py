@@ -23,14 +23,14 @@ class NotTrustedError(JsonRpcException):
 
 class Trust:
     """Attributes:
-    is_granted: whether files may be written, and time be spent.
+    is_granted: whether files may be written and long computations may run.
     """
 
     def __init__(self) -> None:
         self.is_granted = True
 
     def set(self, value: object) -> None:
-        """Set the trust; anything but true means that it is not granted."""
+        """Set the trust; any value other than true means that it is not granted."""
         self.is_granted = value is True
 
     def require(self, name: str) -> None:

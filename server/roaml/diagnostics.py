@@ -19,7 +19,7 @@ from roaml.text import Edit, Location, Span, TextEdit, computed
 
 
 class Severity(enum.IntEnum):
-    """How important a finding is; a greater value is more important."""
+    """The severity of a finding; a greater value is more severe."""
 
     HINT = 0
     INFORMATION = 1
@@ -61,16 +61,17 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change of the finding's own file that mends it. New lines are written with `\\n`.
+    """A change of the finding's own file that removes the finding. New lines are written with `\\n`.
 
-    A check makes many fixes of which few are chosen, so that edits which take time are computed when they are read.
-    Fixes of one title are equal.
+    A check creates many fixes, of which few are applied, so expensive edits are computed only when they are read.
+    Fixes with equal titles are equal.
 
     Attributes:
         title: in the imperative.
-        plan: the edits, or what computes all of them.
-        preferred: it is the one obvious mend.
-        safe: it takes away nothing that has an effect and guesses nothing, so it may be made without a look.
+        plan: the edits, or a function that computes all of them.
+        preferred: whether it is the one obvious fix.
+        safe: whether it removes nothing that has an effect and guesses nothing, so that it may be applied without a
+            review.
     """
 
     title: str
@@ -85,9 +86,9 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something to say about a span. Without `severity` the rule's own severity holds.
+    """A problem at a span. Without `severity`, the default severity of the rule applies.
 
-    `facts` are what fixes read that reach into other files. The message is for people only.
+    `facts` are the data for fixes that change other files. The message is for people only.
     """
 
     code: str
@@ -110,7 +111,7 @@ class RelatedPlace:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """A finding as it is published: with its file, its final severity and all places resolved."""
+    """A published finding: with its file, its final severity and all places resolved."""
 
     path: str
     code: str

@@ -82,8 +82,8 @@ executed tree, and variables of the translation."""
 
 
 class ProtocolPart(RoleValue):
-    """What an element sends or receives: a part of a ROS interface or of the tree protocol, an event, the tick of a
-    timer."""
+    """The thing that an element sends or receives: a part of a ROS interface or of the tree protocol, an event, the
+    tick of a timer."""
 
     BLACKBOARD = "blackboard"
     BT_HALT = "bt-halt"

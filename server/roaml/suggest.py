@@ -43,7 +43,7 @@ def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[st
 
 @functools.lru_cache(maxsize=256)
 def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str, ...]:
-    """Cached, because the same unknown name often occurs many times."""
+    """The cached result of `close_names`: the same unknown name often occurs many times."""
     lower = name.lower()
     if len(candidates) <= MAX_COMPARED:
         by_lower = {candidate.lower(): candidate for candidate in candidates}
@@ -56,7 +56,7 @@ def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str
 
 
 class _Index:
-    """An index of many names that finds those similar to a given one without comparing all.
+    """An index of many names that finds the names similar to a given one without comparing all.
 
     Attributes:
         by_lower: name in lower case -> name, without names that are too long to be similar to `MAX_LENGTH` letters.

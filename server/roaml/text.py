@@ -66,7 +66,7 @@ class TextEdit(NamedTuple):
 
 
 Edit = TextEdit | Callable[[], TextEdit]
-"""An edit, or what computes it when it is made."""
+"""An edit, or a function that computes it when it is applied."""
 
 
 def computed(edits: Iterable[Edit]) -> tuple[TextEdit, ...]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """TOML with positions, which Python's parser does not keep.
 
-`tomllib` validates the text and provides the values. The scanner in this module reads the same text again and records
+`tomllib` validates the text and provides the values. The scanner in this module reads the text again and records
 the positions of keys and values; it requires valid text.
 """
 

@@ -343,7 +343,7 @@ def test_a_property_that_cannot_be_answered_does_not_stop_the_others(command: Co
     assert found["heads"]["probability"] == pytest.approx(0.3, abs=0.02)
     text = command("verify", name)
     assert "nested: not answered: model.jani:" in text.out
-    assert "answered are `Pmin` and `Pmax` of F, G, X, U, W and R" in text.out
+    assert "supported are `Pmin` and `Pmax` of F, G, X, U, W and R" in text.out
     assert "heads: 0.3" in text.out
     suites = ET.fromstring(command("verify", name, "--format", "junit").out)
     cases = {case.get("name"): case for case in suites.iter("testcase")}

@@ -42,7 +42,7 @@ CASES = {
         transition: tag of a transition; event: attribute; e: event; cond: attribute; x: variable; &lt;=: operator;
             _event: event variable; data: field, struct member or parameter; y: field, struct member or parameter;
             &amp;&amp;: operator; !: operator; true: literal word; target: attribute; s: state
-        ros_topic_callback: tag of something of ROS; name: attribute; 🤖: ROS interface or timer; target: attribute;
+        ros_topic_callback: tag of a ROS element; name: attribute; 🤖: ROS interface or timer; target: attribute;
             s: state
         bt_return_status: tag of the tree protocol; status: attribute; SUCCESS: name of a constant value
         assign: tag; location: attribute; x: variable; 0: number; expr: attribute; Math: library of functions;

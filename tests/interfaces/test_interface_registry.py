@@ -205,7 +205,7 @@ def test_not_found(registry: Registry, kind: Kind, name: str, reason: Reason, be
     assert isinstance(answer, NotFound)
     assert (answer.reason, answer.kind, answer.type_name) == (reason, kind, name)
     assert answer.message.startswith(beginning)
-    assert answer.looked_in[-1] == "the standard packages that come with this tool"
+    assert answer.looked_in[-1] == "the standard packages included in this tool"
     for close in answer.close:
         assert isinstance(registry.resolve(kind, close), Definition)
 

@@ -192,7 +192,7 @@ def test_places_in_words(tmp_path: Path) -> None:
         f"the workspace {tmp_path}",
         f"{tmp_path / 'gone'} (no such folder) from --ros-path",
         f"{tmp_path} from AMENT_PREFIX_PATH",
-        "the standard packages that come with this tool",
+        "the standard packages included in this tool",
     )
 
 

@@ -179,7 +179,7 @@ SYNTAX = [
 NAMES = [
     ("actions", "[{'name': 'go'}, {'name': '⟦go⟧'}]", "action `go` is declared twice"),
     ("variables", "[{'name': '⟦C⟧', 'type': 'int'}]", "variable `C` is declared twice"),
-    ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides the one of the model"),
+    ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides that of the model"),
     ("locations", "[{'name': 'idle'}, {'name': '⟦idle⟧'}]", "location `idle` is declared twice"),
     ("initial", "['⟦idel⟧']", "there is no location `idel`; did you mean `idle`?"),
     ("initial", "[⟦3⟧]", "an entry of `initial-locations` must be a string, not as a number"),

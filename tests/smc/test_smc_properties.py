@@ -220,7 +220,7 @@ def test_properties_that_cannot_be_answered(expression: Json, message: str) -> N
     assert checker.names == ("before", "p", "after")
     (refused,) = checker.refused.values()
     assert message in refused.message
-    assert "answered are `Pmin` and `Pmax` of F, G, X, U, W and R" in refused.message
+    assert "supported are `Pmin` and `Pmax` of F, G, X, U, W and R" in refused.message
     assert refused.code in ("unsupported-property", "ignored-bounds")
     assert refused.origin is not None
     with Pool() as pool:

@@ -184,10 +184,10 @@ CASES = {
 """,
     "space that is none": """
 <a\u00a0b="c" \u2003d="e"\u00a0>x</a\u00a0>
-  ^ the character U+00A0 only looks like a space
-         ^ the character U+2003 only looks like a space
-               ^ the character U+00A0 only looks like a space
-                     ^ the character U+00A0 only looks like a space
+  ^ the character U+00A0 is not white space in XML; replace it with a space
+         ^ the character U+2003 is not white space in XML; replace it with a space
+               ^ the character U+00A0 is not white space in XML; replace it with a space
+                     ^ the character U+00A0 is not white space in XML; replace it with a space
 => a[b=c d=e]('x')
 """,
     # -------------------------------------------------------------- end tags

@@ -37,7 +37,7 @@ examples:
   as2fm-lsp check main.xml                 check a system and all of its files
   as2fm-lsp check models --ros-path msgs --format github
   as2fm-lsp check . --warnings-as-errors --baseline .as2fm-baseline.json
-  as2fm-lsp check models --fix             make all safe fixes, report the rest
+  as2fm-lsp check models --fix             make all safe fixes, report the remaining findings
 
 exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
 """
@@ -59,7 +59,8 @@ def parser() -> ArgumentParser:
 
 
 def check(options: argparse.Namespace, name: str = "--check") -> int:
-    """Check with parsed options; the exit status. `name` is what the user has called it."""
+    """Run a check with parsed options; return the exit status. `name` is the name of the command, for error
+    messages."""
     logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     stdin = options.stdin_filename
     if not options.paths and stdin is None:

@@ -15,7 +15,7 @@ EXAMPLES = """\
 example:
   as2fm-lsp explain late-event-data
 
-exit status: 0 success, 2 there is no such rule
+exit status: 0 success, 2 unknown rule
 """
 
 
@@ -30,12 +30,12 @@ def parser() -> ArgumentParser:
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("code", metavar="CODE", help="the name of the rule, as it is shown behind a finding")
+    result.add_argument("code", metavar="CODE", help="the name of the rule, as it is shown after a finding")
     return result
 
 
 def explain(code: str) -> int:
-    """Print the document of a rule; the exit status."""
+    """Print the document of a rule; return the exit status."""
     if code not in BY_CODE:
         complain(unknown_rule(code))
         return USAGE

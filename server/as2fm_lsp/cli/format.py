@@ -28,11 +28,12 @@ from roaml.text import SourceFile, apply_edits
 
 EXAMPLES = """\
 examples:
-  as2fm-lsp format models                  lay out all files of a folder
-  as2fm-lsp format models --check          list those that are not laid out
+  as2fm-lsp format models                  format all files of a folder
+  as2fm-lsp format models --check          list the files that are not formatted
   as2fm-lsp format main.xml --diff         show what would change
 
-exit status: 0 all is laid out, 1 with --check or --diff: something is not; or a file is not well-formed, 2 usage error
+exit status: 0 all files are formatted, 1 a file is not well-formed, or (with --check or --diff) not formatted, 2 usage
+error
 """
 
 
@@ -99,7 +100,7 @@ def _problem(analysis: Analysis, path: str) -> str:
 
 
 def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
-    """The given files, and those in folders that are hand-written and in our languages."""
+    """The given files, and the hand-written files of supported languages in the given folders."""
     for path in map(os.path.abspath, paths):
         if not os.path.isdir(path):
             yield path

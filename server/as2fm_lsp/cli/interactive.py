@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interactive simulation on a terminal: it lists the possible next steps and reads one command in a line."""
+"""Interactive simulation on a terminal: it lists the possible next steps and reads one command per line."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Terminal:
         self._show_choices()
 
     def _move(self, command: str, rest: str, line: str) -> str:
-        """Execute a command that moves or saves the session; what there is to say about it."""
+        """Execute a command that moves or saves the session; return a message for the user."""
         session = self._session
         match command:
             case "w":
@@ -148,7 +148,7 @@ class Terminal:
         print_text(f"step {session.position}{time}{decided}\n")
         end = session.end
         if end is not None:
-            print_text(f"  nothing changes any more: {end.text}\n")
+            print_text(f"  the run has ended: {end.text}\n")
             return
         for choice in session.choices():
             print_text("".join(f"{line}\n" for line in self._choice(choice)))

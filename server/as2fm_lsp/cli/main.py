@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked for on the command line, and who does it.
+"""The entry point of the command line: reads the arguments and calls the requested command.
 
-`--check`, `--explain`, `--stdio` and `--tcp` do what the commands `check`, `explain` and `serve` do. Without anything,
+`--check`, `--explain`, `--stdio` and `--tcp` do what the commands `check`, `explain` and `serve` do. Without arguments,
 the language server runs on standard input and output.
 """
 
@@ -32,14 +32,14 @@ COMMANDS = {
     "simulate": "run a system step by step",
     "init": "write a small working system",
 }
-"""What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""
+"""What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is called."""
 
 EXAMPLES = """\
 examples:
   as2fm-lsp --check main.xml              check a system and all of its files
   as2fm-lsp --check models --ros-path msgs --format github
   as2fm-lsp --check . --warnings-as-errors --baseline .as2fm-baseline.json
-  as2fm-lsp --check models --fix          make all safe fixes, report the rest
+  as2fm-lsp --check models --fix          make all safe fixes, report the remaining findings
   as2fm-lsp --explain late-event-data     what a rule means
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted

@@ -30,7 +30,7 @@ class UsageError(ValueError):
 
 
 def add_model_arguments(parser: ArgumentParser) -> None:
-    """Add the options that say what the model is; `main` is not among them."""
+    """Add the options that determine the model, except `main`."""
     add = parser.add_argument
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
     add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
@@ -93,6 +93,6 @@ def line_of(target: VerificationTarget, origin: Origin | None) -> str:
 
 
 def fault_text(target: VerificationTarget, fault: FaultError) -> str:
-    """What is wrong in a model that cannot be run any further, with its place."""
+    """A message for a run that cannot continue: the error in the model, with its position."""
     place = line_of(target, fault.origin)
     return f"{place}: {fault.message}" if place else fault.message

@@ -40,7 +40,7 @@ examples:
   as2fm-lsp simulate main.xml --until /arm/command    until a message is sent on this topic
   as2fm-lsp simulate main.xml --property dropped --trace 4 --html run.html
   as2fm-lsp simulate main.xml --interactive           choose on the terminal what happens next, and go back
-  as2fm-lsp simulate main.xml --script run.json       the run that --save wrote
+  as2fm-lsp simulate main.xml --script run.json       repeat a run that --save has written
 
 The run of seed N and trace M is trace M of `verify --seed N`. A run with a step chosen by hand is not a trace of
 `verify`.
@@ -100,7 +100,7 @@ def _saved(options: argparse.Namespace) -> SavedSession | None:
 
 
 def _property(options: argparse.Namespace, target: VerificationTarget) -> str | None:
-    """The property that is evaluated on the run: the one until which it is to last, if any."""
+    """The property that is evaluated on the run: the one given with `--until`, if any."""
     names = {property_.name for property_ in target.model.properties}
     if options.until not in names:
         return options.property  # type: ignore[no-any-return]
@@ -184,12 +184,12 @@ def parser() -> ArgumentParser:
         help="end when this property is decided, or this topic, service, action or event is sent",
     )
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
-    add("--script", metavar="FILE", help="the run that --save wrote")
-    add("--save", metavar="FILE", help="write the decisions of the run, which --script takes again")
+    add("--script", metavar="FILE", help="repeat a run that --save has written")
+    add("--save", metavar="FILE", help="write the decisions of the run, for --script")
     add("--interactive", "-i", action="store_true", help="choose what happens next, step by step, and go back")
     add("--csv", metavar="FILE", help="write the state after each step as CSV")
     add("--json", metavar="FILE", help="write the steps as JSON")
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
-    add("--html", metavar="FILE", help="write the run as a page")
+    add("--html", metavar="FILE", help="write the run as an HTML page")
     add_model_arguments(result)
     return result

@@ -236,7 +236,8 @@ class _Verification:
         return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
 
     def _where_shown(self, is_told: bool) -> str:
-        """Where the waiting automata were shown, for the known example of a stuck trace; "" if nowhere."""
+        """The place in the output where the waiting automata of the example of a stuck trace are shown; "" if they are
+        not."""
         if self.look is None or self.look.stuck is None:
             return ""
         same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
@@ -272,7 +273,7 @@ class _Verification:
         ]
 
     def _tell_faults(self) -> None:
-        """Report the same to users, on standard error."""
+        """Report these properties to users, on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
@@ -486,7 +487,7 @@ def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:
 
 
 def _fault(options: argparse.Namespace, target: VerificationTarget, fault: FaultError) -> int:
-    """The whole model cannot be run."""
+    """The error entry of a model that cannot be run at all."""
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
         complain(f"{shown_path(options.main)}: {fault.message}")

@@ -74,7 +74,7 @@ def errors_of(on: RequestedDocument) -> dict[str, tuple[Diagnostic, ...]]:
 
 
 def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) -> Iterator[types.CodeLens]:
-    """Lenses at a system file that has errors, and at the properties of these systems."""
+    """Lenses for a system file that has errors, and for the properties of systems that have errors."""
     names = system_names(on.analysis.memberships.get(on.path, ()))
     for system, errors in broken.items():
         arguments = [on.convert.uri(system)]

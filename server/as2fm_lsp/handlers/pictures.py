@@ -63,7 +63,7 @@ def register(context: Context) -> None:
 
     @context.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
-        """The diagram; null if the file has none of this kind."""
+        """The diagram; null if the file has no diagram of this kind."""
         kind = string(params, "kind")
         make = _PICTURES.get(kind)
         path = session.convert.path(document_uri(params))

@@ -31,7 +31,7 @@ TITLE = "Translate to JANI"
 
 
 class Translated(TypedDict):
-    """The result of the command: the file that was written, and its size in words."""
+    """The result of the command: the file that was written, and its size as a phrase."""
 
     uri: str
     summary: str
@@ -97,7 +97,7 @@ async def _write(context: Context, shown: Progress, path: str, target: str) -> t
     """Translate the current state of a system into a file. Between the steps other messages are handled.
 
     Returns:
-        The model, and the properties that are left out of it.
+        The model, and the properties that it does not contain.
 
     Raises:
         Interrupted: the client has cancelled it. The file is unchanged.

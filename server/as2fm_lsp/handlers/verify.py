@@ -132,8 +132,8 @@ def register(context: Context) -> None:
 
 
 def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
-    """Lenses at each property of a system that is not `broken`, and at the system file. Results are shown in the hints
-    after the names, and in the lenses only if no hints are shown."""
+    """Lenses for each property of a system that is not in `broken`, and for the system file. Results are shown in the
+    hints after the names, and in the lenses only if no hints are shown."""
     tells = not _shows_hints(context)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():

@@ -33,9 +33,9 @@ async def answer(
         show: called on the event loop with the intermediate result.
 
     Raises:
-        Interrupted: the result is not needed any more.
+        Interrupted: the result is no longer needed.
         FaultError: a trace failed.
-        WorkersLostError: the processes end again and again.
+        WorkersLostError: the processes end repeatedly.
     """
     loop = asyncio.get_running_loop()
     latest = Tally()

@@ -8,10 +8,10 @@ from roaml.smc.run import Tally
 
 
 def as_line(tally: Tally) -> str:
-    """For readers: the reasons that occurred, with their numbers of traces."""
+    """The reasons that occurred with their numbers of traces, as a line for users."""
     return ", ".join(f"{reason.text} {tally.ends[reason].count:,}" for reason in End if reason in tally.ends)
 
 
 def as_row(tally: Tally) -> dict[str, int]:
-    """For JSON: every reason, with its number of traces."""
+    """Every reason with its number of traces, as a value for JSON."""
     return {reason.key: tally.ended(reason) for reason in End}

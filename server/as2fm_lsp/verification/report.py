@@ -23,7 +23,7 @@ from roaml.views.story import PlaceOf
 
 
 def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
-    """For users: all results of one call.
+    """All results of one call, as text for users.
 
     Args:
         place_of: file and line of an origin.
@@ -46,7 +46,7 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
-    """For users: a single result. See `as_text`."""
+    """A single result, as text for users. See `as_text`."""
     return _block(result, place_of, level, shown, is_alone=True)
 
 
@@ -122,7 +122,7 @@ def _estimate(answer: Answer) -> str:
 def _remarks(answer: Answer) -> list[str]:
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
-        lines.append("  infinite: some traces never reach what the reward is counted to")
+        lines.append("  infinite: some traces never reach the condition up to which the reward is accumulated")
     ratio = ratio_of(answer.question, answer.options)
     if answer.tally.accepted is not None and ratio is not None:
         low, high = max(0.0, ratio.threshold - ratio.epsilon), min(1.0, ratio.threshold + ratio.epsilon)
@@ -153,7 +153,7 @@ def _number(value: float) -> str:
 def as_json(
     results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
 ) -> str:
-    """For programs; `stuck` is the result of the check for stuck systems."""
+    """All results as JSON text; `stuck` is the result of the check for stuck systems."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
@@ -226,7 +226,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
 
 
 def _finite(value: float) -> float | str | None:
-    """JSON has no infinite numbers."""
+    """The number, or `None` for an infinite one, which JSON does not support."""
     if math.isnan(value):
         return None
     return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

@@ -49,7 +49,7 @@ def _cells(name: str, value: Plain) -> Iterator[tuple[str, int | float]]:
 
 
 def json_text(session: Session, target: VerificationTarget) -> str:
-    """The steps up to the position, and what the run is."""
+    """The steps up to the position, with the property, seed and trace of the run."""
     saved, end = session.save(), session.end
     value = {
         "property": saved.property,

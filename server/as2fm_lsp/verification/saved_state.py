@@ -30,7 +30,7 @@ class StateError(ValueError):
 
 
 class SavedState:
-    """The tallies of several properties, kept in a file."""
+    """The tallies of several properties, stored in a file."""
 
     def __init__(self, path: str, options: Options) -> None:
         self.path = path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results about other schedulers than the uniform one, for users and programs."""
+"""Results for schedulers other than the uniform one, for users and programs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def remark(question: Question, choices: Choices | None) -> str:
 
 
 def warning(question: Question, choices: Choices | None) -> str:
-    """The same for programs if it is a warning; otherwise empty."""
+    """The text of `remark` for programs if it is a warning; otherwise empty."""
     text = remark(question, choices)
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
@@ -59,7 +59,7 @@ def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
 
 
 def _looked(question: Question, choices: Choices) -> str:
-    """How a difference was searched for and not found."""
+    """A phrase that states how a difference was searched for without success."""
     if choices.tried:
         return f"{choices.tried:,} sampled schedulers show no difference"
     return "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"

@@ -44,7 +44,7 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
 
 
 def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
-    """For users, below the value that it makes doubtful; `shown` as in `as_text`."""
+    """The warning for users, below the value that it makes doubtful; `shown` as in `as_text`."""
     if shown:
         return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
     lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
@@ -67,7 +67,7 @@ def _where(stuck: Stuck) -> str:
 
 
 def as_row(look: Look, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
-    """For JSON; `place` gives an origin's members."""
+    """The result as a value for JSON; `place` returns the members for an origin."""
     row: dict[str, Any] = {"level": look.level}
     if look.answer is not None:
         tally, (lower, upper) = look.answer.tally, look.answer.bounds

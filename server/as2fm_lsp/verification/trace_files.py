@@ -35,7 +35,7 @@ def write_traces(
     """Write the first traces of each verdict, and the shortest; return the names of the files.
 
     Raises:
-        OSError: a file cannot be written; it does not exist then, earlier ones are complete.
+        OSError: a file cannot be written; that file does not exist then, and earlier files are complete.
     """
     os.makedirs(folder, exist_ok=True)
     written = []
@@ -179,7 +179,7 @@ def cells_of(value: Plain) -> Iterator[int | float]:
 
 
 def suffixes_of(value: Plain) -> Iterator[str]:
-    """What the names of these cells have behind the name of the variable."""
+    """The suffixes that the names of these cells add to the name of the variable."""
     if isinstance(value, list):
         for position, element in enumerate(value):
             yield from (f"[{position}]{more}" for more in suffixes_of(element))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What other programs import; `docs/library.md` shows how.
+"""The public interface for other programs; see `docs/library.md`.
 
     from roaml import api
 
@@ -12,7 +12,7 @@
     for result in api.verify(system, jobs=2, expectations=["alarm >= 0.95"]):
         print(result.name, result.answer.value, result.answer.bounds, result.is_met)
 
-Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Names
+Errors in the user's files are neither printed nor raised; a path that does not exist is a `PathError`. Names
 that a check does not need are imported when they are used, so that it starts fast.
 """
 

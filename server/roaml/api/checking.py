@@ -31,7 +31,7 @@ class CheckResult:
         diagnostics: sorted by file, in the order in which files were checked, then by position.
         files: the files that were checked.
         problems: errors in the configuration, as sentences.
-        snapshot: the models behind the diagnostics.
+        snapshot: the state of the files from which the diagnostics were computed.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -100,7 +100,7 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:
-    """Whether a text that was not read from a file can be encoded: lone surrogates cannot."""
+    """Whether a text that was not read from a file can be encoded: unpaired surrogates cannot."""
     return _HALF.search(text) is None
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moving systems to the current dialect."""
+"""Migration of systems to the current dialect."""
 
 from __future__ import annotations
 

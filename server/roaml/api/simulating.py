@@ -21,10 +21,10 @@ def session(
     trace: int = 0,
     saved: SavedSession | None = None,
 ) -> Session:
-    """A run at its start, or where a saved one was.
+    """A run at its start, or at the position of a saved run.
 
     Args:
-        subject: what runs.
+        subject: the system or model to run.
         property: the name of the property that is evaluated on the run; the first one if not given, and `stuck` if the
             model has none.
         seed, trace: the run is the trace of this number that `verify` makes with this seed.

@@ -38,13 +38,13 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class LoadedSystem:
-    """A system without errors, as its files were when it was loaded.
+    """A system without errors, in the state of its files at the time of loading.
 
     Attributes:
         path: of the system file.
         properties: those in its property files in JANI, in their order.
         observed: those in its property files in XML, in their order.
-        analysis: the models behind it.
+        analysis: the analysis of its files.
     """
 
     path: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verifying properties. What it takes is imported only when it is used."""
+"""Verification of properties. Modules for it are imported only when they are used."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 class ConstantError(ValueError):
-    """A constant cannot have this value, or a model has no such constant or parameter; the message says why."""
+    """A constant cannot have this value, or a model does not declare the constant or parameter; the message contains
+    the reason."""
 
 
 def target(
@@ -34,7 +35,7 @@ def target(
     overrides: Overrides = NO_OVERRIDES,
     constants: Sequence[str] = (),
 ) -> VerificationTarget:
-    """Read what is to be verified; a file whose name ends in `.jani` is a JANI model, any other one a system.
+    """Read a system or model to verify; a file whose name ends in `.jani` is a JANI model, any other one a system.
 
     Args:
         path: the system file, or a JANI model.
@@ -42,7 +43,7 @@ def target(
         constants: `NAME=VALUE`, for constants that a JANI model declares without a value.
 
     Raises:
-        ConstantError: there is no such constant or parameter, or the value does not fit.
+        ConstantError: the constant or parameter is not declared, or the value does not fit.
         PathError: the file cannot be read, or is not a system file.
         ModelError: the system has errors.
         JaniError: the JANI model has errors.
@@ -66,7 +67,7 @@ def target(
 
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
-    """A system, which is translated, or a model, as what is verified."""
+    """The target for a system, which is translated first, or for a model."""
     from roaml.verification.target import target_of  # noqa: PLC0415
 
     if isinstance(subject, LoadedSystem):
@@ -75,14 +76,14 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:
-    """A model, compiled for some of its properties, to make traces of it step by step.
+    """A model, compiled for some of its properties, to generate traces step by step.
 
     Args:
         properties: their names; all if not given. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
             which every translated system can be asked.
 
     Raises:
-        PropertyError: the model has no property of a name.
+        PropertyError: the model has no property with one of the names.
         FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
             are in `refused`.
     """
@@ -99,7 +100,7 @@ def verifier(
     *,
     only_uniform: bool = False,
 ) -> Verifier:
-    """A system or model made ready to be verified property by property: to watch, to interrupt and to go on.
+    """A verification of single properties that can be observed, interrupted and continued.
 
     Args:
         subject, properties, options, expectations, only_uniform: as for `verify`.
@@ -124,23 +125,23 @@ def verify(
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
 ) -> Iterator[Result]:
-    """Estimate how probable properties are, by random traces with uniform choices. Results come one by one.
+    """Estimate how probable properties are, by random traces with uniform choices. Results are returned one by one.
 
     Args:
-        subject: a system, a JANI model, or what `target` gives.
+        subject: a system, a JANI model, or the result of `target`.
         properties: their names; all if not given. `stuck` asks whether traces get stuck.
         options: confidence, width of the interval, seed and limits.
-        jobs: processes to use; has no influence on the results.
+        jobs: the number of processes; has no influence on the results.
         executor: where to run batches of traces instead.
-        expectations: such as `alarm >= 0.95`; each gives a verdict in the result of its property.
-        only_uniform: whether only uniform choices are asked about. If not, it is looked into whether other schedulers
-            give other values, and verdicts say so.
+        expectations: such as `alarm >= 0.95`; each adds a verdict to the result of its property.
+        only_uniform: whether only uniform choices are considered. Otherwise it is also examined whether other
+            schedulers give other values, and verdicts say so.
 
     Raises:
-        PropertyError: there is no property of a name.
+        PropertyError: the model has no property with one of the names.
         FaultError: the model cannot be run. A property that cannot be answered has a result with a `refusal`.
-        WorkersLostError: processes die again and again.
-        ValueError: an option or expectation makes no sense.
+        WorkersLostError: worker processes end repeatedly.
+        ValueError: an option or expectation is invalid.
     """
     from roaml.smc.pool import Pool  # noqa: PLC0415
 

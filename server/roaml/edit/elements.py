@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements that edits add, rename and remove.
+"""Edits that add, rename and remove elements.
 
-New ones are on lines of their own, indented like what is around them. Their lines are given with four spaces for each
-level that they are nested; they get what the file has for it.
+New elements get separate lines, with the indentation of their surroundings. Their lines are given with four spaces for
+each level of nesting, which are replaced by the file's own indentation.
 
-`after`, `first_in`, `last_in` and `removal` say what is to be done. The edit itself is computed when a fix is made.
+`after`, `first_in`, `last_in` and `removal` describe an edit, which is computed when a fix is applied.
 """
 
 from __future__ import annotations

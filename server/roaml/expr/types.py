@@ -38,7 +38,7 @@ class Array:
 
 
 class StructKind(enum.Enum):
-    """What the members of a struct belong to."""
+    """The kind of thing whose members a struct describes."""
 
     DECLARED = enum.auto()
     """A struct of the models."""
@@ -47,7 +47,7 @@ class StructKind(enum.Enum):
     EVENT = enum.auto()
     """The parameters of an event."""
     HANDLER = enum.auto()
-    """What a handler knows besides."""
+    """Further data of a handler."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class EmptyArray:
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """The type of something that is already reported. It fits everything, so that an error is reported once."""
+    """The type of an expression with a reported error. It fits everything, so that an error is reported once."""
 
     def __str__(self) -> str:
         return "unknown"

@@ -40,7 +40,7 @@ def _ended(answers: Answers, success: str, failure: str) -> Answers:
 
 
 class Possible:
-    """The possible answers of the nodes of a forest. Each tree is analysed once. A tree inside itself may give any
+    """The possible answers of the nodes of a forest. Each tree is analysed once. A recursive tree may give any
     answer."""
 
     def __init__(self, forest: Forest) -> None:
@@ -127,9 +127,9 @@ class Possible:
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
         """The children that are never ticked.
 
-        Each comes with the earlier child that always ends the node, and with the answer that this one never gives. Of
-        several such children in a row, only the first is returned. If the answers of a child follow from an unreached
-        child inside it, only the inner one is returned.
+        Each is returned with the earlier child that always ends the node, and with the answer that this child never
+        gives. Of several such children in a row, only the first is returned. If the answers of a child follow from an
+        unreached child inside it, only the inner one is returned.
         """
         answers = self.answers(root)
         has_inner: set[TreeNode] = set()

@@ -34,7 +34,7 @@ class Lens:
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """The text of a lens, and the places that it counts."""
+    """The text of a lens, and the counted places."""
 
     title: str
     places: tuple[Location, ...]

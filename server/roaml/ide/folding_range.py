@@ -29,7 +29,7 @@ class Fold(NamedTuple):
 
 
 def folds(analysis: Analysis, path: str) -> tuple[Fold, ...]:
-    """The folds of a file, in the order of the text; of those that begin on one line only the longest."""
+    """The folds of a file, in the order of the text; if several begin on one line, only the longest is returned."""
     source = analysis.source(path)
     if source is None:
         return ()

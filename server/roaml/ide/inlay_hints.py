@@ -60,7 +60,7 @@ ALL_HINTS = frozenset(HintKind)
 
 @dataclass(frozen=True, slots=True)
 class InlayHintLabelPart:
-    """A piece of a hint; `symbol` is what it names, if anything."""
+    """A piece of a hint; `symbol` is the symbol that it names, if any."""
 
     text: str
     symbol: Symbol | None = None
@@ -68,7 +68,7 @@ class InlayHintLabelPart:
 
 @dataclass(frozen=True, slots=True)
 class InlayHint:
-    """`offset` is its position; it is a type hint or another one."""
+    """`offset` is its position in the text."""
 
     offset: int
     kind: HintKind

@@ -25,7 +25,7 @@ class JaniView:
 
 
 def jani_view(text: str) -> JaniView:
-    """Format the text of a JANI file: one member or item per line; what fits on one line is on one line.
+    """Format the text of a JANI file: one member or item per line; an object or list that fits is on one line.
 
     Args:
         text: the text of the file; text with syntax errors is not changed.

@@ -10,7 +10,7 @@ from roaml.text import Span
 
 
 def values(value: JsonValue) -> Iterator[JsonValue]:
-    """A value and all in it, in the order of the text."""
+    """A value and all values in it, in the order of the text."""
     stack = [value]
     while stack:
         inner = stack.pop()

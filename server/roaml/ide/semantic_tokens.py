@@ -32,7 +32,7 @@ class TokenKind(enum.Enum):
     STRUCTURE_TAG = "tag of a part"
     STATE_TAG = "tag of a state"
     TRANSITION_TAG = "tag of a transition"
-    ROS_TAG = "tag of something of ROS"
+    ROS_TAG = "tag of a ROS element"
     BT_TAG = "tag of the tree protocol"
     CONTROL_TAG = "tag of a control node"
     DECORATOR_TAG = "tag of a decorator"
@@ -264,7 +264,7 @@ def _json(value: object) -> Iterator[SemanticToken]:
 
 
 def _string(member: Member, value: JsonString) -> SemanticToken:
-    """In a property a string is a variable, except for operators and comments."""
+    """The token of a string in a property: a variable, except for operators and comments."""
     if member.key in _OPERATOR_KEYS:
         return SemanticToken(value.span, TokenKind.OPERATOR)
     return SemanticToken(value.span, TokenKind.STRING if member.key in _PLAIN_KEYS else TokenKind.VARIABLE)

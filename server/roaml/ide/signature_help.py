@@ -28,7 +28,7 @@ class SignatureHelp:
     Attributes:
         label: the call.
         parameters: their spans in `label`.
-        active: the one that is being typed; `None` if there are none, or no more.
+        active: the parameter that is being typed; `None` if there are no or too few parameters.
         documentation: Markdown.
     """
 

@@ -31,7 +31,7 @@ def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
     """The texts about each system, without duplicates, with the names of their systems.
 
     Args:
-        said: by the path of the system; hashable.
+        said: the hashable text of each system, by the path of the system.
 
     Returns:
         In the order of the systems. The names are "" if the text is the same for all.

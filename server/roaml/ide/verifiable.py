@@ -19,7 +19,8 @@ Texts: TypeAlias = tuple[tuple[str, bytes], ...]
 
 @dataclass(frozen=True, slots=True)
 class Verifiable:
-    """A property of a system: `span` in the file at `path` is all of it, `name_span` its name without the quotes."""
+    """A property of a system: `span` is its place in the file at `path`, `name_span` that of its name without the
+    quotes."""
 
     name: str
     comment: str
@@ -46,6 +47,6 @@ def _in_file(analysis: Analysis, path: str) -> Iterator[Verifiable]:
 
 
 def fingerprint(analysis: Analysis, system: str) -> Texts:
-    """The content of the files of a system: as long as it is equal, so are the answers."""
+    """The content of the files of a system: the results are valid as long as it is equal."""
     sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
     return tuple((path, source.digest) for path, source in sources if source is not None)

@@ -57,7 +57,7 @@ class _Head(NamedTuple):
 
 @dataclass(slots=True)
 class _Element:
-    """A field or constant whose comment is not complete yet."""
+    """A field or constant whose comment has not been read completely yet."""
 
     item: Field | Constant
     comment: list[str]
@@ -228,7 +228,7 @@ class _Parser:
         self.last = _Element(item, comment)
         first = self.sections[-1].elements.setdefault(item.name, self.last)
         if first is not self.last:
-            related = Related(first.item.name_span, "it is first defined here")
+            related = Related(first.item.name_span, "first defined here")
             self.report.add(
                 item.name_span, f"`{shorten(item.name)}` is defined twice; rename one of them", related=(related,)
             )

@@ -96,7 +96,7 @@ class Registry:
         self._parsed: dict[str, tuple[tuple[Kind, str, str, bytes], Parsed]] = {}
 
     def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
-        """The same registry with another view of the files; both share the parsed definitions."""
+        """A registry with another view of the files; both share the parsed definitions."""
         other = Registry(self.search_path, read)
         other._parsed = self._parsed
         return other

@@ -10,7 +10,7 @@ CODE = "interface-syntax"
 """The code of every finding in a definition file."""
 
 MAX_FINDINGS = 100
-"""The maximum number of errors in a file; a file with more is unlikely to be an interface definition and not read
+"""The maximum number of errors in a file; a file with more is unlikely to be an interface definition and is not read
 further."""
 
 
@@ -36,7 +36,7 @@ class FileFindings:
         severity: Severity | None = None,
         related: tuple[Related, ...] = (),
     ) -> None:
-        """Add a finding with `message` at `span`; `instead` is the correct text in its place."""
+        """Add a finding with `message` at `span`; `instead` is the correct text for `span`."""
         fixes: tuple[Fix, ...] = ()
         if instead is not None:
             fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)

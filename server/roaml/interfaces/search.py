@@ -27,13 +27,14 @@ MAX_DEPTH = 6
 """The maximum depth of packages below a workspace or `--ros-path` folder."""
 
 MAX_FOLDERS = 10_000
-"""How many folders of one such place are looked into, the nearest first: it may be someone's home, or `/`."""
+"""The maximum number of folders that are searched in such a place, the nearest first: it may be a home folder or
+`/`."""
 
 SYSTEM_FOLDERS = frozenset({"/dev", "/proc", "/sys"})
-"""Folders of the running system, which hold no files of anybody; they are not entered."""
+"""Folders of the operating system without files of users; they are not searched."""
 
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
-"""Folders that are not entered, like all whose name begins with a dot."""
+"""Folders that are not searched; folders whose name begins with a dot are not searched either."""
 
 _Files: TypeAlias = Mapping[Kind, Mapping[str, str]]
 
@@ -71,7 +72,7 @@ class SearchPath:
         """All files that define `package/name`; the first one is used.
 
         The standard packages are left out: they are for users without their own. Of the ament prefixes only the first
-        that has the type is included, because prefixes overlay each other on purpose.
+        that has the type is included, because prefixes overlay each other intentionally.
         """
         folders: list[str] = []
         in_prefix = False
@@ -84,7 +85,8 @@ class SearchPath:
         return tuple(dict.fromkeys(folders))
 
     def packages(self) -> Mapping[str, Mapping[Kind, tuple[str, ...]]]:
-        """All that can be located: package -> kind -> names, packages and names sorted; every kind is there."""
+        """All that can be located: package -> kind -> names, packages and names sorted, with an entry for every
+        kind."""
         if self._packages is None:
             packages: dict[str, dict[Kind, set[str]]] = {}
             for place in self._places():
@@ -99,13 +101,13 @@ class SearchPath:
         return self._packages
 
     def looked_in(self) -> tuple[str, ...]:
-        """Phrases for the places, for the message that something was found in none of them."""
+        """Phrases for the places, for the message that a type was not found."""
         places = (
             *(f"the workspace {self._described(path)}" for path in self._workspace),
             *(f"{self._described(path)} from --ros-path" for path in self._ros_paths),
             *(f"{self._described(path)} from AMENT_PREFIX_PATH" for path in self._ament_prefixes),
         )
-        return (*places, "the standard packages that come with this tool")
+        return (*places, "the standard packages included in this tool")
 
     def _described(self, path: str) -> str:
         if not os.path.isdir(path):
@@ -131,10 +133,10 @@ class SearchPath:
 
 class _Place(Protocol):
     def files(self, package: str) -> _Files:
-        """The definition files of a package here: kind -> name -> path; every kind is there."""
+        """The definition files of a package in this place: kind -> name -> path, with an entry for every kind."""
 
     def all_files(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
-        """All files here that define a type; the first one is used."""
+        """All files in this place that define a type; the first one is used."""
 
     def packages(self) -> Iterable[str]: ...
 
@@ -175,7 +177,7 @@ class _Tree:
 
     @property
     def is_cut(self) -> bool:
-        """Whether there are more folders than are looked into."""
+        """Whether there are more folders than are searched."""
         return self._listed().is_cut
 
     def files(self, package: str) -> _Files:
@@ -196,7 +198,7 @@ class _Tree:
 
 
 class _Listing(NamedTuple):
-    """The packages of a place, the files that others hide, and whether there are more folders than were looked into."""
+    """The packages of a place, the files that others hide, and whether there are more folders than were searched."""
 
     files: Mapping[str, _Files]
     hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]

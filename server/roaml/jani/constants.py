@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values for the constants of a model that have none: the user of the model chooses them."""
+"""Values that the user chooses for the constants without a value."""
 
 from __future__ import annotations
 

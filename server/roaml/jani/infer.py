@@ -92,7 +92,7 @@ class TypeScope:
 
 
 class PathKind(enum.Enum):
-    """Instead of a type: a formula that holds or does not hold on a path."""
+    """The kind of a formula that holds or does not hold on a path, instead of a type."""
 
     PATH = "path"
 

@@ -59,7 +59,7 @@ class ValueSource:
 
 
 class Members:
-    """The members of one object; if two have the same name, the last one."""
+    """The members of one object; if two have the same name, the last one is used."""
 
     def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.object = value

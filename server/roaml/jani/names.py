@@ -29,7 +29,7 @@ class DeclaredNames:
             rename = Fix(f"Rename this one to `{new}`", (TextEdit(span, quote(new)[1:-1]),), preferred=False)
             self._report(name, f"{self._kind} `{text}` is declared twice", first, None, rename)
         elif self._outer and text in self._outer._first:
-            message = f"{self._kind} `{text}` hides the one of the model"
+            message = f"{self._kind} `{text}` hides that of the model"
             self._report(name, message, self._outer._first[text], Severity.WARNING)
 
     def use(self, name: JsonString) -> None:

@@ -27,5 +27,5 @@ class CommentedNode(Node):
 
 
 def never(value: NoReturn) -> NoReturn:
-    """The last case of an exhaustive `match`; mypy proves that it is not reached."""
+    """The unreachable last case of an exhaustive `match`; mypy proves that it is unreachable."""
     raise AssertionError(f"unknown kind of node: {value!r}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passive automata: they go along with steps of others and only write variables that nobody else reads. Without them, a
-model does the same."""
+"""Passive automata: they follow steps of others and only write variables that no other automaton reads. Without them, a
+model behaves in the same way."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.jani.properties import Formula, identifiers
 
 def without_passive(model: Model, *formulas: Formula) -> Model:
     """The model without the passive automata whose variables no formula reads, and without these variables. The model
-    itself if there are none. Its other properties may name variables that are gone."""
+    itself if there are none. Its other properties may name variables that were removed."""
     candidates = {number: _written(a) for number, a in enumerate(model.automata) if _follows(a)}
     if not candidates or model.restrict_initial is not None:
         return model
@@ -44,7 +44,7 @@ def without_passive(model: Model, *formulas: Formula) -> Model:
 
 
 def _follows(automaton: Automaton) -> bool:
-    """Whether it has one location, and in it at most one edge for an action, always enabled."""
+    """Whether an automaton has one location, with at most one edge per action, which is always enabled."""
     actions = [edge.action for edge in automaton.edges]
     return (
         len(automaton.locations) == 1
@@ -70,7 +70,7 @@ def _written(automaton: Automaton) -> frozenset[str]:
 
 
 def _read(automaton: Automaton) -> set[str]:
-    """The names in its expressions, and those of what it writes."""
+    """The names in the expressions of an automaton, and those of the variables that it writes."""
     expressions: list[Expression] = []
     for edge in automaton.edges:
         if edge.guard is not None:

@@ -438,7 +438,7 @@ def _root(target: LValue) -> Expression:
 
 
 class _Form(NamedTuple):
-    """The shape of the objects with a certain `op`, and the node that is made of them."""
+    """The shape of the objects with a certain `op`, and the node that is created from them."""
 
     shape: ObjectShape
     build: Callable[[FormulaReader, Members, str], Steps[Formula]]
@@ -507,4 +507,4 @@ _FORMS: dict[str, _Form] = {
     **_forms(_symbols(BinaryPathOperator), FormulaReader._binary_path, "left right", _BOUNDS),
     **_forms(_symbols(StatePredicate), FormulaReader._predicate),
 }
-"""Every `op` that JANI knows."""
+"""Every `op` that JANI defines."""

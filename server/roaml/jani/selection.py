@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Choosing properties by their names."""
+"""Selection of properties by their names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NamedT = TypeVar("NamedT", bound=Named)
 
 
 class PropertyError(ValueError):
-    """There is no property of a name; the message lists the properties that there are."""
+    """There is no property with this name; the message lists the existing properties."""
 
 
 def select(
@@ -27,11 +27,11 @@ def select(
     """The properties of some names, in the order of the names.
 
     Args:
-        owner: what has the properties, for the message: `model` or `system`.
-        others: names that can be asked for besides; for the message.
+        owner: the owner of the properties, for the message: `model` or `system`.
+        others: further names that can be requested, for the message.
 
     Raises:
-        PropertyError: there is no property of a name.
+        PropertyError: there is no property with one of the names.
     """
     by_name = {property_.name: property_ for property_ in properties}
     chosen = []

@@ -71,7 +71,7 @@ Value: TypeAlias = "bool | int | float | tuple[Value, ...] | Record | Some | Non
 
 
 class EvaluationError(Exception):
-    """An expression has no value. `origin` is the position of the part that has none, if known."""
+    """An expression has no value. `origin` is the position of the part without a value, if known."""
 
     def __init__(self, message: str, origin: Origin | None) -> None:
         super().__init__(message)

@@ -49,7 +49,7 @@ class OptionType:
 
 @dataclass(frozen=True, slots=True)
 class UnknownType:
-    """The type of something that is already reported, or that has several types: fits everywhere."""
+    """The type of an expression with a reported error, or with several types. It fits everywhere."""
 
 
 Type: TypeAlias = BasicType | BoundedType | ArrayType | DatatypeType | OptionType | UnknownType

@@ -10,7 +10,7 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[^\[\]{},:"]+|[\[{][\]}]?|[\]},:]')
 
 
 def indented(chunks: Iterable[str], indent: int) -> Iterator[str]:
-    """The same JSON with one member or item per line and `indent` spaces per level, laid out as
+    """JSON with one member or item per line and `indent` spaces per level, laid out as
     `json.dumps(indent=...)` does.
 
     `chunks` are compact JSON without white space between the tokens, split between tokens and not inside empty

@@ -34,7 +34,7 @@ MAX_DEPTH = 1000
 """The maximum depth of nested brackets; deeper text is not read."""
 
 MAX_FINDINGS = 100
-"""The maximum number of errors; a text with more is unlikely to be JSON and not read further."""
+"""The maximum number of errors; a text with more is unlikely to be JSON and is not read further."""
 
 
 def parse(text: str) -> tuple[JsonValue, tuple[Finding, ...]]:
@@ -103,7 +103,7 @@ class _Bracket(NamedTuple):
 
 
 class _HopelessError(Exception):
-    """Ends the parsing of a hopeless text; never leaves this module."""
+    """Ends the parsing of a text with too many errors; never leaves this module."""
 
 
 class _Parser:
@@ -112,10 +112,10 @@ class _Parser:
     Attributes:
         root: the value of the whole text, once it is complete.
         start, is_object, parts: the innermost open bracket and the values or members in it (without one: the text).
-        key: the name whose value comes next.
+        key: the name whose value follows.
         wants_comma: whether a complete value precedes, so that a comma must separate what follows.
         stack: the brackets around the innermost one.
-        comma: offset of a comma before something unusual, or -1.
+        comma: the offset of a comma before an unusual token, or -1.
         hopeless: whether parsing has stopped; open brackets are then closed without further findings.
     """
 
@@ -197,7 +197,7 @@ class _Parser:
             self.root = value
 
     def nulls(self, start: int, end: int, comma: int) -> int:
-        """`null` or, in a list, `null,null,...`; the offset behind what was read."""
+        """`null` or, in a list, `null,null,...`; return the offset after them."""
         first = JsonNull(start, start + 4)
         if self.is_object or not self.stack or end == first.end:
             self.value(first, comma)
@@ -209,7 +209,7 @@ class _Parser:
         return end
 
     def name(self, text: str, start: int, end: int, comma: int, quotes: tuple[int, int] = (1, 1)) -> None:
-        """Read a string, or what was meant as one, before a colon."""
+        """Read a string, or text that was probably meant as one, before a colon."""
         if not self.is_object:
             self.report(Span(start, end), "a name with a value is only allowed in `{ }`")
             self.value(JsonString(start, end, text), comma)
@@ -272,7 +272,7 @@ class _Parser:
         self.value(value, -1)
 
     def close_all(self) -> str:
-        """Close what is open at the end of the text; return the missing brackets."""
+        """Close all brackets that are open at the end of the text; return the missing brackets."""
         missing = ""
         while self.stack:
             if self.key is not None:
@@ -282,7 +282,7 @@ class _Parser:
         return missing
 
     def end_before(self, at: int) -> int:
-        """The end of the last thing before `at`."""
+        """The end of the last token before `at`."""
         while at and self.text[at - 1] in " \t\n\r,":
             at -= 1
         return at
@@ -330,7 +330,7 @@ class _Parser:
     # ---------------------------------------------------------------- unusual text
 
     def unusual(self, at: int, comma: int) -> int:
-        """Read what is at `at` and not an ordinary token; return the offset after it."""
+        """Read an unusual token at `at`; return the offset after it."""
         text = self.text
         if at == len(text):
             return self.end(at)

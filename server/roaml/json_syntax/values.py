@@ -67,7 +67,7 @@ class JsonArray(_Value):
 
     @property
     def items(self) -> tuple[JsonValue, ...]:
-        """All items, each one a value. They are made anew for each call if there are runs of nulls."""
+        """All items, each one a value. They are created anew for each call if there are runs of nulls."""
         items: list[JsonValue] = []
         for part in self.parts:
             if isinstance(part, Nulls):

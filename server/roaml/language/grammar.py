@@ -74,12 +74,12 @@ class AttributeType:
     Attributes:
         defines: kind of symbol that the value names first, if any.
         refers: kinds of symbols that the value may name.
-        value: what else the value is (expression, constant, location, type, ros-type, path, number, status,
+        value: the kind of any other value (expression, constant, location, type, ros-type, path, number, status,
             child-index, script), or "".
         value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
-        ignored: None, or whether a tool should keep quiet about the attribute having no effect.
+        ignored: whether no rule reports that the attribute has no effect; `None` if it has an effect.
         use: the successor, if the attribute is deprecated.
-        port: what port of a tree node the attribute is, if any.
+        port: the port of a tree node that the attribute sets, if any.
     """
 
     name: str
@@ -116,14 +116,14 @@ class ElementType:
     """An element.
 
     Attributes:
-        children: name -> how often; what kind of element it is there tells `Grammar.child`.
-        any_child: how many children of any name there may be, or None; children in foreign namespaces do not count.
-        any_is_opaque: what such children are and hold is no business of the grammar.
-        any_attribute: attributes not listed are allowed; those in foreign namespaces always are.
+        children: name -> multiplicity; `Grammar.child` returns the type of a child.
+        any_child: how many children of any name there may be, or None; children in foreign namespaces are ignored.
+        any_is_opaque: whether the grammar ignores the names and the content of these children.
+        any_attribute: attributes not listed are allowed; attributes in foreign namespaces always are.
         text: character data is allowed.
         sends, receives: part of an interface or of the tree protocol, if any.
-        code: the result code that goes with it, or 0.
-        ignored: has no effect on the model.
+        code: the corresponding result code, or 0.
+        ignored: whether it has no effect on the model.
         use: the successor, if the element is deprecated.
         node: control, decorator, action, condition or subtree, or "".
         translated: false for tree nodes that are known but cannot be translated.

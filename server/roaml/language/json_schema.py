@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a JSON Schema of `schemas/` declares for a place in a JSON document.
+"""The declarations of a JSON Schema of `schemas/` for a place in a JSON document.
 
 - Supports what the schemas use: references, `allOf`, `if`/`then`/`else`, `properties`, `additionalProperties`, `items`,
   `required`, `enum` and `const`.
-- Nothing is validated here: for an incomplete document, the question is what may still be written.
+- Nothing is validated here: the results are used to complete incomplete documents.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class JsonGrammar:
         return {"allOf": [part["items"] for part in self.applying(schema, value) if "items" in part]}
 
     def choices(self, schema: Schema) -> tuple[str, ...]:
-        """The texts that the value may be; () if it may be any."""
+        """The allowed values; `()` if any value is allowed."""
         for part in self.applying(schema, None):
             if "enum" in part:
                 return tuple(part["enum"])

@@ -103,7 +103,7 @@ class StrayText:
 
 @dataclass(frozen=True, slots=True)
 class SchemaViolation:
-    """Anything else that the schema forbids."""
+    """Any other violation of the schema."""
 
     element: Element
     reason: str
@@ -165,7 +165,7 @@ def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Gramma
 
 
 def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
-    """Whether a prefixed element is in another namespace than that of SCXML."""
+    """Whether a prefixed element is in a namespace other than that of SCXML."""
     return bool(element.prefix) and document_namespaces.get(element.prefix, SCXML_NAMESPACE) != SCXML_NAMESPACE
 
 
@@ -173,7 +173,7 @@ def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
 
 
 _ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attribute=True, text=True)
-"""An element that the grammar does not know, where any may stand: those below it may be known."""
+"""An unknown element in a place where any element is allowed: the elements in it may be known."""
 
 
 def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Violation]:
@@ -299,7 +299,8 @@ def _one_of(choices: list[str]) -> str:
 
 
 def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]:
-    """The tree for libxml2, without namespaces, comments and white space, and the mapping back to our elements."""
+    """The tree for libxml2, without namespaces, comments and white space, and the mapping back to the elements of the
+    document."""
     namespaces = dict(document.namespaces)
     top = _new(None, root)
     back = {top: root}
@@ -323,7 +324,7 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
 
 
 _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
-"""Caches names: the same few occur all over a document."""
+"""A cache of names: a document repeats the same few names."""
 
 
 def _new(parent: Any, element: Element) -> Any:

@@ -84,8 +84,8 @@ def _store(parameter: str, origin: Location) -> Statement:
 def _to_client(
     action: Channel, event: Callable[[SystemAutomaton], ScxmlEvent], params: tuple[Param, ...], origin: Location
 ) -> Body:
-    """Sends the client with the remembered goal id the event that `event` gives for it. (An action that nobody uses has
-    a handler, too.)"""
+    """Sends the event that `event` returns for a client to the client with the stored goal id. (An action without
+    clients has a handler as well.)"""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)

@@ -28,9 +28,9 @@ class LoweringContext:
     """
     Attributes:
         name: of the plain automaton.
-        thread: which copy of an action thread this is; None for the machine itself.
+        thread: the number of the copy of an action thread; `None` for the machine itself.
         timers: timer handle -> the event of its ticks for this chart.
-        ports: key -> what ports hold that the tree does not set.
+        ports: key -> the value of a port that the tree does not set.
         variables: the chart's variables with their types.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events that stand for the parts of ROS interfaces and of the tree protocol (docs/spec/plain-scxml.md#events), and
+"""The events that represent the parts of ROS interfaces and of the tree protocol (docs/spec/plain-scxml.md#events), and
 the fields that they carry."""
 
 from __future__ import annotations

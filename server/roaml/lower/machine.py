@@ -47,7 +47,7 @@ def copies(automaton: SystemAutomaton, machine: Machine) -> Iterator[tuple[str, 
         )
         action = automaton.interface_name(server) if server else None
         if action is None:
-            raise AssertionError("a rule reports a thread of no action")
+            raise AssertionError("a rule reports threads without an action")
         for k in range(thread.count or 0):
             yield f"{sanitise(action)}_thread_{k}", thread.chart, k
 
@@ -276,4 +276,4 @@ def _decimal(text: str) -> Decimal:
     try:
         return Decimal(text)
     except InvalidOperation:
-        raise AssertionError("a rule reports what is no probability") from None
+        raise AssertionError("a rule reports invalid probabilities") from None

@@ -20,7 +20,7 @@ class TranslatableSystem:
     Attributes:
         machines: by path, those that the system lists.
         environment: structs, ROS types and the data of plain events.
-        place: the root of the system file, for what exists because of the system as a whole.
+        place: the root of the system file, as the origin of parts that come from the system as a whole.
         nodes: number of a tree node -> its place.
         parameters: of the translation; they may differ from those in the system file.
     """

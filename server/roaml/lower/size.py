@@ -50,7 +50,7 @@ _CHILD_CONDITION = 4
 """`!(child = 3)`: the parts of one earlier alternative in the guard of a child with a variable index."""
 
 _PLACES = 20
-"""The number of entries in synchronisations that are one part: each lists all automata, most as `null`."""
+"""The number of entries of synchronisations that count as one part: each lists all automata, most as `null`."""
 
 
 def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Size:
@@ -63,7 +63,7 @@ def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable])
 
 
 def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
-    """Shares of one thing are added."""
+    """The shares, sorted; shares of the same thing are added."""
     counts: dict[tuple[str, str, Symbol | None], int] = {}
     for share in shares:
         key = (share.words, share.path, share.symbol)
@@ -172,7 +172,7 @@ class _Query(NamedTuple):
 
 
 class _Counted(NamedTuple):
-    """The counts of a chart, and what they depend on besides the chart: types that other files declare."""
+    """The counts of a chart, and their other dependencies: types that other files declare."""
 
     parts: int
     actions: int

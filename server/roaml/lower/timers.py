@@ -52,8 +52,8 @@ class Timer:
     """A timer of one automaton. `event` is `None` if nothing waits for its ticks.
 
     Attributes:
-        user: the plain automaton for which it fires.
-        handle: its name there.
+        user: the plain automaton that it triggers.
+        handle: its name in that automaton.
     """
 
     user: str
@@ -113,7 +113,7 @@ def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
     text = declaration.rate.value if isinstance(declaration.rate, Name) else ""
     port = declaration.rate.key.value if isinstance(declaration.rate, PortRead) and declaration.rate.key else ""
     hertz = rate(automaton, text, port)
-    assert hertz is not None, "a rule reports what is no rate"
+    assert hertz is not None, "a rule reports invalid rates"
     return hertz
 
 

@@ -53,7 +53,7 @@ _TYPE_COMMENT = re.compile(r"TYPE\s+([^\s:]+)\s*:\s*(\S+)")
 
 
 def build_machine(document: Document) -> Machine | None:
-    """The machine in `document`; `None` if its root is not one of HL-SCXML."""
+    """The machine in `document`; `None` if its root is not an HL-SCXML element."""
     root = document.root
     if root is None or root.name not in HL_SCXML.roots:
         return None
@@ -70,7 +70,7 @@ class _Builder:
         )
 
     def children(self, element: Element) -> list[Element]:
-        """The child elements that are not of another namespace."""
+        """The child elements that are not in a foreign namespace."""
         return [child for child in element.elements if not is_foreign(self.namespaces, child)]
 
     def machine(self, root: Element) -> Machine:

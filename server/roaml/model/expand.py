@@ -65,14 +65,14 @@ class TreeFileOutline:
 
 @dataclass(frozen=True, slots=True)
 class PortConstant:
-    """The port holds this text."""
+    """A port with a constant text."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The port is bound to the blackboard variable with this full name."""
+    """A port that is bound to the blackboard variable with this full name."""
 
     variable: str
 
@@ -96,9 +96,9 @@ class Instance:
     Attributes:
         number: 1000 for the root, then counted in pre-order; part of event names.
         automaton: `BT_plugin_<number>_<name>`.
-        ports: what the tree sets, defaults of `<TreeNodesModel>` included.
+        ports: the values that the tree sets, including defaults of `<TreeNodesModel>`.
         children: the numbers of its children.
-        condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
+        condition: whether it is written or modelled as `<Condition>`.
     """
 
     number: int
@@ -160,12 +160,12 @@ def _outlines(root: TreeNode) -> NodeOutline:
 
 
 def nodes_of(file: TreeFile, tree_id: str) -> tuple[TreeNode, ...]:
-    """The nodes of the first tree of that name, by position."""
+    """The nodes of the first tree with this name, by position."""
     return file.nodes_by_tree.get(tree_id, ())
 
 
 def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
-    """The first tree of that name."""
+    """The first tree with this name."""
     return next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
 
 
@@ -178,7 +178,7 @@ def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
     """The tree that is executed; if it is ambiguous, the names of the candidates.
 
-    The first file decides by `main_tree_to_execute`; without it, it is the only tree that no other tree uses.
+    It is the tree in `main_tree_to_execute` of the first file, otherwise the only tree that no other tree uses.
     """
     trees = [tree for file in files for tree in file.trees]
     main = files[0].main if files else ""
@@ -206,7 +206,7 @@ def _walk(root: NodeOutline | None) -> Iterator[NodeOutline]:
 
 
 def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
-    """Whether `expand` leaves nothing out: the executed tree and all subtrees are known, and the tree is not too
+    """Whether `expand` is complete: the executed tree and all subtrees are known, and the tree is not too
     large."""
     trees = {tree.id: tree for file in files for tree in file.trees}
     main = main_tree(files)
@@ -237,11 +237,11 @@ MAX_SUBTREES = 1_000
 
 @dataclass(frozen=True, slots=True)
 class TreeExtent:
-    """How large a tree is when all subtrees are put in place, counted without doing so.
+    """The size of a tree with all subtrees expanded, computed without expanding them.
 
     Attributes:
-        nodes: of the whole tree, subtrees in their place.
-        depth: how many subtrees are in each other at most.
+        nodes: the number of nodes, with all subtrees expanded.
+        depth: the maximum nesting depth of subtrees.
         largest: the use of a subtree, in the executed tree or below it, that makes it so large: where the tree in which
             it stands is still too large, and what stands for it is not, or is used most often. None if there is none.
     """
@@ -271,7 +271,8 @@ def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
 
 
 def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
-    """The names of the trees that `main` consists of, each after those that it uses; those of a cycle in any order."""
+    """The names of the trees of which `main` consists, each after the trees that it uses; those of a cycle in any
+    order."""
     entered, done = {main.id}, set[str]()
     stack = [(main.id, _used(main, trees))]
     while stack:
@@ -310,7 +311,7 @@ def _largest(
 
 
 def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
-    """If names are equal, the first tree is used."""
+    """The trees by name; if names are equal, the first tree is used."""
     return {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
 
 
@@ -319,15 +320,15 @@ class Frame:
     """One instance of a tree: how its names translate to names of the whole blackboard.
 
     Attributes:
-        use: the `<SubTree>` node that the instance is for; None for the executed tree.
+        use: the `<SubTree>` node of the instance; `None` for the executed tree.
         word, suffix: its part of `prefix`, `<word><suffix>__`: the name of that node, and what makes it unique.
-        prefix: what the full names of its variables begin with.
+        prefix: the beginning of the full names of its variables.
         remapped: the values that its names have from outside.
         autoremap: whether other names may have values from outside.
-        outer: the instance around it.
+        outer: the enclosing instance.
         names: the variables that the nodes of the tree refer to.
         inside: the trees around the instance and its own.
-        looked_up: the names that were resolved before.
+        looked_up: a cache of resolved names.
     """
 
     tree: TreeOutline
@@ -349,8 +350,8 @@ class Frame:
         return self._outer_value(name) or Reference(f"{self.prefix}{name}")
 
     def _outer_value(self, name: str) -> PortValue | None:
-        """What the name is in the outermost instance that remaps or uses it; None if this one and those that it takes
-        its names from do neither."""
+        """The value of a name in the outermost instance that remaps or uses it; `None` if neither this instance nor
+        those that it takes its names from remap or use it."""
         asked: list[Frame] = []
         frame: Frame | None = self
         while frame is not None and name not in frame.remapped and name not in frame.looked_up:
@@ -374,8 +375,8 @@ class Expansion:
 
     Attributes:
         instances: its nodes in pre-order.
-        frames: the instances of trees that it consists of, the executed tree first; each after the one around it.
-        frame_of: the number of a node -> the instance of a tree that the node is in.
+        frames: the instances of trees of which it consists, each after the enclosing one; the executed tree is first.
+        frame_of: the number of a node -> the enclosing instance of a tree.
     """
 
     instances: tuple[Instance, ...] = ()
@@ -384,7 +385,7 @@ class Expansion:
 
 
 def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
-    """The executed tree; it is empty if it cannot be told which tree that is, or if there are too many nodes."""
+    """The executed tree; it is empty if the tree is ambiguous or has too many nodes."""
     main = main_tree(files)
     if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
         return Expansion()
@@ -513,7 +514,7 @@ class StrayRemap:
     Attributes:
         source: the node of the `<SubTree>`.
         key: the attribute; `outer` is its value.
-        meant: the variables of the subtree with a similar name that are not passed, the nearest first.
+        meant: the variables of the subtree with similar names that are not passed, the nearest first.
         names: the variables of the subtree.
     """
 

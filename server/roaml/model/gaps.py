@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the unreadable parts of a machine might declare to the rest of the system.
+"""The facts that the unreadable parts of a machine might declare for the rest of the system.
 
 - A gap is one possible fact, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`, but it
   serves nothing. An element that resembles nothing in the language causes no gap.
-- A rule that misses something in the system (a publisher of a topic, a sender of an event, ...) checks whether a gap
-  may provide it, and reports nothing then: one error is reported once. All other errors are reported.
+- A rule that searches for something in the system (a publisher of a topic, a sender of an event, ...) checks whether a
+  gap may provide it, and reports nothing then: one error is reported once. All other errors are reported.
 - Gaps contain no positions, so they are parts of outlines. `machine_gaps` returns them with their positions.
 """
 
@@ -49,11 +49,11 @@ class Gap:
     """A fact that an unreadable part of a file may contain.
 
     Attributes:
-        act: what is done, from the general to the specific: the kind of a declaration (`publisher`), a part of it that
-            is sent or handled (`publisher message`), a field of that (`publisher message field`); or one of the
+        act: the kind of the fact, from the general to the specific: the kind of a declaration (`publisher`), a part of
+            it that is sent or handled (`publisher message`), a field of that (`publisher message field`); or one of the
             constants of this module.
         name: the topic, service or action as written, the event, the port; `None` if it may be any.
-        port: the port that provides the name, if one does.
+        port: the port that provides the name, if any.
     """
 
     act: str
@@ -124,7 +124,7 @@ class _Search:
     # ---------------------------------------------------- elements out of place
 
     def _kind_of(self, element: Element, parent: ElementType) -> SymbolKind | None:
-        """The kind of declaration that a misfit may be, if any."""
+        """The kind of declaration that a misfit probably is, if any."""
         type_ = HL_SCXML.find(element.name)
         types = [type_] if type_ is not None else self._resembling(element, parent)
         return next((kind for type_ in types if (kind := _kind(type_))), None)
@@ -141,7 +141,7 @@ class _Search:
             stack += [(child, types[0] if types else None) for child in element.elements]
 
     def _resembling(self, element: Element, parent: ElementType | None) -> list[ElementType]:
-        """The types that an unknown element may be meant as: the element with the nearest name, otherwise those to
+        """The types that an unknown element probably has: the element with the nearest name, otherwise those to
         which its attributes fit."""
         allowed = list(parent.children) if parent is not None else []
         close = close_names(element.name, allowed, 1) or close_names(element.name, HL_SCXML.elements, 1)

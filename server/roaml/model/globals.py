@@ -29,8 +29,8 @@ FindInterface = Callable[[str, str], InterfaceType | None]
 class GlobalVariable:
     """A variable of the translated system.
 
-    `event` and `parameter` are what it holds ("valid" for the flag); `source` is the part of the models from which it
-    comes.
+    `event` and `parameter` identify its content ("valid" for the flag); `source` is the part of the models from which
+    it comes.
     """
 
     name: str
@@ -41,7 +41,7 @@ class GlobalVariable:
 
 
 def global_variables(system: System, interface: FindInterface) -> dict[str, GlobalVariable]:
-    """All of them by name."""
+    """All global variables by name."""
     table: dict[str, GlobalVariable] = {}
     for event, source, params in _events(system, interface):
         table.setdefault(f"{event}.valid", GlobalVariable(f"{event}.valid", BOOL, event, "valid", source))
@@ -178,7 +178,7 @@ def _tree(system: System) -> Iterator[_Event]:
 
 
 def _calls(parent: SystemAutomaton, number: int) -> bool:
-    """Whether a parent ever ticks or halts its child `number`."""
+    """Whether a parent can tick or halt its child `number`."""
     assert parent.instance is not None
     plugin = parent.outline.plugin
     return plugin.any_child or parent.instance.children.index(number) < plugin.children

@@ -23,7 +23,7 @@ class MissingMembers:
 
 @dataclass(frozen=True, slots=True)
 class ExtraMember:
-    """An object literal has a member that the struct does not have, or has it twice."""
+    """An object literal has a member that the struct does not have, or that is repeated."""
 
     span: Span
     struct: Struct

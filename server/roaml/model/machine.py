@@ -2,7 +2,7 @@
 """A state machine document as typed data (docs/spec/machines.md): its content, independent of its system.
 
 - Frozen; built from one file alone, so equal texts give equal models.
-- Incomplete documents give incomplete models: everything that may be missing can be `None`, nothing is invented.
+- Incomplete documents give incomplete models: everything that may be missing can be `None`; nothing is guessed.
 - Every part has its XML element and, through it, its grammar (`ElementType`) and its position.
 """
 
@@ -131,7 +131,7 @@ class RosSend:
 
     @property
     def part(self) -> ProtocolPart:
-        """What is sent."""
+        """The part of the interface that is sent."""
         assert self.type.sends is not None
         return self.type.sends
 
@@ -189,7 +189,7 @@ class Handler:
     """A transition or a callback that works like one.
 
     Attributes:
-        trigger: the part that it waits for; None for nothing (eventless).
+        trigger: the part that it waits for; `None` for an eventless transition.
         event: the event of a plain transition.
         handle: the declaration that a ROS callback refers to.
         child: the child index of `bt_child_status` and `bt_child_halted`.

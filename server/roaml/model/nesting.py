@@ -29,7 +29,7 @@ class TypeExtent:
 
 
 def extents(members: Mapping[str, Sequence[str]]) -> dict[str, TypeExtent]:
-    """The extent of each name, inner ones first. A recursive use has one field.
+    """The extent of each name, inner ones first. A recursive use counts as one field.
 
     Args:
         members: name -> the types of its members; names that are not keys are plain fields.

@@ -39,7 +39,8 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class PortOutline:
-    """`direction` is "in" or "out"; `type` is as written; `read` and `written` state whether the machine does so."""
+    """`direction` is "in" or "out"; `type` is as written; `read` and `written` state whether the machine reads or
+    writes the port."""
 
     key: str
     type: str
@@ -113,7 +114,7 @@ class ThreadOutline:
 
 @dataclass(frozen=True, slots=True)
 class PluginOutline:
-    """How a machine takes part in a behavior tree.
+    """The participation of a machine in a behavior tree.
 
     Attributes:
         children: the greatest literal child index that it ticks or halts, plus 1.
@@ -136,9 +137,9 @@ class PluginOutline:
 class MachineOutline:
     """
     Attributes:
-        gaps: what it may say besides, where it cannot be read.
-        all_ports: `ports` are all that it means to declare.
-        charts: how it behaves; of a chart that cannot be looked through nothing is said.
+        gaps: the facts that its unreadable parts may contain.
+        all_ports: whether `ports` are complete, because all declarations of ports can be read.
+        charts: its behaviour; a chart that is too large to be analysed is empty.
     """
 
     name: str
@@ -157,7 +158,7 @@ class MachineOutline:
 
     @property
     def takes_part_in_tree(self) -> bool:
-        """Whether the machine uses the behavior tree, be it by an event with its name
+        """Whether the machine uses the behavior tree, including events with its name
         (docs/spec/files.md#removed-tree-events)."""
         plugin = self.plugin
         takes = plugin.ticked or plugin.halted
@@ -289,12 +290,12 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
 
 
 class _Waiting:
-    """What the states of a chart wait for.
+    """The events that the states of a chart wait for.
 
     Attributes:
         states: state -> the declarations that its effective handlers refer to, and the states that they lead to.
             States without any handler are left out.
-        sole: the declarations that are all that some state waits for.
+        sole: the declarations for which some state waits exclusively.
         is_stuck: whether some state has no effective handler.
     """
 

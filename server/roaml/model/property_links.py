@@ -181,7 +181,7 @@ class _Linker:
             if name in seen:
                 self.report(ProblemKind.REPEATED_ID, written.id.span, f"another property has the id `{name}`")
             elif name in self.taken:
-                message = f"another property of the system is called `{name}`: one in {self.taken[name]}"
+                message = f"another property of the system is called `{name}`, in {self.taken[name]}"
                 self.report(ProblemKind.REPEATED_ID, written.id.span, message)
             seen.add(name)
 
@@ -296,7 +296,7 @@ class _Linker:
 
     def _scope(self, written: WrittenProperty) -> tuple[ScopeKind, dict[str, Expression]] | None:
         if not written.scopes:
-            message = 'the scope is missing: `<scope type="globally"/>` asks of the whole trace'
+            message = 'the scope is missing: `<scope type="globally"/>` means the whole trace'
             self.report(ProblemKind.FORM, written.element.name_span, message)
             return None
         scope = written.scopes[0]

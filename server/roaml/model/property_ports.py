@@ -136,7 +136,7 @@ class PortLinker:
         if not events and self._is_complete():
             verbs = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
             who = verbs.get(event, "answers")
-            self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this is never sent")
+            self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
 

@@ -18,13 +18,13 @@ MAX_PARTS = 3_000_000
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The contribution of one thing in the models to a size.
+    """The contribution of one part of the models to a size.
 
     Attributes:
         count: in cells or parts.
-        words: a phrase for the thing.
-        path: the file of the thing; "" if it is in no file.
-        symbol: the declaration of the thing, if it has a name.
+        words: a phrase for the part.
+        path: the file of the part; "" if it is in no file.
+        symbol: the declaration of the part, if it has a name.
     """
 
     count: int
@@ -40,7 +40,8 @@ class Size:
     Attributes:
         cells: values that its variables hold: one for a number or Boolean, one for each element of an array or
             character of a string, and their lengths.
-        parts: edges, destinations, participants of synchronisations and nodes of expressions, but for initial values.
+        parts: edges, destinations, participants of synchronisations and nodes of expressions, except those of initial
+            values.
     """
 
     cells: tuple[Share, ...]
@@ -70,8 +71,8 @@ def cells_of(type_: Type, max_array_size: int, sent: bool = False) -> int:
 def _cells(type_: Type, most: int, sent: bool, rows: int, lengths: int) -> int:
     """
     Args:
-        rows: the product of the bounds of the arrays around.
-        lengths: the cells of the lengths of the arrays around: each leaf has lengths of its own.
+        rows: the product of the bounds of the enclosing arrays.
+        lengths: the cells of the lengths of the enclosing arrays; each leaf has its own lengths.
     """
     while isinstance(type_, Array):
         lengths += rows

@@ -106,7 +106,7 @@ def value_of(document: Document, element: Element, name: str) -> Value | None:
 
 
 def text_or_port(document: Document, element: Element, name: str) -> Name | PortRead | None:
-    """Like `value_of`, for values that are plain text."""
+    """Like `value_of`, for plain text."""
     attribute = element.get(name)
     if attribute is not None:
         return name_of(attribute)

@@ -64,7 +64,7 @@ def sanitise(name: str) -> str:
 
 
 def safe_name(automaton: str) -> str:
-    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
+    """An automaton name as part of an event name: characters other than letters, digits, `_`, `.` and `-` become
     `_`."""
     return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
 
@@ -170,14 +170,14 @@ class System:
 
     Attributes:
         path: of the system file.
-        older: the system is written in the older dialect (docs/spec/files.md#older-dialect).
+        older: whether the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: listed nodes, in order; plugins: listed plugins, in order.
         instances: the nodes of the executed tree, in pre-order.
-        tree_paths: the tree file and what it includes; empty without a tree.
-        structs: by name.
-        gaps: what may be said where the system file, the trees and the listed files cannot be read at all. What cannot
-            be read in a machine stands in its outline.
-        plugins_known: every plugin that the system lists could be read and has a name.
+        tree_paths: the tree file and the files that it includes; empty without a tree.
+        structs: the structs by name.
+        gaps: the facts that unreadable parts of the system file and the trees, and unreadable listed files, may
+            contain. Those of unreadable parts of a machine are in its outline.
+        plugins_known: whether every plugin that the system lists could be read and has a name.
         observed: the names of variables that the properties mention.
     """
 
@@ -195,7 +195,8 @@ class System:
 
     @cached_property
     def automata(self) -> tuple[SystemAutomaton, ...]:
-        """In processing order: nodes, then the tree in pre-order (docs/spec/systems.md#processing-order)."""
+        """All automata in processing order: nodes, then the tree in pre-order
+        (docs/spec/systems.md#processing-order)."""
         all_automata = [
             SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)
         ]
@@ -270,7 +271,7 @@ class System:
         )
 
     def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
-        """The facts of a tree node whose port should name a topic, service or action, and does not."""
+        """The facts of a tree node whose port does not name a topic, service or action although it should."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
         return {*bound, (use.kind.value, None)}
@@ -349,21 +350,21 @@ class System:
 
     @cached_property
     def topics(self) -> Mapping[str, Channel]:
-        """By sanitised name."""
+        """The topics by sanitised name."""
         return self._channels(SymbolKind.PUBLISHER, SymbolKind.SUBSCRIBER, sanitise)
 
     @cached_property
     def services(self) -> Mapping[str, Channel]:
-        """By name as written (docs/spec/ros.md#services)."""
+        """The services by name as written (docs/spec/ros.md#services)."""
         return self._channels(SymbolKind.SERVICE_SERVER, SymbolKind.SERVICE_CLIENT, str)
 
     @cached_property
     def actions(self) -> Mapping[str, Channel]:
-        """By name as written."""
+        """The actions by name as written."""
         return self._channels(SymbolKind.ACTION_SERVER, SymbolKind.ACTION_CLIENT, str)
 
     def channels(self, kind: SymbolKind) -> Mapping[str, Channel]:
-        """The topics, services or actions, as `kind` says."""
+        """The topics, services or actions, depending on `kind`."""
         match kind:
             case SymbolKind.TOPIC:
                 return self.topics
@@ -450,7 +451,7 @@ class System:
         """The name of the type of those ports of a node that accept any type, the ports of `Switch`
         (docs/spec/nodes.md#control).
 
-        It is that of the first blackboard variable to which one of them is bound; string if none is.
+        It is the type of the first blackboard variable to which one of them is bound; `string` if none is.
         """
         for port in automaton.outline.ports:
             value = automaton.port(port.key)

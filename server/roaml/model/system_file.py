@@ -24,13 +24,13 @@ DEFAULT_MAX_ARRAY_SIZE = 100
 DEFAULT_TICK_RATE = 1.0
 DEFAULT_RANDOM_VALUES = 100
 MAX_RANDOM_VALUES = 10_000
-"""Each value is a destination of an edge in JANI."""
+"""The maximum number of values of `Math.random()`: each value is a destination of an edge in JANI."""
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SystemInput:
-    """An `<input>`: a file of the system. `section` is the name of the element around it."""
+    """An `<input>`: a file of the system. `section` is the name of the enclosing element."""
 
     element: Element
     section: str
@@ -90,12 +90,12 @@ def required_kind(entry: SystemInput) -> FileKind | None:
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    """How the system is translated.
+    """The parameters of the translation of a system.
 
     Attributes:
-        max_time: the bound of the clock in ns; None if it is not given or no number.
+        max_time: the bound of the clock in ns; `None` if it is not given or not a duration.
         tick_rate: of the behavior tree, in Hz.
-        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
+        random_values: the number n of values of `Math.random()`: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
     """
 
     max_time: int | None = None
@@ -134,9 +134,10 @@ class SystemFile:
     """One system file.
 
     Attributes:
-        older: it has the older root (docs/spec/files.md#older-dialect).
-        inputs: of all sections, in order; misspelled ones are there as what they are meant to be.
-        unread: the sections that may list more than `inputs` says, because an element there has no place.
+        older: whether it has the older root (docs/spec/files.md#older-dialect).
+        inputs: of all sections, in order; misspelled inputs are included in the intended form.
+        unread: the sections that may list files that `inputs` does not contain, because they contain a misplaced
+            element.
     """
 
     element: Element
@@ -158,7 +159,7 @@ def _parameter_section(root: Element) -> Element | None:
 
 
 def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -> SystemFile | None:
-    """The system file in `document`; `None` if its root is not that of one."""
+    """The system file in `document`; `None` if its root is not that of a system file."""
     root = document.root
     if root is None or root.name not in SYSTEM.roots:
         return None
@@ -177,7 +178,7 @@ _INPUT = ("type", "src")
 
 
 def _section(element: Element) -> str:
-    """The section that an element is, or is meant to be if its name is misspelled; "" if it is none."""
+    """The section that an element is, or probably is if its name is misspelled; "" for other elements."""
     if element.name in SECTIONS or element.prefix:
         return element.name if element.name in SECTIONS else ""
     if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):
@@ -186,7 +187,7 @@ def _section(element: Element) -> str:
 
 
 def _is_input(element: Element) -> bool:
-    """Whether an element of a section is an `<input>`, or is meant to be one: only inputs have a source there."""
+    """Whether an element of a section is an `<input>`, or a misspelled one: it has a source."""
     if element.name == "input":
         return True
     return not element.prefix and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None

@@ -49,7 +49,7 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
-    """A rate in Hz, as written or as `port` of the automaton holds it; `None` if it is invalid."""
+    """A rate in Hz, as written or as the value of `port` of the automaton; `None` if it is invalid."""
     value = automaton.port(port) if port else PortConstant(text)
     if not isinstance(value, PortConstant):
         return None

@@ -40,11 +40,11 @@ class TreeNode:
     """A node of a tree.
 
     Attributes:
-        plugin: what it is an instance of: from `ID` or, in the compact form, from the tag.
-        is_subtree: it stands for the tree named `plugin`.
-        type: the grammar of the node if BehaviorTree.CPP brings it along.
+        plugin: the name of its plugin, from `ID` or, in the compact form, from the tag.
+        is_subtree: whether it represents the tree named `plugin`.
+        type: the grammar of the node if it is a node of BehaviorTree.CPP.
         scripts: pre- and post-conditions.
-        compact: written as `<X/>`, not as `<Action ID="X"/>`.
+        compact: whether it is written as `<X/>`, not as `<Action ID="X"/>`.
     """
 
     element: Element
@@ -97,7 +97,7 @@ class Include:
 
 @dataclass(frozen=True, eq=False)
 class TreeFile:
-    """One file. `format` is "" if it is not given."""
+    """A file of trees. `format` is "" if it is not given."""
 
     element: Element
     format: str
@@ -108,7 +108,7 @@ class TreeFile:
 
     @cached_property
     def nodes_by_tree(self) -> Mapping[str, tuple[TreeNode, ...]]:
-        """The nodes of each tree, parents before children, by its name; of equal names the first counts."""
+        """The nodes of each tree, parents before children, by its name; if names are equal, the first tree is used."""
         return {tree.id.value if tree.id else "": tuple(nodes(tree)) for tree in reversed(self.trees)}
 
 
@@ -198,7 +198,7 @@ def _model(element: Element) -> NodeModel:
 
 
 def _remark(element: Element) -> str:
-    """What a model says about a part of it, in an attribute or in its text."""
+    """The description of a part of a model, from an attribute or its text."""
     description = element.get("description")
     text = description.value if description else "".join(n.value for n in element.nodes if isinstance(n, Text))
     return " ".join(text.split())

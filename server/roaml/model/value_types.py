@@ -52,10 +52,10 @@ from roaml.xml_syntax import Element
 
 
 class Environment(Protocol):
-    """What a machine needs from its environment."""
+    """The part of a system that determines the types in a machine."""
 
     def struct(self, name: str) -> Type | None:
-        """The struct of that name."""
+        """The struct with this name."""
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
         """The ROS type `name` (as written in the model) of kind msg, srv or action."""
@@ -84,15 +84,15 @@ class ValueUse(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchConditions:
-    """Conditions of the enclosing `<if>` parts, with whether they hold; the earlier ones share their memory, as each
-    part of an `<if>` knows the conditions of all parts before it."""
+    """Conditions of the enclosing `<if>` parts, with whether they hold; earlier conditions are shared in memory,
+    because each part of an `<if>` contains the conditions of all parts before it."""
 
     condition: Expression
     holds: bool
     before: BranchConditions | None
 
     def __iter__(self) -> Iterator[tuple[Expression, bool]]:
-        """The innermost and latest first."""
+        """The conditions, the innermost and latest first."""
         node: BranchConditions | None = self
         while node is not None:
             yield node.condition, node.holds
@@ -143,8 +143,8 @@ class TypedValue:
 class TypedMachine:
     """Attributes:
     values: in document order within each chart.
-    variables: per chart scope, the types of its data; of equal ids the first counts.
-    unset: of each sending element, the fields that it should set and does not: see `unset_fields`.
+    variables: per chart scope, the types of its data; if ids are equal, the first declaration is used.
+    unset: for each sending element, the fields that it should set and does not; see `unset_fields`.
     """
 
     values: tuple[TypedValue, ...]
@@ -157,8 +157,8 @@ def type_machine(
 ) -> TypedMachine:
     """
     Args:
-        without_events: the machine typed in the same environment, but for the event data: what cannot read any is taken
-            over from there.
+        without_events: the machine typed in the same environment without event data: parts that cannot read event data
+            are copied from it.
     """
     typer = _Typer(machine, environment)
     for value in without_events.values if without_events else ():
@@ -243,7 +243,7 @@ CHANNEL_KINDS: Mapping[SymbolKind, SymbolKind] = {
     SymbolKind.ACTION_CLIENT: SymbolKind.ACTION,
     SymbolKind.ACTION_SERVER: SymbolKind.ACTION,
 }
-"""What a declaration of each kind names."""
+"""The kind of symbol that a declaration of each kind names."""
 
 
 def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None:
@@ -477,7 +477,7 @@ class _Body:
         self.late_value(ValueUse.OUTPUT, statement.value, required, statement.element, target)
 
     def choice(self, statement: If) -> None:
-        """The first condition is evaluated in a step of its own, so even it is late."""
+        """The first condition is evaluated in a separate step, so it is late as well."""
         before = self.place
         self.later()
         outer = known = self.place.branch_conditions

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of the languages that several parts of the tool need, by their meaning."""
+"""Names in the languages that several parts of the tool use, by their meaning."""
 
 from __future__ import annotations
 

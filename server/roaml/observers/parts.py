@@ -76,7 +76,8 @@ class Builder:
 
 
 class Age:
-    """The number of clock steps since an event, at most `limit`. The first value is `initial`, or else `limit`."""
+    """The number of clock steps since an event, at most `limit`. The first value is `initial` if it is given, otherwise
+    `limit`."""
 
     def __init__(self, builder: Builder, name: str, limit: int, initial: int | None = None) -> None:
         self.builder = builder

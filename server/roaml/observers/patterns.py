@@ -128,9 +128,9 @@ class _Judge(Protocol):
 
     Attributes:
         owes: whether an obligation is open: the stretch violates the pattern if it ends here.
-        is_due: whether an obligation is open whose deadline is now, or that has none.
+        is_due: whether an obligation is open whose deadline is now, or that has no deadline.
         is_safe: whether the stretch satisfies the pattern, however it continues.
-        asks: whether the pattern requires something at this letter.
+        asks: whether the pattern creates an obligation at this letter.
     """
 
     @property
@@ -288,7 +288,7 @@ class _Existence:
 class _Response:
     """The pattern that requires an answer to each request, at a distance in the window.
 
-    Only the oldest open request matters: what answers it also answers all others whose window has begun, and its
+    Only the oldest open request matters: its answer also answers all others whose window has begun, and its
     deadline is the first one.
     """
 
@@ -397,7 +397,7 @@ class _Precedence:
 
 
 class _Recurrence:
-    """The pattern that requires the condition again before the time is over; the first time, since the stretch
+    """The pattern that requires the condition repeatedly, each time within the bound; the first time, since the stretch
     opened."""
 
     owes: Expression = FALSE

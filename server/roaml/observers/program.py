@@ -90,10 +90,11 @@ class Outputs:
     """Registers and conditions that contain the verdict on a trace. A register that is true stays true.
 
     Attributes:
-        violated: the property does not hold, however the trace continues.
-        satisfied: the property holds, however the trace continues; `None` if that is never known.
-        pending: an obligation is open that is violated if the trace ends here.
-        due: an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline is now.
+        violated: whether the property does not hold, however the trace continues.
+        satisfied: whether the property holds, however the trace continues; `None` if this is never known.
+        pending: whether an obligation is open that is violated if the trace ends here.
+        due: whether an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline
+            is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
     """
 
@@ -164,7 +165,7 @@ def evaluate(expression: Expression, state: State, inputs: Mapping[str, bool], t
 
 
 def simplified(expression: Expression, known: Mapping[Expression, Expression]) -> Expression:
-    """`expression` with known values in place of its parts, and simplified accordingly."""
+    """`expression` with known values substituted, and simplified accordingly."""
     if expression in known:
         return known[expression]
     match expression:

@@ -12,7 +12,7 @@ class End(enum.Enum):
     """Why a trace has no more letters."""
 
     FINISHED = "finished"
-    """No step is possible any more, with time left or in a model without time: finished or stuck."""
+    """No further step is possible, with time left or in a model without time: the system has finished or is stuck."""
     TIME = "end of time"
     """The clock has made its last step, and no other step is possible at this instant."""
     CUT = "cut"
@@ -23,7 +23,7 @@ class Verdict(enum.Enum):
     SATISFIED = "satisfied"
     VIOLATED = "violated"
     OPEN = "open"
-    """The end of time came before a deadline."""
+    """The time ended before a deadline."""
     UNDECIDED = "undecided"
     """The trace was stopped before the property was decided."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the files of one moment to models and systems.
+"""The models and systems in the files of one moment.
 
 - An `Analysis` is one moment: it never changes, and every answer is a function of the files' content.
 - Results are memoised by content (`Memo`), so the next moment recomputes only what differs: parsed files and models by
@@ -116,11 +116,11 @@ class Analysis:
 
     Args:
         files: the files.
-        registry: where ROS types are looked up.
+        registry: resolves ROS types.
         memo: results of earlier moments.
-        systems: the paths of the system files that count.
-        overrides: parameters in place of those that stand in system files.
-        trees: what is configured for trees that belong to no system.
+        systems: the paths of the system files that are analysed.
+        overrides: parameters that replace those in system files.
+        trees: the settings for trees that belong to no system.
         listed: the files of the workspace.
     """
 
@@ -280,7 +280,7 @@ class Analysis:
         extent = self.memo.get("interface extent", key, parts, lambda: extent_of(parts))
         if extent.is_too_large:
             fields = f"{extent.fields:,} fields (at most {MAX_FIELDS:,} are read)"
-            deep = f"messages in each other {extent.depth} deep (at most {MAX_DEPTH} are read)"
+            deep = f"{extent.depth} levels of nested messages (at most {MAX_DEPTH} are read)"
             size = fields if extent.fields > MAX_FIELDS else deep
             return NotFound(Reason.TOO_LARGE, key[0], name, size=size)
         return self.memo.get(
@@ -359,7 +359,7 @@ class Analysis:
 
     def trees_from(self, path: str) -> tuple[str, ...]:
         """A tree file and the files that it includes, directly or indirectly, then the projects beside it that list it,
-        and the files of these that it needs, without duplicates."""
+        and the files of these projects that it needs, without duplicates."""
         if path not in self._trees:
             own = self._with_included([path])
             self._trees[path] = (own, self._from_projects(path, own))
@@ -431,8 +431,8 @@ class Analysis:
         return tuple(filter(None, map(functools.partial(self.include_path, path), tree.includes))) if tree else ()
 
     def include_path(self, base: str, include: Include) -> str | None:
-        """The file that an `<include>` means; None if it has no path, or if its ROS package is not in a folder around
-        the file."""
+        """The file to which an `<include>` refers; `None` if it has no path, or if its ROS package is not in a folder
+        around the file."""
         if include.path is None:
             return None
         package = include.package.value.strip() if include.package else ""
@@ -491,7 +491,7 @@ class Analysis:
         return families
 
     def forest(self, path: str) -> Forest | None:
-        """A tree file that belongs to no system, with what it is seen with."""
+        """A tree file that belongs to no system, with the files that are analysed together with it."""
         if self.tree(path) is None:
             return None
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
@@ -506,14 +506,14 @@ class Analysis:
     def files_of(self, system: str) -> tuple[str, ...]:
         """The system file and all files of the system, without duplicates.
 
-        A file that neither its name nor its content identifies as a supported file is not included, wherever `src`
+        A file that neither its name nor its content identifies as a supported file is not included, whatever `src`
         refers to.
         """
         listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
         return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
 
     def systems_of(self, path: str) -> tuple[str | None, ...]:
-        """The systems in which a file is analysed; (None) if it is in none."""
+        """The systems in which a file is analysed; `(None,)` if it is in none."""
         return self.memberships.get(path, ()) or (None,)
 
     @cached_property
@@ -645,7 +645,7 @@ class Analysis:
         yield from (Gap(RECEIVES, received.event) for received in outline.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
-        """Why some nodes of the executed tree are unknown, if the system should have a tree: file and place."""
+        """The places of errors because of which nodes of the executed tree are unknown: file and span."""
         listed_trees = [f for f in listed if f.required_kind is FileKind.TREE]
         section = file.element.find("behavior_tree")
         if not listed_trees:
@@ -779,7 +779,7 @@ class Analysis:
         return types_by_topic
 
     def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
-        """Those of the message types that exist."""
+        """The message types that exist."""
         definitions = (self.interface("msg", name) for name in names)
         return tuple(type_ for type_ in definitions if isinstance(type_, InterfaceType))
 
@@ -821,11 +821,11 @@ def _stem(path: str) -> str:
 
 
 def _received(machine: Machine) -> set[str]:
-    """The plain events that a machine has transitions for."""
+    """The plain events for which a machine has transitions."""
     handlers = (h for chart in machine.charts for state in chart.states for h in state.handlers)
     return {handler.event.value for handler in handlers if handler.event}
 
 
 def _waits_for_events(outlines: Iterable[MachineOutline]) -> bool:
-    """Whether the type of something that is sent is unknown."""
+    """Whether the type of a sent value is unknown."""
     return any(param.type == UNKNOWN for o in outlines for sent in o.sent for param in sent.params)

@@ -64,7 +64,7 @@ _XML_KINDS = (*GRAMMARS, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
 
 class RuleRunner:
-    """Says what is wrong with the files of one moment."""
+    """Checks the files of one moment."""
 
     def __init__(self, analysis: Analysis, settings: Settings) -> None:
         self.analysis = analysis
@@ -177,7 +177,8 @@ def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
-    """A comment without codes does not suppress the finding that it is unused."""
+    """Whether a comment suppresses a finding. A comment without codes does not suppress the finding that it is
+    unused."""
     is_about_comments = finding.code == unused_suppression.RULE.code
     return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 
@@ -204,7 +205,7 @@ def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
 
 def _too_large(source: SourceFile) -> Finding:
     size = len(source.text) / 1e6
-    message = f"the file is too large to be checked ({size:.0f} MB; up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
+    message = f"the file is too large to be checked ({size:.0f} MB; the limit is {MAX_CHARACTERS / 1e6:.0f} MB)"
     return file_too_large.RULE.at(Span(0, source.lines.line_end(0)), message)
 
 
@@ -438,7 +439,7 @@ class _Run:
                 problems[include.path.value] = "it is not a file of behavior trees"
             elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
                 problems[include.path.value] = (
-                    "it includes this file in turn" if target != self.path else "it is this file"
+                    "it includes this file itself" if target != self.path else "it is this file"
                 )
         return problems
 

@@ -39,7 +39,7 @@ class Configuration:
 
 
 def read_configuration(source: SourceFile) -> Configuration:
-    """A pure function of the text and its path."""
+    """The configuration in a text; a pure function of the text and its path."""
     is_ours = os.path.basename(source.path) == CONFIG_FILE
     prefix: Path = () if is_ours else ("tool", "as2fm")
     if len(source.text) > MAX_CHARACTERS:
@@ -118,7 +118,7 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
                     return Settings(), (f"{file}: {source.value}",)
                 continue
             if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:
-                words = f"the file is too large to be read (up to {MAX_CHARACTERS / 1e6:.0f} MB are)"
+                words = f"the file is too large to be read (the limit is {MAX_CHARACTERS / 1e6:.0f} MB)"
                 return Settings(origin=file), (f"{file}: {words}",)
             configuration = read_configuration(source)
             if name == PROJECT_FILE and configuration.table is None and not configuration.findings:

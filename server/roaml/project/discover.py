@@ -19,7 +19,7 @@ from roaml.text import decode
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
 MAX_FILES = 50_000
 _HEAD = 65_536
-"""In bytes: more than `root_name` reads, in any encoding except UTF-32."""
+"""The number of bytes to read: more than `root_name` needs, in any encoding except UTF-32."""
 
 
 def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots | None = None) -> Iterator[str]:
@@ -27,7 +27,7 @@ def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots |
     duplicates.
 
     Args:
-        within: links out of these are not followed; by default all links are.
+        within: links out of these folders are not followed; by default all links are followed.
     """
     seen: set[str] = set()
     count = 0
@@ -68,7 +68,7 @@ def _is_skipped(folder_name: str) -> bool:
 
 
 class SystemIndex:
-    """Which files are system files, remembered by size and time of change."""
+    """A cache of which files are system files, by size and modification time."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[tuple[int, int], bool]] = {}

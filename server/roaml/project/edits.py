@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The edits of rules, adapted to a file: a rule writes `\\n` and ignores what else is on a line."""
+"""The edits of rules, adapted to a file: a rule writes `\\n` and ignores the rest of a line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ def line_end_of(source: SourceFile) -> str:
 
 
 def in_layout(source: SourceFile, edits: Iterable[Edit]) -> Iterator[TextEdit]:
-    """New lines get the file's line end; an edit that removes everything on a line removes the line as well.
+    """Edits in which new lines have the file's line end; an edit that removes everything on a line removes the line as
+    well.
 
     The content of a line is determined after all edits.
     """
@@ -56,5 +57,5 @@ def _blank_around(source: SourceFile, span: Span) -> Span | None:
 
 
 def laid_out(source: SourceFile, fix: Fix) -> Fix:
-    """The fix with its edits as the file takes them, computed when they are read."""
+    """The fix with its edits adapted to the file, computed when they are read."""
     return Fix(fix.title, lambda: tuple(in_layout(source, fix.edits)), fix.preferred, fix.safe)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files the setting `exclude` leaves out. Its patterns mean what they mean in `.gitignore` files
+"""The files that the setting `exclude` excludes. Its patterns have the syntax of `.gitignore` files
 (https://git-scm.com/docs/gitignore).
 """
 
@@ -18,28 +18,28 @@ if TYPE_CHECKING:
 
 MAX_WILDCARDS = 3
 """`*` in one part of a pattern, and `**` in a pattern. The time to compare a path grows with its length to this power,
-and a configuration may be a stranger's."""
+and the configuration may come from an untrusted source."""
 MAX_DEPTH = 30
-"""Parts of a path that are compared: a file that is deeper is left out if a folder is that it is in."""
+"""The maximum number of parts of a path that are compared: a deeper file is excluded if one of its folders is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Exclude:
-    """Patterns, the last one that matches decides.
+    """Patterns; the last one that matches decides.
 
     Attributes:
-        folder: what the patterns are relative to; in a root outside of it, they are relative to that root.
+        folder: the folder to which the patterns are relative; in a root outside of it, they are relative to that root.
     """
 
     patterns: tuple[str, ...] = ()
     folder: str = ""
 
     def covers(self, path: str, root: str) -> bool:
-        """Whether the file `path`, which is below the folder `root`, is left out."""
+        """Whether the file `path`, which is below the folder `root`, is excluded."""
         return self._covers(path, root, "")
 
     def covers_folder(self, path: str, root: str) -> bool:
-        """Whether all that is in the folder `path` is left out; it is `root` or below it."""
+        """Whether everything in the folder `path` is excluded; it is `root` or below it."""
         return self._covers(path, root, "/")
 
     def _covers(self, path: str, root: str, end: str) -> bool:
@@ -57,7 +57,7 @@ NOTHING = Exclude()
 
 
 def problem(pattern: str) -> str:
-    """Why `pattern` is not a pattern that can be used; "" if it is one."""
+    """Why `pattern` is not a valid pattern; "" if it is."""
     parts = pattern.split("/")
     if parts.count("**") > MAX_WILDCARDS:
         return f"`{pattern}` contains more than {MAX_WILDCARDS} `**`"
@@ -72,15 +72,15 @@ def problem(pattern: str) -> str:
 
 @functools.lru_cache(maxsize=10_000)
 def _matches(patterns: tuple[str, ...], path: str) -> bool:
-    """Whether the patterns leave out one path, whatever they say of the folders around it; folders end with `/`."""
+    """Whether the patterns exclude one path, independently of the folders around it; folders end with `/`."""
     folders, files = _compiled(patterns)
     return folders.match_file(path) if path.endswith("/") else files.match_file(path)
 
 
 @functools.lru_cache(maxsize=16)
 def _compiled(patterns: tuple[str, ...]) -> tuple[PathSpec[Pattern], GitIgnoreSpec]:
-    """What decides about folders, where the last pattern that matches decides, and about files, where a pattern of a
-    folder does not bring back what others leave out."""
+    """The matchers for folders, where the last pattern that matches decides, and for files, where a pattern of a
+    folder does not include files that others exclude."""
     from pathspec import GitIgnoreSpec, PathSpec  # noqa: PLC0415 - most projects exclude nothing
 
     # pathspec takes `a/**` for the folder `a/` itself, too, which Git does not.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading the user's files: what is open in an editor before what is on the disk.
+"""Reading of the user's files: open buffers of an editor take precedence over the disk.
 
-- Never raises for what stands on the disk: a file that cannot be used is a `UnreadableReason`.
-- Opens regular files only (`roaml.disk`), and none outside of the roots that a link leads to.
-- A file is read again only when its size or time of change differs.
+- Never raises because of the content of the disk: the result for an unusable file is an `UnreadableReason`.
+- Opens only regular files (`roaml.disk`), and no file outside of the roots through a link.
+- A file is read again only when its size or modification time has changed.
 """
 
 from __future__ import annotations

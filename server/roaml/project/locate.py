@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a symbol to its current position."""
+"""The current position of a symbol."""
 
 from __future__ import annotations
 

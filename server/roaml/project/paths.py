@@ -30,7 +30,7 @@ def resolve(base: str, src: str) -> str:
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Whether a path is that of something in a folder, at any depth."""
+    """Whether a path is in a folder, at any depth."""
     return path.startswith(os.path.join(folder, ""))
 
 
@@ -45,7 +45,7 @@ def slashed(path: str) -> str:
 
 
 def relative(path: str, folder: str) -> str:
-    """A path as seen from a folder, with `/`; in full if it is on another drive."""
+    """A path relative to a folder, with `/`; the absolute path if it is on another drive."""
     try:
         return slashed(os.path.relpath(path, folder))
     except ValueError:

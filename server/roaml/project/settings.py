@@ -33,17 +33,17 @@ SEVERITIES = {severity.label: severity for severity in Severity}
 @dataclass(frozen=True, slots=True)
 class Settings:
     """Attributes:
-    roots: folders in which systems are looked for; empty means the folders that are open or named.
+    roots: the folders that are searched for systems; if empty, the open or named folders.
     ros_paths: folders with ROS interface packages.
-    exclude: which files are passed over.
+    exclude: the files that are ignored.
     select: codes to report; empty means all. ignore: codes not to report.
-    severities: code -> severity in place of the rule's own.
-    scheduler: "uniform" if `verify` is meant to answer for uniform choices, also where a property asks for the minimum
-        or maximum over all schedulers; else empty.
-    limits: how large a system may be to be translated.
-    overrides: parameters in place of those in system files; not read from a configuration.
-    trees: what is configured for trees that belong to no system.
-    origin: path of the configuration file that they were read from, "" if there is none.
+    severities: code -> the severity that replaces the default of the rule.
+    scheduler: "uniform" if `verify` assumes uniform choices even where a property requests the minimum
+        or maximum over all schedulers; otherwise empty.
+    limits: the maximum sizes of a system that is translated.
+    overrides: parameters that replace those in system files; not read from a configuration.
+    trees: the settings for trees that belong to no system.
+    origin: the path of the configuration file; "" if there is none.
     """
 
     roots: tuple[str, ...] = ()
@@ -74,7 +74,7 @@ class SettingMistake:
         path: its place in the table: keys of tables and indices of lists.
         message: the error and the correction.
         is_key: whether the error is in the key, not in its value.
-        instead: names that may be meant.
+        instead: names that are probably meant.
     """
 
     path: Path
@@ -224,7 +224,7 @@ def _scheduler(path: Path, value: Any, mistakes: list[SettingMistake]) -> str | 
     for key, said in value.items():
         if key != "scheduler":
             close = close_names(key, ("scheduler",))
-            message = f"there is no setting `verify.{key}`; there is `scheduler`"
+            message = f"there is no setting `verify.{key}`; the only one is `scheduler`"
             mistakes.append(SettingMistake((*path, key), message, is_key=True, instead=close))
         elif said not in SCHEDULERS:
             message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the parts of a JANI model back to the lines from which they come."""
+"""The places in the models from which the parts of a JANI model come."""
 
 from __future__ import annotations
 

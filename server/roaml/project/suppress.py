@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Suppression comments: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` for all codes.
 
-A comment applies to the line that it is on. Alone on its line, it applies to the element that follows it, with all its
+A comment applies to its line. A comment alone on a line applies to the element that follows it, including all its
 content.
 """
 
@@ -47,8 +47,8 @@ def suppressions(document: Document | None) -> tuple[Suppression, ...]:
 
 
 def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppression, ...]]:
-    """offset -> the comments that apply to what begins there; of several with the same range, the first. They are
-    indexed in a table, as there may be many."""
+    """Offset -> the comments that apply to findings that begin there; if several have the same range, the first. They
+    are indexed in a table, as there may be many."""
     opening: dict[int, list[Suppression]] = {}
     closing: dict[int, list[Suppression]] = {}
     for comment in {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a checked system to plain SCXML and JANI: collects the input of the lowering from the files of one moment."""
+"""The translation of a checked system to plain SCXML and JANI: collects the input of the lowering from the files of one
+moment."""
 
 from __future__ import annotations
 

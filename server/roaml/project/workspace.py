@@ -45,7 +45,7 @@ class Snapshot:
         self._again = again
 
     def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
-        """The same moment with some texts instead of the content of the files."""
+        """This snapshot with some texts instead of the content of the files."""
         return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
@@ -70,11 +70,11 @@ class Snapshot:
 
 class Workspace:
     """Args:
-    roots: the folders that are open: here systems and other files are looked for.
-    settings: what is configured.
-    systems: further system files that count.
-    packages: the folders in which ROS packages are looked for; the roots if not given.
-    checkpoint: called again and again during all work, which it gives up by raising `Interrupted`.
+    roots: the open folders, which are searched for systems and other files.
+    settings: the user's settings.
+    systems: further system files to analyse.
+    packages: the folders that are searched for ROS packages; the roots if not given.
+    checkpoint: called repeatedly during all work; it may raise `Interrupted` to abandon the work.
     """
 
     def __init__(
@@ -106,12 +106,12 @@ class Workspace:
         self._open = {known: source for known, source in self._open.items() if known != path}
 
     def refresh(self) -> None:
-        """Files were created or deleted."""
+        """List the folders again, because files were created or deleted."""
         self._listed = None
         self._registry.search_path.refresh()
 
     def configure(self, settings: Settings, roots: Iterable[str] | None = None) -> None:
-        """New settings or folders. Everything is checked again."""
+        """Set new settings or folders. Everything is checked again."""
         self.settings = settings
         if roots is not None:
             self.roots = tuple(os.path.abspath(root) for root in roots)
@@ -145,7 +145,8 @@ class Workspace:
         return Snapshot(analysis, RuleRunner(analysis, self.settings), self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
-        """A system that is named is part of the workspace, with the folder that really contains it."""
+        """A new view of the disk. A named system is part of the workspace, with the folder that contains it after links
+        are resolved."""
         settings = self.settings
         named = (folder for path in self._named for folder in (os.path.dirname(path), _real_folder(path)))
         return DiskFiles(

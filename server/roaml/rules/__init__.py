@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All rules, grouped by subject. One rule is one module with one document beside it; both are named like the code.
 
-The rules whose findings are made by parsers are in one module, `parser_rules`; their documents are in the groups as
+The rules whose findings come from parsers are in one module, `parser_rules`; their documents are in the groups as
 well.
 """
 

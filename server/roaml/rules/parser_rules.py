@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules whose findings are made where files are parsed: a code, a severity and a sentence for each."""
+"""The rules whose findings come from parsers: a code, a severity and a sentence for each."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rule is, and what it can access.
+"""The definition of a rule, and the contexts that it can access.
 
 - A rule is a code, a default severity, one sentence, and a check for each kind of file that it supports. Its document
-  is beside its module (`name.md`): the manual page, the text of `--explain` and the first test are made of it.
+  is beside its module (`name.md`): the manual page, the text of `--explain` and the first test are generated from it.
 - A check is a pure function from a context to findings. Everything in a context is immutable.
 """
 
@@ -84,8 +84,8 @@ class MachineContext:
 
 @dataclass(frozen=True, slots=True)
 class TreeContext:
-    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` is what
-    the tree may say where this file cannot be read. `forest` is there if the file belongs to no system."""
+    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` are the
+    facts that unreadable parts of this file may contain. `forest` is given if the file belongs to no system."""
 
     source: SourceFile
     document: Document
@@ -141,10 +141,10 @@ class PropertiesContext:
 @dataclass(frozen=True)
 class Rule:
     """Attributes:
-    code: kebab-case, reads well after "ignore".
-    summary: one sentence on what is wrong.
+    code: in kebab-case; a phrase for the problem.
+    summary: one sentence that states the problem.
     file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
-    plain: the machine check also holds for plain SCXML.
+    plain: whether the machine check also applies to plain SCXML.
     facts: the type of the facts of its findings, for rules whose fixes read facts.
     """
 
@@ -176,13 +176,13 @@ class Rule:
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:
-    """A fix for each name that may be meant; the first is preferred."""
+    """A fix for each name that is probably meant; the first is preferred."""
     for number, name in enumerate(close):
         yield Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=number == 0)
 
 
 def unused(name: str, names: Iterable[str]) -> str:
-    """`name` with the smallest number at its end with which it is not in `names`."""
+    """`name` with the smallest number appended for which it is not in `names`."""
     taken = set(names)
     return next(new for number in itertools.count(2) if (new := f"{name}_{number}") not in taken)
 

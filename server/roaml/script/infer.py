@@ -102,7 +102,8 @@ def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[Sc
 
 
 def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
-    """The statements before the last one that assign nothing: an operator is missing, or they are superfluous."""
+    """The statements before the last one that assign nothing: either an operator is missing, or they are
+    superfluous."""
     for statement in script.statements[:-1]:
         if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
             yield ScriptProblem(statement.span, "this statement has no effect; is an operator missing after it?")
@@ -135,7 +136,8 @@ def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProbl
 
 
 def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Reals are true unless 0, integers are true (1) or false (0), strings are neither."""
+    """Why a value is not a truth value: reals are true unless 0, integers are true (1) or false (0), strings are
+    neither."""
     if type_of(expr, entry) is Type.TEXT:
         yield ScriptProblem(expr.span, "a string is neither true nor false; compare it")
     elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):

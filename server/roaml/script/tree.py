@@ -86,7 +86,7 @@ class Conditional:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """`target := value` and the like; `operator` is `:=`, `=`, `+=`, `-=`, `*=` or `/=`."""
+    """An assignment such as `target := value`; `operator` is `:=`, `=`, `+=`, `-=`, `*=` or `/=`."""
 
     span: Span
     operator: str

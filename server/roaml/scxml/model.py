@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plain SCXML: the result of lowering HL-SCXML, and the input of the translation to JANI (docs/spec/plain-scxml.md).
 
-- Flat state machines that share nothing and exchange events by name. No ROS, no trees, no structs: variables are
-  scalars, strings and arrays of these.
+- Flat state machines that share no data and exchange events by name. There are no ROS elements, trees or structs:
+  variables are scalars, strings and arrays of these.
 - Frozen. Everything has an `origin`, the place in the models from which it comes, including added parts.
 - Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans are
   in the file of the origin around them.
@@ -33,15 +33,15 @@ class Role(enum.Enum):
 
 
 class EventRole(enum.Enum):
-    """What an event is for; the translation to JANI treats some differently (docs/spec/jani.md#event-automata)."""
+    """The purpose of an event; the translation to JANI treats some differently (docs/spec/jani.md#event-automata)."""
 
     PLAIN = "plain"
-    """A receiver that does not wait for it discards it."""
+    """An event that a receiver discards if it does not wait for the event."""
     BLOCKING = "blocking"
-    """It waits for its receivers."""
+    """An event that waits for its receivers."""
     TIMER_TICK = "tick of a timer"
     CLOCK_STEP = "step of the clock"
-    BLACKBOARD_READ = "question to the blackboard"
+    BLACKBOARD_READ = "read of the blackboard"
     BLACKBOARD_WRITE = "write to the blackboard"
 
     @property
@@ -128,7 +128,8 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """On `event` (None for none), if `cond` holds and that of no earlier transition on the same event does."""
+    """A transition that is taken on `event` (`None` for none) if `cond` holds and no earlier transition on the same
+    event is taken."""
 
     event: ScxmlEvent | None
     cond: Expr | None

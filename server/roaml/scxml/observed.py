@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of plain automata: what is observed of the events that they send (docs/spec/xml-properties.md)."""
+"""Properties of plain automata: the observed parts of the events that they send (docs/spec/xml-properties.md)."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class PortEvent:
 
     Attributes:
         name: of the event.
-        sender: only what this automaton sends counts; "" if all that is sent counts.
-        constants: what the event says without parameters: kinds of variables -> value.
+        sender: the only automaton whose events are observed; "" for all automata.
+        constants: the values that follow from the event itself: kind of variable -> value.
     """
 
     name: str
@@ -30,8 +30,8 @@ class PortEvent:
 @dataclass(frozen=True, slots=True)
 class ObservedVariable:
     """Attributes:
-    kind: which of the constants of an event it is, if it is one of them.
-    parameter: of the events, "" if it is not read from one.
+    kind: the kind of the constant of an event, if it is one.
+    parameter: the parameter of the events; "" if it is not read from a parameter.
     initial: the value before the first event; `None` for a variable that is true when the event is sent.
     """
 
@@ -50,7 +50,8 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """`conditions`: what the inputs of its observer are, as expressions over the ids of the variables."""
+    """A property for which an observer is built. `conditions` are the inputs of the observer, as expressions over the
+    ids of the variables."""
 
     name: str
     property: Property

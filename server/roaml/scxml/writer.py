@@ -2,10 +2,10 @@
 """Plain SCXML as documents that other tools read (docs/spec/plain-scxml.md#documents): one for each automaton.
 
 - Every `<data>` has its type in a comment before it, because SCXML has no types.
-- A `<send>` is written once for each automaton that receives the event, with that as its target; `NONE` if there is
-  none.
-- A transition with several targets becomes a state that draws a number and selects a target by it, so each time the
-  transition is taken, a new number is drawn (docs/spec/plain-scxml.md#documents).
+- A `<send>` is written once for each automaton that receives the event, with that automaton as its target; `NONE` if
+  there is none.
+- A transition with several targets becomes a state that draws a number to select a target, so a new number is drawn
+  each time the transition is taken (docs/spec/plain-scxml.md#documents).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def write(network: Network) -> Iterator[tuple[str, str]]:
 
 
 def write_lines(network: Network) -> Iterator[tuple[Automaton, Lines]]:
-    """The same line by line, each with its origin."""
+    """The documents line by line, each line with its origin."""
     receivers = _receivers(network)
     for automaton in network.automata:
         yield automaton, _Writer(automaton, receivers).document()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The possible next steps, described in words.
+"""The possible next steps, with descriptions.
 
 Each combination of enabled edges of a synchronisation vector is a choice. If the seed decides, all choices are equally
 probable, as in `verify`. The outcomes of a choice are the combinations of destinations, drawn by their probabilities.
@@ -51,11 +51,11 @@ class Choice:
 
     Attributes:
         number: the number in the list of choices, from 1.
-        text: which automata do what.
+        text: a description of what each automaton does.
         automata: the names of the automata that take part, acting ones first.
         probability: the probability of this choice if the seed decides.
         outcomes: at least one; outcomes with probability 0 are omitted.
-        origin: the place in the source of what the first automaton does.
+        origin: the place in the source of the edge of the first automaton.
         is_internal: whether one automaton only executes its next statement, which no other automaton observes.
     """
 

@@ -88,7 +88,7 @@ class ExpressionAssembler:
             case Name(identifier):
                 meaning = names.meaning(node)
                 if isinstance(meaning, Region) or (isinstance(meaning, Storage) and meaning.shape):
-                    raise FaultError(f"`{identifier}` is an array, a single value is needed here", node.origin)
+                    raise FaultError(f"`{identifier}` is an array; a single value is needed here", node.origin)
                 if isinstance(meaning, Storage):
                     meaning = Operand(meaning.kind, meaning.base)
                 return self.cells.moved(meaning, into)
@@ -101,13 +101,13 @@ class ExpressionAssembler:
             case ArrayAccess():
                 region = self.element(node, names)
                 if region.shape:
-                    raise FaultError("this is an array, a single value is needed here", node.origin)
+                    raise FaultError("this is an array; a single value is needed here", node.origin)
                 return self.cells.load(region, into)
             case Call():
                 body, inner = self.called(node, names)
                 return self.value(body, inner, into)
             case ArrayValue() | ArrayConstructor():
-                raise FaultError("this is an array, a single value is needed here", node.origin)
+                raise FaultError("this is an array; a single value is needed here", node.origin)
             case _:
                 raise FaultError(unsupported(node), node.origin)
 
@@ -135,7 +135,7 @@ class ExpressionAssembler:
         return self.operators.computed(node, first, self.value(right, names), into)
 
     def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
-        """`a + b + c ...`, of any length."""
+        """Compute a sum or product of any number of operands, such as `a + b + c`."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
             parts.append(parts[-1].left)
@@ -198,7 +198,7 @@ class ExpressionAssembler:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
     def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
-        """Chains of one operator may have any length."""
+        """Jump for a logical operator; chains of one operator may have any length."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
             last = parts.pop()
@@ -303,7 +303,7 @@ class ExpressionAssembler:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
     def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
-        """A copy of an array in registers of its own."""
+        """A copy of an array in separate registers."""
         region = Region(kind, shape, self.tape.room(kind, product(shape)))
         self.fill(node, region, names)
         return region

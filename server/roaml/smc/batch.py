@@ -106,7 +106,7 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
 
 
 def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
-    """The same on a kernel that nothing else uses meanwhile."""
+    """Run the traces of a batch on a kernel that is not used otherwise at the same time."""
     verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)
@@ -127,7 +127,7 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
 
 
 class StoppedError(Exception):
-    """The batch is not needed any more."""
+    """The batch is no longer needed."""
 
 
 _stopping: Event | None = None
@@ -136,8 +136,8 @@ _stopping: Event | None = None
 def start_worker(stopping: Event) -> None:
     """
     Args:
-        stopping: is set when the batches that are not done are not wanted any more. Workers end by themselves then: one
-            that is killed may leave half a result behind, for which the main process would wait for ever.
+        stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
+            that is killed may leave an incomplete result, for which the main process would wait for ever.
     """
     global _stopping  # noqa: PLW0603
     _stopping = stopping
@@ -157,7 +157,7 @@ def _end_with(sentinel: int) -> None:
 def run_in_worker(task: Task) -> BatchOutcome:
     """
     Raises:
-        StoppedError: the batch is not wanted any more.
+        StoppedError: the batch is no longer needed.
     """
     _look(0, 0)
     return run(task, _look)

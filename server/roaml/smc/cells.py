@@ -20,7 +20,7 @@ class CellAssembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
 
     def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
-        """Code for something without a value, which fails if it is reached."""
+        """Code for an expression without a value, which fails if it is reached."""
         self.tape.place(node.origin)
         self.tape.emit(Op.FAULT, code, value, size)
         return Operand(kind, self.tape.temporary(kind))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the result under uniform choices means for `Pmin` and `Pmax`: whether all schedulers agree, and if that is
-unknown, how far apart schedulers were found to be.
+"""The relation of the result under uniform choices to `Pmin` and `Pmax`: whether all schedulers agree, and if that is
+unknown, the range of the values of sampled schedulers.
 
-1. A model without nondeterminism: there is nothing to choose.
-2. All states are explored, if there are few (`solve`): the minimum and the maximum are known.
+1. A model without nondeterminism has only one scheduler.
+2. If there are few states, all are explored (`solve`): the minimum and the maximum are known.
 3. Otherwise schedulers are sampled (`lss.probe`), with a part of the effort of the result.
 
 The method depends only on the model, the question, the options and the traces of the result.
@@ -27,10 +27,10 @@ EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform ch
 """The method by which an extreme was found."""
 
 _SHARE = 5
-"""The effort for schedulers, as a part of that for the result."""
+"""The effort for the result, divided by the effort for schedulers."""
 _LEAST_STEPS, _MOST_STEPS = 50_000, 400_000
 _USUAL_SIZE = 200
-"""The number of registers and automata of a model with a normal cost per step; with more, steps cost more."""
+"""The number of registers and automata up to which a step has the normal cost; with more, a step costs more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +59,11 @@ class Extreme:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What is known of other schedulers than the uniform one.
+    """The knowledge about schedulers other than the uniform one.
 
     Attributes:
         agreement: why all have the same value; empty if that is unknown.
-        minimum, maximum: what schedulers achieve; `None` if unknown.
+        minimum, maximum: the extreme values of schedulers; `None` if unknown.
         tried: the number of schedulers that were sampled.
     """
 
@@ -91,11 +91,11 @@ def look_at_choices(
 ) -> Choices:
     """
     Args:
-        answer: the one under uniform choices.
+        answer: the answer under uniform choices.
         automata: the names of the elements of the system.
 
     Raises:
-        TraceFaultError: a trace under some scheduler went wrong.
+        TraceFaultError: a trace under some scheduler failed.
     """
     if model.type is ModelType.DTMC:
         return Choices("the model has no nondeterminism", *_of_answer(answer))

@@ -64,7 +64,7 @@ class Explorer:
         self.initial = self._state()
 
     def verdict(self, state: ExploredState) -> int:
-        """The verdict on the goal in a state that is reached first."""
+        """The verdict on the goal in the first state of a trace."""
         self._kernel.restore(*state)
         return self._kernel.look()
 

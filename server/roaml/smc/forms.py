@@ -35,18 +35,20 @@ from roaml.smc.fault import FaultError
 UNSUPPORTED = "unsupported-property"
 """The code under which `--check` and `verify` report an unsupported property."""
 BOUNDS = "ignored-bounds"
-"""The same for bounds on time and rewards."""
+"""The code under which bounds on time and rewards are reported."""
 
 ANSWERED = (
-    "answered are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds, of `F G` and `G F`, all "
-    "joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+    "supported are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds, of `F G` and `G F`, "
+    "all joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
 )
 COMPARISONS = frozenset(
     (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 )
 JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES))
 """The operators between paths."""
-TIME_BOUNDS = "bounds on the time are not supported, as the model counts steps only (compare the clock's `sec` instead)"
+TIME_BOUNDS = (
+    "bounds on time are not supported, because the model counts only steps (compare the clock's `sec` instead)"
+)
 REWARD_BOUNDS = "bounds on rewards are not supported"
 _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
 
@@ -83,7 +85,7 @@ class Lasting:
 
 
 def lasting_part(formula: Formula) -> Lasting | None:
-    """What `formula` says about the state in which a path stays; None if it is of another form."""
+    """The condition of `formula` on the state in which a path stays; `None` if it has another form."""
     if not isinstance(formula, UnaryPath) or not isinstance(formula.operand, UnaryPath):
         return None
     outer, inner = formula, formula.operand

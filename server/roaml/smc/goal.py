@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property -> what is asked about each trace, and what is asked about all of them together.
+"""A property -> its goal for a single trace, and its question about all traces.
 
 Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
 exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only. `F G b` asks for the
@@ -105,10 +105,11 @@ def ask(compilation: Compilation, property_: Property, open_: Expression | None 
     """Compile a property.
 
     Args:
-        open_: where this holds at the end of the model's time, `F G` is undecided.
+        open_: the condition under which `F G` is undecided at the end of the model's time.
 
     Raises:
-        FaultError: it is of a form that sampling cannot answer, or compares with what is not a number.
+        FaultError: it has a form that sampling cannot answer, or contains a comparison with something other than a
+            number.
     """
     check_form(property_)
     return _Writer(compilation, property_, open_).asked()
@@ -119,7 +120,7 @@ STUCK_PROPERTY = "stuck"
 
 
 def ask_stuck(compilation: Compilation) -> CompiledProperty:
-    """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing will
+    """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing can
     ever change. Every trace runs to its end."""
     # JANI has no such predicate; this is the closest one.
     path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
@@ -165,7 +166,7 @@ class _Writer:
                 step_reward, exit_reward = self.expectation(formula)
                 name = operator.value
             case _:
-                raise AssertionError("`check_form` lets nothing else pass")
+                raise AssertionError("`check_form` rejects all other forms")
         variables = self.variables()
         question = Question(self.property.name, name, isinstance(formula, Expectation), threshold, variables)
         seen = [int(storage.name in variables) for storage in self.compilation.watched]
@@ -332,5 +333,5 @@ _COMBINE = {BinaryOperator.AND: AND, BinaryOperator.OR: OR, BinaryOperator.IMPLI
 
 
 def with_threshold(question: Question, threshold: Threshold) -> Question:
-    """The same question, compared with a number."""
+    """A question with a comparison with a number."""
     return replace(question, threshold=threshold)

@@ -33,7 +33,7 @@ class MemoryLayout:
     """All variables of a model.
 
     Attributes:
-        names: what names mean outside of automata.
+        names: the meaning of names outside of automata.
         shared: the variables of the model.
         initial: for each storage, by its identity, the first value.
     """

@@ -48,7 +48,7 @@ _NUMBERS = (1 << _AUTOMATON) - 1
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """What the selected schedulers achieve.
+    """The probabilities under the selected schedulers.
 
     Attributes:
         least_by, greatest_by: their numbers.
@@ -82,9 +82,9 @@ def candidates(automata: int, each: int = 2, memoryless: int = SCHEDULERS, memor
     """Numbers of schedulers.
 
     Args:
-        automata: how many the system has.
-        each: so many of both kinds for each automaton.
-        memoryless, memory: so many of these kinds.
+        automata: the number of automata of the system.
+        each: the number of schedulers of both kinds for each automaton.
+        memoryless, memory: the numbers of schedulers of these kinds.
     """
     biased = [
         kind | (automaton << _AUTOMATON) | number
@@ -109,16 +109,17 @@ class Side(NamedTuple):
 
 @dataclass(slots=True)
 class Search:
-    """How far a search for schedulers is; it is changed while it goes on, and keeps what is known if that is ended.
+    """The progress of a search for schedulers, updated during the search. If the search is interrupted, it contains the
+    results so far.
 
     Attributes:
-        side: which probability is looked for now.
-        round, rounds: of choosing schedulers; in each the better half is kept.
-        left: the schedulers that are tried in this round.
-        done: how many of them have been tried.
-        best: the best share of successes in the last round; None before the first one is over.
-        tried: how many schedulers there were at first.
-        found: for each side what is known of the scheduler that was chosen.
+        side: whether the minimum or the maximum is currently searched for.
+        round, rounds: the current round of the selection and the number of rounds; each keeps the better half.
+        left: the number of schedulers that are tried in this round.
+        done: the number of these that have been tried.
+        best: the best share of successes in the last round; `None` before the end of the first one.
+        tried: the initial number of schedulers.
+        found: the selected scheduler of each side and its traces so far.
     """
 
     side: str = LEAST
@@ -164,16 +165,16 @@ def search(
 
 
 def _longest(length: float) -> int:
-    """Steps after which a trace is given up while schedulers are tried: many of them go round in circles.
+    """The number of steps after which a trace is abandoned while schedulers are tried: many schedulers repeat cycles.
 
     Args:
-        length: of an average trace with uniform choices.
+        length: the average length of a trace with uniform choices.
     """
     return int(20 * length) + 1000
 
 
 def sampling_options(options: Options) -> Options:
-    """The options for the estimate under a selected scheduler: no threshold decides about the traces."""
+    """The options for the estimate under a selected scheduler, without a threshold."""
     return replace(options, method=ADAPTIVE) if options.method == SPRT else options
 
 
@@ -187,7 +188,7 @@ def probe(
     length: float,
     pulse: Pulse | None = None,
 ) -> Extremes | None:
-    """The same with about `budget` steps: one round for all schedulers, then some traces for the two best.
+    """A search with about `budget` steps: one round for all schedulers, then some traces for the two best.
 
     A trace that is much longer than usual is abandoned, and is undecided.
 

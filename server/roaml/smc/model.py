@@ -33,13 +33,13 @@ class ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
-        marks: what it means that a trace ends in a location; see `roaml.smc.end`.
+        marks: the meaning of a trace that ends in a location; see `roaml.smc.end`.
         open_: property -> condition under which it is undecided at the end of time; see `goal.ask`.
-        asks_stuck: whether `stuck` is among the questions, as the last one.
+        asks_stuck: whether `stuck` is the last question.
 
     Attributes:
         asked: a question for each property that can be answered.
-        refused: the names of the others -> why not.
+        refused: the names of the other properties -> the reason.
         stuck: the question whether traces get stuck.
 
     Raises:
@@ -90,8 +90,8 @@ class ModelChecker:
         return Compiled(self.program, asked.goal)
 
     def reduced(self, asked: CompiledProperty) -> ModelChecker:
-        """The same for one question, without the automata that only matter to others: it has fewer states and the same
-        probabilities. Its traces have other numbers."""
+        """A model checker for one question, without the automata that only other questions need: the model has fewer
+        states and the same probabilities. Its traces have other numbers."""
         model = without_passive(self.model, asked.property.expression, *self._open(asked).values())
         if model is self.model:
             return self
@@ -149,7 +149,7 @@ class ModelChecker:
             raise self.fault(error.problem) from None
 
     def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
-        """What is known of other schedulers than the uniform one, to which an answer refers.
+        """The knowledge about schedulers other than the uniform one, to which an answer refers.
 
         Raises:
             FaultError: a trace under some scheduler failed.

@@ -199,7 +199,7 @@ class CompiledNetwork:
 
 
 def root(assignment: Assignment) -> str:
-    """The variable that is assigned to."""
+    """The variable to which a value is assigned."""
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):
         target = target.array

@@ -2,8 +2,8 @@
 """The instructions of the bytecode, which `assemble` writes and `kernel` executes.
 
 An instruction is five numbers: its code and the operands d, a, b, c. `I` are the registers for ints and bools (0 or
-1), `D` those for reals; variables, constants and intermediate results all live there. The kernel writes the codes as
-numbers, since a C compiler makes a jump table of these; a test holds both together.
+1), `D` those for reals; they contain variables, constants and intermediate results. The kernel writes the codes as
+numbers, because a C compiler creates a jump table from them; a test compares both.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from __future__ import annotations
 import enum
 
 WIDTH = 5
-"""Numbers in an instruction."""
+"""The number of integers in an instruction."""
 
 
 class Op(enum.IntEnum):
-    """What an instruction does; `v` is the number of a watched variable."""
+    """The code of an instruction; `v` is the number of a watched variable."""
 
     RETURN = 0  # the value is I[a]
     JUMP = 1  # to d
@@ -71,7 +71,7 @@ class Op(enum.IntEnum):
 
 
 class FaultCode(enum.IntEnum):
-    """Why a trace could not go on."""
+    """The reason why a trace cannot continue."""
 
     NONE = 0
     OVERFLOW = 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Operators on values in registers: computed here if the values are known, otherwise by code.
+"""Operators on values in registers: evaluated here if the values are known, otherwise compiled.
 
 An operation that always fails stays in the code: it may never be reached.
 """

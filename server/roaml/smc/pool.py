@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Batches on several processors or machines, in order, whatever happens to workers.
+"""Batches on several processors or machines, in order, even if workers die.
 
 The results are in the order of the batches, so they do not depend on the speed of workers. A batch is a pure function:
 if a worker dies, its batch is run again.
@@ -34,7 +34,7 @@ class WorkersLostError(Exception):
 
 
 class Alone:
-    """Runs batches in this thread, on a kernel of its own, so that several threads may do so."""
+    """Runs batches in this thread, on a separate kernel, so that several threads may do so."""
 
     def __init__(self, compiled: Compiled) -> None:
         self._kernel = Kernel(compiled.program, compiled.goal)
@@ -45,7 +45,7 @@ class Alone:
 
 
 class Runner(Protocol):
-    """What runs batches."""
+    """A way to run batches."""
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in their order."""
@@ -54,7 +54,7 @@ class Runner(Protocol):
 class Pool:
     """Runs batches: in this process at first, then on `jobs` processes; or on a given executor.
 
-    Without `patience`, nothing is run in this process, which then stays responsive.
+    Without `patience`, no batch is run in this process, so that it stays responsive.
 
     Use it in a `with` statement; leaving it ends the workers.
     """
@@ -73,7 +73,7 @@ class Pool:
         self._stop()
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
-        """The outcome of each task, in their order. The caller may stop to ask at any time.
+        """The outcome of each task, in their order. The caller may stop the iteration at any time.
 
         Raises:
             WorkersLostError: the tasks cannot be run.

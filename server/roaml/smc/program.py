@@ -15,7 +15,7 @@ from typing import TypeAlias
 from roaml.jani.operators import Operator
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
-"""The verdict on a trace. The kernel has the same numbers; UNKNOWN: it can continue, and is undecided if it does
+"""The verdict on a trace. The kernel uses the same numbers. UNKNOWN: the trace can continue; if it does not, it is
 not."""
 
 AT_END = -1
@@ -31,19 +31,19 @@ class Program:
 
     Attributes:
         code, functions: the bytecode, and the operators whose functions it calls.
-        ints, reals: all registers at first: variables, then constants, then room for intermediate results.
-        int_count, real_count: the registers that are variables.
+        ints, reals: the initial values of all registers: variables, then constants, then intermediate results.
+        int_count, real_count: the numbers of registers that are variables.
         initial: the first location of each instance.
-        way_sum: the sum of the probabilities up to a way; way_chance: code that gives the register of the probability
-            where it depends on the state.
-        move_slot, move_count: what changes between two locations: so many edges of a slot are enabled; below zero,
-            `-1 - group` is to be looked at.
-        active_slot: the slots of a vector that do something; all_slot: all of them.
-        entangled: whether assignments of several parts of a vector have to do with one another.
+        way_sum: the sum of the probabilities up to a way; way_chance: code that returns the register of the probability
+            if it depends on the state.
+        move_slot, move_count: the changes between two locations: the number of enabled edges of a slot; if negative,
+            `-1 - group` must be evaluated.
+        active_slot: the slots of a vector that have an effect; all_slot: all slots.
+        entangled: whether assignments of several parts of a vector depend on one another.
         phase_*: for these, the code of each way by the index of its assignments.
-        watch_*: where variables are read by guards; watched_*: the groups for each location of an instance.
-        settle: code that resets transient variables, location_code: what they are in a location.
-        location_mark: why a trace ends that stays in a location (`end.End`), 0 where nothing is known of that.
+        watch_*: the instances whose guards read a variable; watched_*: the groups for each location of an instance.
+        settle: code that resets transient variables; location_code: code that sets their values in a location.
+        location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
     """
 
     code: Ints
@@ -99,18 +99,19 @@ class Program:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """What is asked about a trace: a formula over untils, and rewards.
+    """The question about a trace: a formula over untils, and rewards.
 
     Attributes:
         seen: for each watched variable, whether a condition reads it.
-        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite; on the right
+        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 no deadlock; on the right
             side, -5 that the trace gets stuck.
         lower, upper: its step bounds, both inclusive; -1 is none. With the lower bound `AT_END`, it is decided where
-            the trace ends: it is true if the right side holds there; it stays undecided if the time is over and the
+            the trace ends: it is true if the right side holds there; it stays undecided if the time has ended and the
             left side holds.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
-        is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.
-        step_reward, exit_reward: code that gives the register of the reward of a step.
+        is_bounded: the evaluation depends on changes of variables (0), also on the number of steps (1), also on the
+            enabled edges (2).
+        step_reward, exit_reward: code that returns the register of the reward of a step.
     """
 
     seen: Ints

@@ -32,7 +32,7 @@ class RecordedVariable(NamedTuple):
 
 
 class AutomatonStep(NamedTuple):
-    """What one automaton does in a step."""
+    """The part of one automaton in a step."""
 
     instance: int
     automaton: str
@@ -94,12 +94,12 @@ class StepReader:
         self.start()
 
     def start(self) -> None:
-        """Make the current state the one before the next step."""
+        """Make the current state the state before the next step."""
         self._places = [self._kernel.location(i) for i in range(len(self.legend.layout.instances))]
         self._ints, self._reals = self._kernel.snapshot()
 
     def read(self, number: int) -> TraceStep:
-        """The step from the previous state to the current one, which then is the one before the next step."""
+        """The step from the previous state to the current one, which becomes the state before the next step."""
         places, ints, reals = self._places, self._ints, self._reals
         self.start()
         _, action = self.legend.vectors[self._kernel.vector]
@@ -129,7 +129,7 @@ class StepReader:
         return tuple(changes)
 
     def standstill(self, system: System) -> Standstill:
-        """The present state, for those who ask who waits for whom."""
+        """The current state, as input for the analysis of which automaton waits for which."""
         kernel, legend = self._kernel, self.legend
         instances = legend.layout.instances
         return Standstill(

@@ -11,7 +11,7 @@ from roaml.jani.operators import Operator
 from roaml.smc.opcodes import WIDTH, Op
 
 BOOL, INT, REAL = "bool", "int", "real"
-"""Kinds of values. Bools and ints live in the same registers."""
+"""Kinds of values. Bools and ints share the same registers."""
 
 Number: TypeAlias = "bool | int | float"
 
@@ -103,7 +103,7 @@ class Tape:
         return register
 
     def room(self, kind: str, size: int, value: Number = 0) -> int:
-        """New consecutive registers that nothing else uses."""
+        """New consecutive registers."""
         if kind == REAL:
             self.reals += [float(value)] * size
             return len(self.reals) - size

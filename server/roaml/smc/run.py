@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a question to its answer: the number of traces, and their result.
+"""The answer to a question: the number of traces, and their result.
 
 - Whether more traces are needed is decided after whole batches, in the order of their numbers, and the size of a batch
   depends only on the traces before it. So the answer is a function of model, property, seed and options.
@@ -38,7 +38,7 @@ KEPT = 1000
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How to answer a question.
+    """The options for answering a question.
 
     Attributes:
         confidence: the probability with which the interval contains the true value.
@@ -112,7 +112,7 @@ class Tally:
         return sum(self.ends[reason].count for reason in reasons if reason in self.ends)
 
     def to_json(self) -> dict[str, object]:
-        """As a value for JSON."""
+        """The tally as a value for JSON."""
         return {
             "traces": self.traces,
             "successes": self.successes,
@@ -131,7 +131,7 @@ class Tally:
     def from_json(value: dict) -> Tally:  # type: ignore[type-arg]
         """
         Raises:
-            KeyError, TypeError, ValueError, AttributeError: this was not written by `to_json`.
+            KeyError, TypeError, ValueError, AttributeError: the value was not written by `to_json`.
         """
         count, mean, squares = value["mean"]
         return Tally(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The kind and the shape of the value of an expression, determined before any code for it is written.
 
-A kind is `bool`, `int` or `real`, for an array that of its elements; a shape is the lengths of an array in all
+A kind is `bool`, `int` or `real`, for an array the kind of its elements; a shape is the lengths of an array in all
 dimensions, () for a scalar.
 """
 
@@ -121,7 +121,7 @@ def shape(node: Expression, names: StorageNames) -> tuple[int, ...]:
 
 
 def _argument(node: Expression, type_: Type, names: StorageNames) -> Meaning:
-    """The value of a parameter where only shapes are needed."""
+    """The placeholder for the value of a parameter if only shapes are needed."""
     if isinstance(type_, ArrayType):
         return Region(kind_of(type_), shape(node, names), -1)
     return Operand(kind_of(type_), -1, known(node, names))

@@ -36,8 +36,8 @@ _Choice: TypeAlias = tuple[tuple[float, int], ...]
 class Solution:
     """Attributes:
     minimum, maximum: enclose the least and the greatest probability; None where the goal cannot be solved.
-    states: how many there are.
-    has_choices: whether in some state one can choose between steps that do not do the same.
+    states: the number of states.
+    has_choices: whether some state has choices with different effects.
     """
 
     minimum: Bounds | None
@@ -47,7 +47,7 @@ class Solution:
 
     @property
     def agrees(self) -> bool:
-        """Whether it is the same for all schedulers."""
+        """Whether the probability is the same for all schedulers."""
         if not self.has_choices:
             return True
         return (
@@ -60,10 +60,10 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
 
     Args:
         limit: the maximum number of states.
-        work: the maximum number of registers and automata, over all states that are reached by all choices.
+        work: the maximum number of values, counted over all states and choices.
 
     Returns:
-        `None` if there are more, or one of them executes an undefined operation.
+        `None` if a limit is exceeded, or a choice executes an undefined operation.
     """
     goal = compiled.goal
     is_reward = goal.step_reward >= 0 or goal.exit_reward >= 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state that does not change any more: the locations of all automata, and what each could do with the others."""
+"""A state that no longer changes: the locations of all automata, and their enabled edges."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from roaml.jani.model import Automaton, Edge, System
 class Standstill:
     """
     Attributes:
-        automata: that of each element of the system.
-        locations: where each of them is.
-        enabled: the edges there whose guards hold, of each of them.
+        automata: the automaton of each element of the system.
+        locations: the current location of each element.
+        enabled: for each element, the edges of the current location whose guards hold.
     """
 
     automata: tuple[Automaton, ...]

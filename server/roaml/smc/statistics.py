@@ -93,18 +93,19 @@ def clopper_pearson(successes: int, traces: int, confidence: float, undecided: i
 
 
 def confidence_sequence(successes: int, traces: int, confidence: float, undecided: int = 0) -> Bounds:
-    """The interval for a probability that may be looked at after each trace: with the probability `confidence` all
-    intervals of one run hold the true value, so it holds whenever one stops, and for whatever reason.
+    """The interval for a probability that may be inspected after each trace: with the probability `confidence` all
+    intervals of one run contain the true value, so it is valid whenever and why ever the run stops.
 
     The beta-binomial mixture (Robbins 1970; Howard, Ramdas, McAuliffe and Sekhon 2021, "Time-uniform, nonparametric,
-    nonasymptotic confidence sequences"): under the true probability, the likelihood of what was seen, averaged over
+    nonasymptotic confidence sequences"): under the true probability, the likelihood of the observations, averaged over
     Jeffreys' prior Beta(1/2, 1/2), over its likelihood under that probability is a martingale that begins with 1. By
-    Ville's inequality it ever reaches 1 / error with a probability of at most `error`. The interval is what it leaves.
+    Ville's inequality it ever reaches 1 / error with a probability of at most `error`. The interval contains the
+    remaining probabilities.
 
     Args:
-        successes, traces: of `traces` independent traces so many had a success.
+        successes, traces: the number of successes, and the number of independent traces.
         confidence: between 0 and 1.
-        undecided: further traces that may have been successes or not; they widen the interval.
+        undecided: the number of further traces with unknown results; they widen the interval.
     """
     if traces == 0:
         return Bounds(0.0, 1.0)
@@ -143,14 +144,14 @@ def okamoto(confidence: float, epsilon: float) -> int:
 
 
 class Mean(NamedTuple):
-    """The moments of the rewards seen so far."""
+    """The moments of the rewards so far."""
 
     number: int = 0
     mean: float = 0.0
     squares: float = 0.0
 
     def add(self, value: float) -> Mean:
-        """With one more value (Welford 1962)."""
+        """The moments with one more value (Welford 1962)."""
         number = self.number + 1
         step = value - self.mean
         mean = self.mean + step / number
@@ -167,8 +168,8 @@ class Mean(NamedTuple):
         return Bounds(self.mean - half, self.mean + half)
 
     def anytime_bounds(self, confidence: float) -> Bounds:
-        """The interval for the expected value that may be looked at after each trace; it holds for many traces, as the
-        one by Student's t does.
+        """The interval for the expected value that may be inspected after each trace; it is valid for many traces, like
+        the interval by Student's t.
 
         The asymptotic confidence sequence by a mixture of normal distributions (Waudby-Smith, Arbour, Sinha, Kennedy
         and Ramdas 2024, "Time-uniform central limit theory and asymptotic confidence sequences"), narrowest after
@@ -191,7 +192,8 @@ class Ratio(NamedTuple):
     `epsilon`".
 
     Each error has a probability of at most `error`: the ratio of likelihoods is a martingale under either hypothesis,
-    and reaches 1 / `error` with at most that probability (Ville's inequality). In between nothing is promised.
+    and reaches 1 / `error` with at most that probability (Ville's inequality). For probabilities in between, there is
+    no guarantee.
     """
 
     threshold: float
@@ -199,7 +201,7 @@ class Ratio(NamedTuple):
     error: float
 
     def decision(self, successes: int, traces: int) -> bool | None:
-        """Whether the probability is above the threshold; `None` while that is undecided."""
+        """Whether the probability is above the threshold; `None` while it is undecided."""
         high = min(self.threshold + self.epsilon, 1 - 1e-12)
         low = max(self.threshold - self.epsilon, 1e-12)
         failures = traces - successes

@@ -22,7 +22,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
         question, options: the question and the options of the traces.
 
     Raises:
-        ValueError: it does not have that form, or its numbers contradict each other; the message states where.
+        ValueError: it does not have this form, or its numbers contradict each other; the message names the part.
     """
     shape = _row(value, "tally")
     for key in ("traces", "successes", "undecided", "steps"):
@@ -32,7 +32,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     _expect(shape.get("accepted") in (None, True, False), "accepted")
     mean = shape.get("mean")
     if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(term, str) for term in mean[1:]):
-        raise ValueError("`mean` is not possible")
+        raise ValueError("`mean` is invalid")
     _whole(mean[0], "mean")
     for row in _row(shape.get("ends"), "ends").values():
         _expect(isinstance(row, list) and len(row) == 3, "ends")

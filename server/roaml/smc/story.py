@@ -18,16 +18,16 @@ from roaml.smc.standstill import Standstill
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A whole trace, and which of its steps matter.
+    """A whole trace, and its relevant steps.
 
     Attributes:
-        clock: for each step the time in seconds, None where the model has no clock.
-        relevant: the indices of the steps that matter, in their order.
-        variables: what the property reads.
-        automata: of each instance that the steps name.
+        clock: for each step the time in s; `None` if the model has no clock.
+        relevant: the indices of the relevant steps, in their order.
+        variables: the variables that the property reads.
+        automata: the automaton of each instance.
         start: the variables of the model before the first step.
-        standstill: where it has ended, if it is stuck there.
-        is_whole: whether all of it is to be shown, not only what matters.
+        standstill: its final state, if it is stuck.
+        is_whole: whether all steps are shown, not only the relevant ones.
     """
 
     property: str

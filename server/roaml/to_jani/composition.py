@@ -52,7 +52,7 @@ def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
 def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> System:
     """
     Args:
-        automata: all of them, those of events included.
+        automata: all automata, including those of events.
         buffers: event -> index of its automaton.
     """
     waited_for = {name: index for name, index in buffers.items() if table[name].receivers}

@@ -245,7 +245,7 @@ class _FlowBuilder:
 
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
-    """`cond`, and none of the earlier conditions."""
+    """The condition that `cond` holds and none of the earlier conditions does."""
     terms = [] if cond is None else [cond]
     return all_of([*terms, *(negated(condition) for condition in earlier if condition is not None)])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gives the end of time an action of its own in a JANI model, so that observers can join it
+"""Adds a separate action for the end of time to a JANI model, so that observers can join it
 (docs/spec/jani.md#observers)."""
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from roaml.jani.model import Action, Edge, Model, Sync
 from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER
 
 TIME_OVER_ACTION = "__as2fm__time_is_over"
-"""The last step of the clock. It has an action of its own, because no time passes in it."""
+"""The last step of the clock. It has a separate action, because no time passes in it."""
 
 
 def with_end_of_time(model: Model) -> Model:
-    """The same model, in which the last step of the clock has the action `TIME_OVER_ACTION`."""
+    """The model with the action `TIME_OVER_ACTION` for the last step of the clock."""
     index = next((i for i, automaton in enumerate(model.automata) if automaton.name == CLOCK), None)
     if index is None:
         return model

@@ -20,7 +20,7 @@ class EventUsage:
     Attributes:
         params: name -> type, in the order of their first sending.
         senders, receivers: indexes of automata, in order.
-        origin: of what first sends it, or else first waits for it.
+        origin: the origin of the first `<send>`; otherwise of the first transition on it.
     """
 
     event: ScxmlEvent

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The behaviour of an automaton, transition by transition: everything that is executed between two states in one
+"""The behaviour of an automaton, transition by transition: all statements that are executed between two states in one
 sequence.
 
 The body of a move is `<onexit>` of the source, the transition's own body, `<onentry>` of the target
@@ -44,7 +44,7 @@ class Move:
 class AutomatonMoves:
     """
     Attributes:
-        start: what the initial state does first; None if nothing.
+        start: the statements that the initial state executes first; `None` if there are none.
         moves: by state, in document order.
     """
 
@@ -62,7 +62,7 @@ class AutomatonMoves:
             yield "", self.start
 
     def events(self) -> dict[str, None]:
-        """The names of the events that it waits for, in order."""
+        """The names of the events that the automaton waits for, in order."""
         return dict.fromkeys(move.event for _, moves in self.moves for move in moves if move.event)
 
 

@@ -3,7 +3,7 @@
 (docs/spec/jani.md#observers).
 
 A variable is read where the translation stores the parameter of its event. If several events, one sender or a constant
-decide on the value, the observer has a variable of its own, the copy, and assigns it when an event is sent.
+determine the value, the observer has a separate variable, the copy, which it assigns when an event is sent.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class ObservedValues:
     Attributes:
         values: the value of each variable that has one, by its id, as an expression over global variables.
         copies: the copies, by the ids of the variables.
-        shapes: of the global variables, copies included.
+        shapes: the shapes of the global variables, including copies.
         declared: the declarations of the copies.
     """
 
@@ -73,7 +73,7 @@ class ObservedValues:
         }
 
     def assigned_on(self, event: PortEvent, variable: ObservedVariable) -> Iterator[tuple[LValue, Expression]]:
-        """What is assigned to the copy of a variable when an event is sent; nothing if it has no copy."""
+        """The assignment to the copy of a variable when an event is sent; empty if it has no copy."""
         copy = self.copies.get(variable.id)
         if copy is not None:
             value = self._sent(event, variable)
@@ -95,8 +95,8 @@ def observed_values(
 ) -> ObservedValues:
     """
     Args:
-        prefix: that of the names of the observer's variables.
-        shapes: of the global variables of the model.
+        prefix: the prefix of the names of the observer's variables.
+        shapes: the shapes of the global variables of the model.
         size: the capacity of arrays that are sent.
     """
     values: dict[str, Expr] = {}
@@ -152,5 +152,5 @@ def _is_zero(initial: Expr, shape: ArrayShape) -> bool:
 
 
 def _replaced(expr: Expr, value: Callable[[Name], Expr]) -> Expr:
-    """The expression with values in place of its names."""
+    """The expression with values substituted for its names."""
     return value(expr) if isinstance(expr, Name) else map_children(expr, lambda child: _replaced(child, value))

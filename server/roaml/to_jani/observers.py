@@ -73,7 +73,7 @@ def observed(
     """The model with an observer and a property for each of the properties.
 
     Args:
-        shapes: of the global variables.
+        shapes: the shapes of the global variables.
         size: the capacity of arrays that are sent.
         owners: the automaton of the machine, for each automaton that is a thread of one.
     """
@@ -97,7 +97,7 @@ def _assignments(model: Model) -> Iterator[Assignment]:
 
 
 def _free_prefix(property_: str, model: Model) -> str:
-    """A prefix of names, made of the name of a property, that no automaton and no variable of the model has."""
+    """A prefix of names, derived from the name of a property, that no automaton and no variable of the model has."""
     names = [*(automaton.name for automaton in model.automata), *(variable.name for variable in model.variables)]
     prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", property_)
     while any(name == prefix or name.startswith((f"{prefix}__", f"{prefix}.")) for name in names):

@@ -22,7 +22,7 @@ from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
 
 
 def expanded(property_: Property, variables: Mapping[str, ArrayShape]) -> Property:
-    """`variables` are the global ones."""
+    """The property with expanded comparisons; `variables` are the global variables."""
 
     def change(node: Node) -> Node:
         match node:

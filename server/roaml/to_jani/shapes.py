@@ -75,7 +75,7 @@ def zero(shape: ArrayShape) -> Expression:
 
 
 def constructed_zero(shape: ArrayShape) -> Expression:
-    """The same, written with array constructors, so that its size does not grow with the capacities."""
+    """The zero of a shape, written with array constructors, so that its size does not grow with the capacities."""
     value = _ZEROS[shape.base]
     for k in range(shape.dimensions, 0, -1):
         value = ArrayConstructor(f"{_ITERATOR}{k}", Integer(shape.capacities[k - 1]), value)

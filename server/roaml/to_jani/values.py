@@ -74,8 +74,8 @@ _MOST_IN_A_ROW = 100
 
 
 def all_of(terms: Sequence[Expression]) -> Expression | None:
-    """The conjunction of the terms; `None` if there are none. Many terms are combined in halves: readers of JANI,
-    including ours, limit the nesting of brackets."""
+    """The conjunction of the terms; `None` if there are none. Many terms are combined as a balanced tree: readers of
+    JANI, including that of this library, limit the nesting of brackets."""
     if len(terms) > _MOST_IN_A_ROW:
         middle = len(terms) // 2
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
@@ -197,7 +197,7 @@ def lengths_as(array: ArrayForm, shape: ArrayShape, dimension: int) -> Expressio
 
 
 def as_base(value: Expression, shape: ArrayShape) -> Expression:
-    """A literal as it is stored: whole numbers among reals are reals (docs/spec/jani.md#values)."""
+    """A literal as it is stored: in an array of reals, whole numbers are reals (docs/spec/jani.md#values)."""
     if shape.base is not REAL:
         return value
     match value:
@@ -395,7 +395,7 @@ def _equal_literals(left: Listed, right: Listed) -> Expression:
 
 
 def _equal_stored(left: Stored, right: Stored) -> Expression:
-    """Elements beyond the length are ignored."""
+    """The equality of two stored arrays; elements beyond the length are ignored."""
     same = [equal(left.lengths(1), right.lengths(1))]
     depth = len(left.indexes)
     capacity = min(left.shape.capacities[depth], right.shape.capacities[len(right.indexes)])

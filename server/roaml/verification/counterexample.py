@@ -18,8 +18,8 @@ from roaml.views.story import StoryLine, heading, lines
 @dataclass(frozen=True, slots=True)
 class Counterexample:
     """Attributes:
-    heading: what happens, in one sentence.
-    verdict: "failed", "passed" (where that is what must not be) or "undecided".
+    heading: a summary of the trace, in one sentence.
+    verdict: "failed", "passed" (if that contradicts the expectation) or "undecided".
     trace: its number.
     lines: one for each turn of an automaton.
     """

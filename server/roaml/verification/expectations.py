@@ -49,9 +49,9 @@ class Verdict:
     """Whether an expectation is met.
 
     Attributes:
-        is_certain: whether the whole interval says the same.
+        is_certain: whether the verdict is the same for the whole interval.
         is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
-        under: under which scheduler it is not met, in words; "" if only one is asked about.
+        under: a phrase for the scheduler under which it is not met; "" if only one scheduler is considered.
     """
 
     expectation: Expectation
@@ -89,7 +89,7 @@ class Verdict:
 def parse(text: str) -> Expectation:
     """
     Raises:
-        ValueError: this is not of the form; the message says so.
+        ValueError: the text does not have this form; the message contains the reason.
     """
     match = _FORM.fullmatch(text)
     try:

@@ -12,8 +12,8 @@ from roaml.verification.target import LineColumn, VerificationTarget
 @dataclass(frozen=True, slots=True)
 class Refusal:
     """Attributes:
-    code: the rule whose document says more.
-    place: None if it is not known.
+    code: the rule whose document explains it.
+    place: its place in the files; `None` if unknown.
     """
 
     code: str

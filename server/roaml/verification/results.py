@@ -29,12 +29,12 @@ class Exact:
 
 @dataclass(frozen=True, slots=True)
 class SampledResult:
-    """What one scheduler achieves, which was sampled for the least or the greatest probability.
+    """The probability under a scheduler that was sampled for the minimum or the maximum.
 
     Attributes:
         side: `LEAST` or `GREATEST` of `roaml.smc.lss`.
         scheduler: its number; `words` describes it.
-        stuck: its traces that got stuck, if any did.
+        stuck: the traces that got stuck, if any.
     """
 
     side: str
@@ -61,7 +61,7 @@ class Traces:
         """The steps of a trace.
 
         Args:
-            trace: its number, from 0; any trace can be walked, not only those that were made.
+            trace: its number, from 0; any trace can be simulated, not only those of the answer.
         """
         return self.recorder().walk(Recording(trace))
 
@@ -72,19 +72,21 @@ class Traces:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of one property.
+    """The result of one property.
 
     Attributes:
-        answer: by traces with uniform choices; None if only other schedulers or exact values were asked for.
+        answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
+            requested.
         verdicts: one for each expectation.
-        seconds: how long it took.
+        seconds: the duration in s.
         is_interrupted: whether the work was ended before the answer was complete.
-        sampled: by traces with sampled schedulers.
-        tried: how many schedulers these were chosen from.
-        stuck: its traces that got stuck, if any did.
-        choices: what is known of other schedulers than the uniform one; None if only uniform choices are asked about.
+        sampled: the results of traces with sampled schedulers.
+        tried: the number of schedulers from which these were selected.
+        stuck: the traces that got stuck, if any.
+        choices: the knowledge about schedulers other than the uniform one; `None` if only uniform choices are
+            considered.
         refusal: why there is no answer.
-        traces: those of `answer`, to walk them again.
+        traces: the traces of `answer`, which can be simulated again.
     """
 
     name: str

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`Pmin` and `Pmax` ask about all schedulers, traces are made with one: what that means for an answer and for what was
-expected of it.
+"""`Pmin` and `Pmax` refer to all schedulers, but traces use one: the consequences for an answer and for the verdict on
+an expectation.
 
-- That a minimum is at least a number, or a maximum at most, must hold under every scheduler. One that misses it refutes
-  it; if only uniform choices are known to meet it, it is met under uniform choices.
-- That a minimum is at most a number, or a maximum at least, holds if one scheduler shows it, be it the uniform one.
+- A lower bound on a minimum, or an upper bound on a maximum, must hold under every scheduler. One scheduler can refute
+  it; if it is only known to hold for uniform choices, it is met under uniform choices.
+- An upper bound on a minimum, or a lower bound on a maximum, is met if it holds under one scheduler, such as the
+  uniform one.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ _SLACK = 1e-6
 
 
 def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
-    """The verdict on an expectation of an answer under uniform choices, with what is known of other schedulers.
+    """The verdict on an expectation of an answer under uniform choices, with the knowledge about other schedulers.
 
     Args:
         choices: `None` if the question is about uniform choices.
@@ -58,7 +59,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
 
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:
-    """Where an extreme violates an expectation."""
+    """A phrase for the extreme that violates an expectation; "" if none does."""
     if extreme is None or extreme.found == UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
@@ -72,7 +73,7 @@ def asks_for_minimum(question: Question) -> bool:
 
 
 def may_differ(choices: Choices | None) -> bool:
-    """Whether it is unknown if other schedulers than the uniform one have another value."""
+    """Whether it is unknown if schedulers other than the uniform one have another value."""
     return choices is not None and not choices.agreement and not choices.differ
 
 

@@ -29,14 +29,14 @@ class ExactError(ValueError):
 
 
 def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> Exact:
-    """The exact least and greatest value of a property.
+    """The exact minimum and maximum of a property.
 
     Args:
-        limit: more states are refused.
+        limit: the maximum number of states.
 
     Raises:
-        ExactError: there are too many states, Storm is not there, or it does not know the model's features.
-        FaultError: the model did something that has no meaning.
+        ExactError: there are too many states, or Storm is not installed or does not support the model's features.
+        FaultError: the model executed an undefined operation.
     """
     try:
         stormpy: Any = importlib.import_module("stormpy")
@@ -71,7 +71,7 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
         if share > _SLACK:
             raise ExactError(
                 "the time ends (max_time) before a deadline of the property; the probability of such traces is up to "
-                f"{share:.6g}; leave --exact out to estimate"
+                f"{share:.6g}; omit --exact to estimate"
             )
     return Exact(extremes[0], extremes[1], states)
 

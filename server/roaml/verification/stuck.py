@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a system gets stuck, checked with every verification by traces that continue whatever the properties are.
+"""Whether a system gets stuck, checked in every verification by traces that do not stop when a property is decided.
 
 A trace is stuck if its automata wait for one another, so that the time of the model stands still for ever. The result
 of a stuck trace for a property is accidental. So it is reported beside every number, with an example: the chain of
@@ -39,11 +39,11 @@ class Stuck:
     """Traces of one question that got stuck.
 
     Attributes:
-        count: how many.
-        traces: of so many.
-        seen: the shortest one.
-        time: of the model at its end, in s; None without a clock.
-        waits: who waits for whom there.
+        count: their number.
+        traces: the number of all traces.
+        seen: the shortest stuck trace.
+        time: the time of the model at its end, in s; `None` without a clock.
+        waits: the waiting automata at its end.
     """
 
     count: int
@@ -54,7 +54,7 @@ class Stuck:
 
     @property
     def advice(self) -> str:
-        """How to fix it; "" if unknown."""
+        """The advice how to fix the system; "" if unknown."""
         return advice(self.waits)
 
     @property
@@ -64,7 +64,7 @@ class Stuck:
 
     @property
     def warning(self) -> str:
-        """What it means for the value of the property of these traces."""
+        """A sentence on the consequence for the value of the property of these traces."""
         of = f"all {self.traces:,} traces" if self.count == self.traces else f"{self.count:,} of {self.traces:,} traces"
         return f"{of} got stuck and say nothing about the property, so its value is doubtful"
 
@@ -78,7 +78,8 @@ Chain: TypeAlias = tuple[tuple[str, str, str], ...]
 
 
 def chain_of(waiting: Sequence[Wait]) -> Chain:
-    """The chain of waiting automata, independent of the time: automata, their locations, and for what they wait."""
+    """The chain of waiting automata, independent of the time: automata, their locations, and the events that they wait
+    for."""
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
@@ -158,5 +159,5 @@ def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
 
 
 def shortest(examples: Iterable[Stuck | None]) -> Stuck | None:
-    """The one with the shortest trace, which is shown as the example."""
+    """The stuck traces with the shortest example, which is shown."""
     return min((stuck for stuck in examples if stuck is not None), key=lambda stuck: stuck.seen.steps, default=None)

@@ -149,15 +149,15 @@ class Verifier:
         """The result of a property, by traces with uniform choices.
 
         Args:
-            tally: where to go on; it is changed as batches come in. If this is interrupted, `interrupted` makes a
-                result of it.
+            tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
+                creates a result from it.
             watch: called after each batch.
-            pulse: called several times a second.
+            pulse: called several times per second.
 
         Raises:
-            FaultError: a trace did something that has no meaning.
-            NoThresholdError: a sequential test is to be made, and there is no number to compare with.
-            WorkersLostError: processes die again and again.
+            FaultError: a trace executed an undefined operation.
+            NoThresholdError: a sequential test is requested, and there is no number to compare with.
+            WorkersLostError: processes end repeatedly.
         """
         self.check_method(asked)
         began = time.monotonic()
@@ -170,14 +170,14 @@ class Verifier:
     def check_method(self, asked: CompiledProperty) -> None:
         """
         Raises:
-            NoThresholdError: a sequential test is to be made, and there is no number to compare with.
+            NoThresholdError: a sequential test is requested, and there is no number to compare with.
         """
         question = asked.question
         if self.options.method == SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
     def interrupted(self, asked: CompiledProperty, tally: Tally, seconds: float) -> Result:
-        """What is known of a property so far."""
+        """The result of a property so far."""
         answer = summary(asked.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
         return replace(self._judged(asked, answer, choices, seconds), is_interrupted=True)
@@ -189,7 +189,7 @@ class Verifier:
     def sampled(
         self, asked: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
     ) -> Result:
-        """The least and the greatest probability that sampled schedulers achieve, as far as a search has come."""
+        """The minimum and maximum probability of sampled schedulers, as far as the search has progressed."""
         sampled = []
         for side, (scheduler, tally) in search.found.items():
             if tally.traces:
@@ -221,7 +221,7 @@ class Verifier:
 
         Raises:
             ExactError: see `roaml.verification.storm.exact_values`.
-            FaultError: the model did something that has no meaning.
+            FaultError: the model executed an undefined operation.
         """
         began = time.monotonic()
         exact = exact_values(self.checker, asked, max_states)
@@ -229,7 +229,7 @@ class Verifier:
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
     def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:
-        """Make traces to see whether the system gets stuck; see `stuck.can_be_stuck`."""
+        """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
         return stuck.look(self.target, self.checker, self.options, level, pulse)
 
     def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:

@@ -34,7 +34,7 @@ def marks(model: Model) -> Mapping[tuple[str, str], End]:
 
 
 def is_event(automaton: Automaton) -> bool:
-    """Whether it holds an event between sending and receiving, if the event has a receiver."""
+    """Whether an automaton buffers an event between sending and receiving, if the event has a receiver."""
     locations = {location.name for location in automaton.locations}
     sends = on_send(named(automaton.name))
     return locations <= {WAITING, RECEIVED} and any(edge.action == sends for edge in automaton.edges)
@@ -49,7 +49,7 @@ def _mark(automaton: Automaton, location: str) -> End:
 
 
 def open_conditions(model: Model) -> Mapping[str, Expression]:
-    """Property -> what says that it is open at the end of time (docs/spec/jani.md#observers)."""
+    """Property -> the condition under which it is open at the end of time (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
     names = {property_.name: open_variable(property_.name) for property_ in model.properties}
     return {property_: Name(variable) for property_, variable in names.items() if variable in variables}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events of a translated system: which variables carry them, and with which parameters they were sent last."""
+"""The events of a translated system: the variables that carry them, and the parameters with which they were sent
+last."""
 
 from __future__ import annotations
 
@@ -34,17 +35,17 @@ class EventReader:
         self._of_events = {name for name in self._values if self._is_of_event(name)}
 
     def read(self, step: TraceStep) -> None:
-        """Note what a step changes."""
+        """Record the changes of a step."""
         for change in step.changes:
             if change.variable.instance < 0:
                 self._values[change.variable.name] = change.after
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
-        """The parts of a step but for those of automata that only hold an event."""
+        """The parts of a step without those of automata that only buffer an event."""
         return [part for part in step.parts if part.automaton not in self._events]
 
     def is_event(self, name: str) -> bool:
-        """Whether an event of the system, or the automaton that holds it, has this name."""
+        """Whether an event of the system, or the automaton that buffers it, has this name."""
         return name in self._events
 
     def carries_event(self, variable: str) -> bool:
@@ -59,7 +60,7 @@ class EventReader:
         }
 
     def name(self, event: str) -> str:
-        """The name of an event without the client whom a service or action serves with it."""
+        """The name of an event without the name of the client of a service or action."""
         name, _, client = event.partition("_client_")
         return name if client in self._automata else event
 

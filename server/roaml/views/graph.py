@@ -31,7 +31,7 @@ class GraphLink:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """`initial` is the node where everything begins; "" if there is none."""
+    """`initial` is the initial node; "" if there is none."""
 
     kind: Kind
     title: str

@@ -106,7 +106,7 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
 
 
 def heading(story: Story) -> str:
-    """A sentence for what happens."""
+    """A sentence that summarises the trace."""
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"

@@ -4,7 +4,7 @@
 A translated system takes many steps for a turn: each statement is one, each event waits in a separate automaton between
 sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks down and
 statuses up. A turn is included if one of its steps is relevant, or if it receives what a relevant turn sends; turns
-that only pass something on are left out.
+that only pass an event on are left out.
 """
 
 from __future__ import annotations
@@ -115,10 +115,10 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """An event with the parameters that it was sent with, by their names.
+    """An event with the parameters with which it was sent, by their names.
 
     Attributes:
-        name: the name of the event, without that of the client that a service or action serves with it.
+        name: the name of the event, without the name of the client of a service or action.
         sender: `None` if no automaton has sent it.
     """
 
@@ -153,12 +153,12 @@ def _is_told(turn: Turn, inner: Collection[int]) -> bool:
 
 
 class _Reader:
-    """Reads the steps one after the other, and knows what holds after each.
+    """Reads the steps one after the other, and keeps the state after each.
 
     Attributes:
-        inner: the nodes of BehaviorTree.CPP that tick children, and what ticks the root. What they count is their own
-            business; a control node that the user has written is told like any other.
-        turns: but for automata that only hold an event.
+        inner: the nodes of BehaviorTree.CPP that tick children, and the automaton that ticks the root. Their turns are
+            left out; those of a control node of the user are included.
+        turns: the turns of all automata except those that only buffer an event.
     """
 
     def __init__(self, story: Story) -> None:
@@ -201,7 +201,8 @@ class _Reader:
         return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
-        """The changes of its own variables, and of the model's that carry no event; the latter are included once."""
+        """The changes of the variables of an automaton, and of those of the model that carry no event; the latter are
+        included once."""
         for change in step.changes:
             instance, name = change.variable
             is_lasting = instance < 0 and is_last and not self._events.carries_event(name)
@@ -210,13 +211,13 @@ class _Reader:
 
 
 def is_inner(automaton: Automaton) -> bool:
-    """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
+    """Whether an automaton only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
     node = NODE_AUTOMATON.fullmatch(automaton.name)
     comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
     return comes_along and any(_said(sent_by(edge.action or "")) in ("tick", "halt") for edge in automaton.edges)
 
 
 def _said(event: str) -> str:
-    """What an event of the tree says, such as `tick`; "" for other events."""
+    """The kind of an event of the tree, such as `tick`; "" for other events."""
     match = TREE_EVENT.fullmatch(event)
     return match[2] if match else ""

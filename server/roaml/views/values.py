@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of variables as people read them."""
+"""Values of variables in a readable form."""
 
 from __future__ import annotations
 

@@ -2,9 +2,9 @@
 """Which automata wait for each other in a translated system that is stuck.
 
 The search begins with the clock, or with an event that is not received. An automaton waits for the event that leads it,
-with the fewest events, to what the previous one waits for; the sender of this event is next. Conditions are evaluated
-only at the current location. Handlers of services and actions and the inner nodes of a tree, which only pass events on,
-are left out.
+with the fewest events, to the action that the previous one waits for; the sender of this event is next. Conditions are
+evaluated only at the current location. Handlers of services and actions and the inner nodes of a tree, which only pass
+events on, are left out.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ THE_CLOCK, THE_TREE, THE_BLACKBOARD = "the clock", "the tree", "the blackboard"
 
 
 class Wait(NamedTuple):
-    """An automaton that waits, and what it waits for, in words.
+    """An automaton that waits, with a description of what it waits for.
 
     Attributes:
         origin: the corresponding place in the text.
@@ -67,9 +67,9 @@ class _Link:
     """An automaton, and what it waits for: that each of `others` takes the event, or sends it.
 
     Attributes:
-        action: the action that the one before waits for; "" for the first one.
+        action: the action that the previous automaton waits for; "" for the first one.
         event: "" if it waits for a condition; None if it never takes the action.
-        others: who comes next, and the action that it must do.
+        others: the next automata, and the action that each must execute.
     """
 
     automaton: int
@@ -100,7 +100,7 @@ def rule(waiting: Sequence[Wait]) -> str:
 
 
 def advice(waiting: Sequence[Wait]) -> str:
-    """How to fix it, if the reason is a node that does not answer the tree in time; otherwise ""."""
+    """The advice how to fix a node that does not answer the tree in time; "" for other reasons."""
     late = next((wait for wait in waiting if wait.unanswered), None)
     if late is None or not any(wait.who == THE_CLOCK for wait in waiting):
         return ""
@@ -110,7 +110,7 @@ def advice(waiting: Sequence[Wait]) -> str:
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
-    """How to fix it, with the rule that documents it; "" if unknown."""
+    """The advice how to fix the system, with the rule that documents it; "" if unknown."""
     text, code = advice(waiting), rule(waiting)
     return f"help: {text}{f' [{code}]' if code else ''}" if text else ""
 
@@ -168,7 +168,7 @@ class _Chain:
         return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
 
     def blocked(self, number: int, awaited_action: str) -> Iterator[_Link]:
-        """What an automaton waits for that would send something, or let time pass."""
+        """The links from an automaton that would send an event or advance the time."""
         links: dict[tuple[str, int], _Link] = {}
         for edge in self.edges(number):
             if edge.action is None or received_by(edge.action) or (number, edge.action) not in self.ready:
@@ -191,7 +191,7 @@ class _Chain:
         yield from links.values()
 
     def waiting(self, number: int, action: str) -> Iterator[_Link]:
-        """What an automaton waits for that stays in a state until it receives something."""
+        """The links from an automaton that stays in a state until it receives an event."""
         best = self.awaited(number, action)
         if not best:
             automaton, here = self.automata[number], self.locations[number]
@@ -221,7 +221,7 @@ class _Chain:
         )
 
     def awaited(self, number: int, action: str) -> dict[str, Edge]:
-        """The events that lead an automaton in the fewest steps to what is required; "" for a condition."""
+        """The events that lead an automaton to the action in the fewest steps; "" for a condition."""
         distances = self.distances(number, action)
         here = self.locations[number]
         ways: list[tuple[tuple[int, int], Edge]] = []
@@ -235,7 +235,7 @@ class _Chain:
         return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
 
     def distances(self, number: int, action: str) -> dict[str, int]:
-        """Location -> the number of events that lead the automaton from there to one where it can do what is
+        """Location -> the number of events that lead the automaton from there to one where it can execute
         required."""
         edges = self.automata[number].edges
         distances: dict[str, int] = {}

@@ -23,10 +23,10 @@ from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_nam
 from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 MAX_DEPTH = 100
-"""Elements nested deeper than this are reported and left out of the tree."""
+"""The maximum nesting depth; deeper elements are reported and left out of the tree."""
 
 MAX_FINDINGS = 100
-"""The maximum number of errors; a text with more is unlikely to be XML and not read further."""
+"""The maximum number of errors; a text with more is unlikely to be XML and is not read further."""
 
 _MAX_SKIPPED_DEPTH = 10_000
 
@@ -515,7 +515,7 @@ class _Parser:
         """Report characters that look like a space but are not white space in XML."""
         if odd := _ODD_SPACE.search(self.text, start, end):
             place = Span(*odd.span())
-            message = f"the character U+{ord(odd[0][0]):04X} only looks like a space"
+            message = f"the character U+{ord(odd[0][0]):04X} is not white space in XML; replace it with a space"
             self.report(place, message, Fix("Write a space", (TextEdit(place, " "),)))
 
     def check_prefixes(self, element: Element) -> None:

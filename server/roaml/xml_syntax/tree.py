@@ -60,7 +60,7 @@ class Instruction(NamedTuple):
 
 
 class Element:
-    """One element.
+    """An element.
 
     Attributes:
         name: local name, without prefix.
@@ -74,7 +74,7 @@ class Element:
         close_span: the end tag; `None` if the element is self-closing or was never closed.
         close_name_span: the name in the end tag.
         self_closing: written as `<a/>`.
-        complete: the start tag has its `>` and, unless self-closing, an end tag of its own.
+        complete: the start tag has its `>` and, unless self-closing, its end tag.
     """
 
     __slots__ = (

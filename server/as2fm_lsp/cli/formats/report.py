@@ -71,8 +71,8 @@ class Entry:
         return self.fingerprint_as(self.file)
 
     def fingerprint_as(self, file: str) -> str:
-        """Does not change when lines are added or removed elsewhere: computed from the file's name, code, message and
-        the text on the line around the position."""
+        """An identifier that does not change when other lines are added or removed. It is computed from the file's
+        name, code, message and the text on the line around the position."""
         at = self.line.start + self.place.column - 1
         around = self.source.text[
             max(self.line.start, at - _CONTEXT_CHARACTERS) : min(self.line.end, at + _CONTEXT_CHARACTERS)
@@ -86,7 +86,7 @@ class CheckReport:
     """Attributes:
     checked: how many files were checked.
     limit: the least severity that makes the check fail.
-    color: whether a terminal reads it.
+    color: whether the output goes to a terminal with colors.
     """
 
     entries: Sequence[Entry]

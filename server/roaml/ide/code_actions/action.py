@@ -20,9 +20,9 @@ KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
 @dataclass(frozen=True, slots=True)
 class WorkspaceEdit:
     """Attributes:
-    edits: of files that are there, by path; those of one file do not overlap.
+    edits: of existing files, by path; those of one file do not overlap.
     created: the text of new files, by path.
-    renamed: files with their new paths. They are edited before they get them.
+    renamed: files with their new paths. They are edited before they are renamed.
     """
 
     edits: Mapping[str, tuple[TextEdit, ...]] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class CodeAction:
 
 
 def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
-    """A change that is worked out already, as `CodeAction.make`."""
+    """A change that has been computed already, in the form of `CodeAction.make`."""
     return lambda: change
 
 

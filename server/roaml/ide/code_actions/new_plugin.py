@@ -15,7 +15,7 @@ from roaml.project.paths import folder_of, name_of
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:
-    """The title and the change, if a new plugin is possible: a plugin cannot tick several children here."""
+    """The title and the change, if a new plugin is possible: the generated plugin cannot tick several children."""
     systems = analysis.memberships.get(path, ())
     if (
         not systems

@@ -110,7 +110,7 @@ def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Cod
 
 
 def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[CodeAction]:
-    """Files that may be meant instead of `path`: with the same name elsewhere, or with a similar one."""
+    """Files that are probably meant instead of `path`: with the same name elsewhere, or with a similar name."""
     written = _text_at(analysis, diagnostic)
     by_name: dict[str, list[str]] = {}
     for other in others:

@@ -19,9 +19,9 @@ _GRAMMARS: Mapping[str, Grammar] = {
 
 
 def document(analysis: Analysis, about: Symbol) -> str:
-    """What is known of the thing that an item stands for, as Markdown; "" if nothing is.
+    """The documentation of the subject of an item, as Markdown; "" if there is none.
 
-    Beyond the symbols that `describe` knows there are `element` (its path is the parent's name, its scope the schema),
+    In addition to the symbols of `describe`, there are `element` (its path is the parent's name, its scope the schema),
     `attribute` (path `PARENT/ELEMENT`), `choice` (path `PARENT/ELEMENT/ATTRIBUTE`), `function`,
     `event-variable`, `base-type` and `json`
     (scope is the text).
@@ -54,7 +54,7 @@ def document(analysis: Analysis, about: Symbol) -> str:
 
 
 def _element(grammar: Grammar, parent: str, name: str) -> ElementType | None:
-    """The element as it is inside of a parent, or else wherever it is allowed."""
+    """The element as a child of a parent; otherwise as a child of any parent."""
     outer = grammar.find(parent) if parent else None
     inner = grammar.child(outer, name) if outer else None
     return inner or grammar.find(name)

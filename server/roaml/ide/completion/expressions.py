@@ -44,7 +44,7 @@ def beginning(text: str, start: int, offset: int) -> Beginning | None:
         start: where the expression begins in it.
 
     Returns:
-        None where no name can stand: in a string or a number, or behind an entity's `&`.
+        `None` where no name is possible: in a string or a number, or after the `&` of an entity.
     """
     before = text[start:offset]
     if _in_string(before):
@@ -229,7 +229,7 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
     )
 
 
-# ----------------------------------------------------------------- wanted types
+# ----------------------------------------------------------------- required types
 
 
 def _wanted(request: Request, subject: Subject, part: str) -> Type | None:

@@ -19,7 +19,7 @@ from roaml.xml_syntax import Element
 
 
 def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """For the name of a `<field>`: the fields that are not set yet, first."""
+    """The names that a `<field>` may have: first the fields that are not set yet."""
     holder = subject.parents[-1].element if subject.parents else None
     statement = request.communicate(holder) if holder is not None else None
     if statement is None:
@@ -35,7 +35,7 @@ def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
 
 
 def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem]:
-    """Inside of a sending element: each missing field, and all of them at once."""
+    """The `<field>` elements for a sending element: each missing field, and all of them at once."""
     statement = request.communicate(element)
     if statement is None:
         return
@@ -80,7 +80,7 @@ def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
 
 
 def _all(made: Snippet, types: Mapping[str, Type], lead: str) -> Snippet:
-    """Several fields, each on a line of its own."""
+    """Several fields, each on a separate line."""
     for number, (path, type_) in enumerate(types.items()):
         made.text(lead if number or "\t" in lead else "")
         _field(made, path, type_)

@@ -35,10 +35,10 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Comp
 @dataclass(frozen=True, slots=True, eq=False)
 class _Place:
     """Attributes:
-    schema: of the object whose key, or of the value that is written.
-    inside: the object or list around.
-    span: what has been written of it, quotes included.
-    bare: no value stands behind the key.
+    schema: the schema of the object whose key is being written, or of the value.
+    inside: the enclosing object or list.
+    span: the part that has been written, including quotes.
+    bare: whether there is no value after the key.
     """
 
     grammar: JsonGrammar

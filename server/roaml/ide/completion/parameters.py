@@ -13,14 +13,14 @@ from roaml.roles import SymbolKind
 
 
 def parameter_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """For the name of a `<param>`: the parameters that the `<send>` around the caret does not send yet."""
+    """The names that a `<param>` may have: the parameters that the `<send>` around the caret does not send yet."""
     for statement in request.chart.statements if request.chart else ():
         if isinstance(statement, Send) and any(typed.element is statement.element for typed in subject.parents):
             yield from _missing(request, statement, subject)
 
 
 def parameters_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """Inside of a `<send>`: each missing parameter, and all of them at once."""
+    """The `<param>` elements for a `<send>`: each missing parameter, and all of them at once."""
     for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
             continue

@@ -30,7 +30,7 @@ _BY_TYPE = {
 
 
 def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """The files that may be meant; those that this file does not refer to yet, first."""
+    """The files that the attribute may name: first those that this file does not refer to yet."""
     analysis = request.analysis
     kinds, plugin = _wanted(subject)
     named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}

@@ -155,14 +155,14 @@ def _constants(request: Request, name: str, port: SettablePort) -> Iterator[Comp
 
 
 def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[CompletionItem]:
-    """If the port names a topic, service or action: those of the workspace."""
+    """The topics, services or actions of the workspace, if the port names one."""
     for use in outline.interfaces if outline else ():
         if use.port == key and use.kind in CHANNEL_KINDS:
             yield from channels(request, CHANNEL_KINDS[use.kind], use.type)
 
 
 def ports_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
-    """As attributes: each port that is not set, and all required ones at once."""
+    """The attributes for ports that are not set: each port, and all required ones at once."""
     element = subject.element
     assert element is not None
     given = {attribute.name for attribute in element.attributes}

@@ -82,7 +82,7 @@ class Request:
 
     @cached_property
     def forest(self) -> Forest | None:
-        """What is known of the nodes of a tree that belongs to no system."""
+        """The declarations of the nodes of a tree that belongs to no system."""
         return None if self.system_path else self.analysis.forest(self.path)
 
     @cached_property

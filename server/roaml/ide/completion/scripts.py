@@ -14,7 +14,7 @@ from roaml.text import Span
 
 
 def in_script(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """What may be written at the caret if the attribute `name` is a script; None if it is not."""
+    """The completions at the caret if the attribute `name` is a script; `None` if it is not."""
     forest, element = request.forest, subject.element
     if forest is None or element is None or not any(typed.element.name == "BehaviorTree" for typed in subject.parents):
         return None

@@ -8,7 +8,7 @@ from roaml.libraries import Node, Port
 
 
 def node(known: Node) -> str:
-    """A node: its ports, what it does, and where it is known from."""
+    """A node: its ports, its behaviour, and the source of its declaration."""
     ports = "".join(f"\n  {_line(port)}" for port in known.ports if not port.alias_of)
     kind = known.kind.value if known.kind.value in ("action", "condition", "decorator") else f"{known.kind.value} node"
     since = f" since {known.since}" if known.since else ""

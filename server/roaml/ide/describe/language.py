@@ -186,7 +186,7 @@ def event_data(struct: Struct) -> str:
 
 
 def status(called: str, value: int) -> str:
-    """A status of a tree node, where it represents a number."""
+    """A status of a tree node, as the meaning of a number."""
     return paragraphs(code(f"{called} = {value}"), "The status of a tree node.")
 
 
@@ -211,7 +211,7 @@ def value_range(type_: Type) -> str:
 
 
 def number(value: int) -> str:
-    """With a thin space between groups of three digits."""
+    """A number with a thin space between groups of three digits."""
     return f"{value:,}".replace(",", "\u202f").replace("-", "−") if abs(value) >= 10000 else str(value)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Building blocks of Markdown, and Markdown as plain text.
 
-Names and comments may contain any text, so they are escaped and cannot change what is around them. Some editors show
-HTML in Markdown, load images and follow links; no text of a file becomes a tag, an image or a link.
+Names and comments may contain any text, so they are escaped, so that they cannot affect the text around them. Some
+editors show HTML in Markdown, load images and follow links; no text of a file becomes a tag, an image or a link.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def name(text: str) -> str:
 
 
 def names(texts: Iterable[str], most: int = _MAX_NAMES) -> str:
-    """Names with commas, without duplicates; at the end of a long list the rest is only counted. "" if there are
+    """Names with commas, without duplicates; a long list ends with the number of the remaining names. "" if there are
     none."""
     different = list(dict.fromkeys(texts))
     shown = different[:most] if len(different) > most + 1 else different
@@ -93,17 +93,17 @@ def _without_tags(text: str) -> str:
 
 
 def lines(*parts: str) -> str:
-    """One below the other; empty ones are omitted."""
+    """Lines one below the other; empty lines are omitted."""
     return "  \n".join(filter(None, parts))
 
 
 def paragraphs(*parts: str) -> str:
-    """With an empty line between; empty ones are omitted."""
+    """Paragraphs separated by empty lines; empty paragraphs are omitted."""
     return "\n\n".join(filter(None, parts))
 
 
 def plain(markdown: str) -> str:
-    """The same as text without markup, for clients without Markdown."""
+    """A Markdown text without markup, for clients without Markdown."""
     pieces: list[str] = []
     done = 0
     for block in _FENCE.finditer(markdown):

@@ -66,7 +66,7 @@ def operator(symbol: str) -> str:
     known = BINARY_OPERATORS.get(symbol) or UNARY_OPERATORS.get(symbol)
     usual = known.symbol if known else symbol
     is_function = symbol in UNARY_OPERATORS
-    text = "The function of that name; angles in radians." if is_function else PROPERTIES.text(described)
+    text = "The function with this name; angles in radians." if is_function else PROPERTIES.text(described)
     return paragraphs(
         _SAYS.get(usual, text),
         lines(
@@ -154,7 +154,7 @@ def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
         return _formula(parts.get(key), depth + 1)
 
     def inner(key: str) -> str:
-        """In parentheses if an inner operator binds less tightly."""
+        """The text of an operand, in parentheses if its operator binds less tightly."""
         value = parts.get(key)
         has_two = isinstance(value, JsonObject) and value.get("left") is not None
         text = part(key)

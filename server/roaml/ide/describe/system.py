@@ -127,7 +127,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
-    """The same in fewer words, for the automata that take part."""
+    """A short description of a topic, service or action, for the automata that use it."""
     connected = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
@@ -212,7 +212,7 @@ def _ports(bound: Iterable[BoundPort], direction: str) -> str:
 
 
 def plugin(symbol: Symbol) -> str:
-    """A node that no machine of the system declares: one of BehaviorTree.CPP, or an unknown one."""
+    """A node that no machine of the system declares: either of BehaviorTree.CPP or unknown."""
     known = BEHAVIOR_TREE.elements.get(symbol.name)
     if known is not None and known.node:
         return builtin_node(known)

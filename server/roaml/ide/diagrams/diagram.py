@@ -29,7 +29,7 @@ class DiagramNodeKind(enum.Enum):
 
 
 class EdgeKind(enum.Enum):
-    """The trigger of a transition, or the relation of things in a tree or a system."""
+    """The kind of an edge: the trigger of a transition, or a relation in a tree or a system."""
 
     EVENTLESS = "eventless"
     EVENT = "event"
@@ -50,8 +50,8 @@ class DiagramNode:
     """
     Attributes:
         details: lines below the label.
-        parent: id of the node that it is drawn inside of, "" if none.
-        place: what it stands for; None if that is not written anywhere.
+        parent: the id of the enclosing node; "" if there is none.
+        place: the place in the files that it represents; `None` if there is none.
     """
 
     id: str

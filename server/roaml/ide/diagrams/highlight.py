@@ -26,14 +26,14 @@ def highlights(
     """
     Args:
         automaton: its name in the translation.
-        origin: what it has done, in the models.
-        location: where it is after that; a state, or something between two states.
+        origin: the place in the models of its last step.
+        location: its location after the step: a state, or a location between two states.
     """
     return (*_state(analysis, origin, location), *_tree_node(analysis, system, automaton))
 
 
 def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[DiagramHighlight]:
-    """The state of the machine; between two states, the one that it leaves."""
+    """The state of the machine; between two states, the state that it leaves."""
     machine = analysis.machine(origin.path)
     for chart in machine.charts if machine else ():
         named = [state for state in chart.states if state.id]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagram of a state machine: its states and transitions; each action thread in a frame of its own."""
+"""The diagram of a state machine: its states and transitions; each action thread in a separate frame."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ def _declared(analysis: Analysis, end: ChannelEndpoint) -> Location | None:
 
 
 def _events(system: System, nodes: Mapping[str, DiagramNode]) -> Iterator[DiagramEdge]:
-    """Plain events from one machine to another; all of one pair are one edge."""
+    """Plain events from one machine to another, with one edge for each pair of machines."""
     between: dict[tuple[str, str], dict[str, None]] = {}
     for event in system.events.values():
         for sender, _ in event.senders:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The result of a formatter: a layout, and the white space between the parts of a text.
+"""The interface of a formatter: a layout, and the white space between the parts of a text.
 
 A formatter only returns the content of each *gap* between two tokens, so it cannot change anything but white space.
 Gaps are written with `\\n`; `edits` converts them to the line ends of the file.

@@ -3,7 +3,7 @@
 
 - Comments, instructions, CDATA sections, character data and the elements around it are not changed, nor is anything
   below `xml:space="preserve"`. Only the tags of these elements are formatted.
-- Each child has a line of its own, except that an element on one line with one child stays on one line, and a comment
+- Each child has its own line, except that an element on one line with one child stays on one line, and a comment
   at the end of a line stays there. Several blank lines become one.
 - Attributes on several lines get one line each, below the first one or one level deeper, as in the file. A tag that is
   too long is wrapped one level deeper.

@@ -29,7 +29,7 @@ _CALLABLE = (SymbolKind.EVENT, *_INTERFACES, SymbolKind.MACHINE, SymbolKind.TREE
 
 @dataclass(frozen=True, slots=True)
 class CallHierarchyItem:
-    """A node of the graph. `span` is the whole of it, `name_span` its name."""
+    """A node of the graph. `span` covers the whole element, `name_span` its name."""
 
     symbol: Symbol
     path: str

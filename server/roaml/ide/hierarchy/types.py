@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The type hierarchy: messages and structs.
 
-The types of a type's fields or members are its subtypes, those that contain it its supertypes. ROS types are limited to
-those that the machines of the workspace use, and the types inside them.
+The types of a type's fields or members are its subtypes, the types that contain it are its supertypes. ROS types are
+limited to those that the machines of the workspace use, and the types inside them.
 """
 
 from __future__ import annotations

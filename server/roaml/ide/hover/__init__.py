@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the thing at a place, as Markdown.
+"""The hover text for a place in a file, as Markdown.
 
-- `place` looks up what is there, once; each module beside it describes one kind of thing, and none calls another.
+- `place` looks up the place once; each of the other modules describes one kind of thing, and none calls another.
 - A name says what it denotes; where there is none, elements, attributes, values, functions and operators say what their
   language says of them.
 """
@@ -25,14 +25,14 @@ from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 SEPARATOR = "\n\n---\n\n"
-"""Between the things that a name denotes in several systems."""
+"""The separator between the descriptions of a name in several systems."""
 
 _JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
 
 
 @dataclass(frozen=True, slots=True)
 class Hover:
-    """`span` is what `text` is about."""
+    """`span` is the part of the file that `text` describes."""
 
     span: Span
     text: str
@@ -55,7 +55,7 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
 
 
 def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:
-    """What is known: with a name there, only what adds to what the name says."""
+    """The descriptions of the place; if a name is there, only those that add to the description of the name."""
     if (name := _named(place)) is not None:
         yield name
     if place.kind in _JSON:
@@ -69,7 +69,7 @@ def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:
 
 
 def _named(place: Place) -> tuple[Span, str] | None:
-    """What the name at a place denotes, in each system of the file; None if nothing is known of it."""
+    """The description of the name at a place in each system of the file; `None` if there is none."""
     texts = dict.fromkeys(
         describe(place.analysis, name.symbol, place.text[name.span.start : name.span.end]) for name in place.names
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the files that a system or tree names."""
+"""Hover texts for the files that a system or tree names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from roaml.text import Span
 
 
 def listed_file(place: Place) -> tuple[Span, str] | None:
-    """The file that a path at a place names: what it is and what is in it. None if it cannot be read."""
+    """The kind and the content of the file that the path at a place names; `None` if it cannot be read."""
     analysis, path, offset = place.analysis, place.path, place.offset
     system, tree = analysis.system_file(path), analysis.tree(path)
     written = [entry.src for entry in system.inputs] if system else []

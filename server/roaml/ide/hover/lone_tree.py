@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a node or a port at a place of a tree that belongs to no system."""
+"""Hover texts for nodes and ports of a tree that belongs to no system."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from roaml.text import Span
 
 
 def of_library(place: Place) -> tuple[Span, str] | None:
-    """The node or port whose name is at a place; None if nothing is known of it, or the file belongs to a system."""
+    """The description of the node or port whose name is at a place; `None` if there is none, or if the file belongs to
+    a system."""
     is_lone = place.kind is FileKind.TREE and place.systems == (None,)
     forest, offset = place.analysis.forest(place.path) if is_lone else None, place.offset
     if forest is None:

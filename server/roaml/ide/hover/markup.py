@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the language says of elements, attributes and values."""
+"""Hover texts for elements, attributes and values, from the documentation of the schemas."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.xml_syntax import Attribute, Element
 
 
 def in_markup(place: Place) -> tuple[Span, str] | None:
-    """What is known of the tag, attribute or value at a place; None elsewhere."""
+    """The description of the tag, attribute or value at a place; `None` elsewhere."""
     element, type_ = place.elements[-1] if place.elements else (None, None)
     if element is None or type_ is None:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is at a place in a file, looked up once for all that describe it."""
+"""A place in a file, looked up once for all hover texts."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Place:
     """
     Attributes:
         kind: of the file.
-        systems: in which the file is looked at; (None) if it is in none.
-        names: what the text there denotes, in each system.
-        elements: the XML elements around, outermost first.
-        expression: the expression around.
+        systems: the systems of the file; `(None,)` if it is in none.
+        names: the meaning of the text at the place, in each system.
+        elements: the enclosing XML elements, outermost first.
+        expression: the enclosing expression.
     """
 
     analysis: Analysis

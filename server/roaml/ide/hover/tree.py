@@ -10,7 +10,7 @@ from roaml.text import Span
 
 
 def tree_node(place: Place) -> tuple[Span, str] | None:
-    """What the node becomes whose name or plugin is at a place; None if there is none."""
+    """The names in the translation of the node whose name or plugin is at a place; `None` if there is none."""
     analysis, path, offset = place.analysis, place.path, place.offset
     file = analysis.tree(path)
     for tree in file.trees if file else ():

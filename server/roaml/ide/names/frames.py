@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree with the places of all that is written in it: which text a blackboard variable or a port's constant
+"""The executed tree with the places of its parts: the text from which a blackboard variable or a port's constant
 comes from.
 
 `roaml.model.expand` puts the subtrees in place, without places in the text; here each part gets the text that it is
@@ -24,7 +24,7 @@ from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 
 Piece = tuple[str, Symbol | None, Form]
-"""A part of a name that the translation makes: its text and what that comes from, if anything."""
+"""A part of a name in the translation: its text and the symbol that it comes from, if any."""
 
 TreeKey = tuple[str, str]
 """File and ID of a tree."""
@@ -46,8 +46,8 @@ class Frame:
         expanded: the same instance without places.
         tree: of the file.
         prefix: of the full names of its variables.
-        settings: what the attributes of the subtree node, and defaults, say.
-        outer: the instance around it.
+        settings: the values from the attributes of the subtree node and from defaults.
+        outer: the enclosing instance.
         names: the variables that the tree's text mentions, also through defaults.
     """
 
@@ -74,7 +74,7 @@ class Frame:
 
     @property
     def takes_all(self) -> bool:
-        """Whether names that nothing is said of are taken from outside."""
+        """Whether names without an explicit remapping are taken from outside (automatic remapping)."""
         return self.expanded.autoremap
 
     def is_shared(self, name: str) -> bool:
@@ -94,7 +94,7 @@ class Trees:
     Args:
         outlines: of the files.
         owner: the system file, or the first tree file if there is no system.
-        is_alone: there is no system, so scripts name variables, too.
+        is_alone: whether there is no system; then scripts also name variables.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class Trees:
 
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
-        """Of each plugin and subtree, what its ports hold where a tree does not set them."""
+        """The default values of the ports of each plugin and subtree."""
         settings: dict[str, dict[str, Setting]] = {}
         for path, file in self.files.items():
             for model in file.models:
@@ -187,7 +187,7 @@ class Trees:
         return frames
 
     def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:
-        """What the names in an instance begin with, and what is said where it is used."""
+        """The prefix of the names in an instance, and the settings at the place where the instance is used."""
         if expanded.use is None or outer is None:
             return (), {}
         node = tuple(nodes(outer.tree))[expanded.use.position]
@@ -221,7 +221,7 @@ class Trees:
     # ------------------------------------------------------------- variables
 
     def variable(self, path: str, tree: str, name: str) -> Symbol:
-        """The blackboard variable of `{name}` in a tree. Variables that always share their name are one."""
+        """The blackboard variable of `{name}` in a tree. Variables that always share their name are one variable."""
         if name.startswith("@"):
             name = name[1:]
             if self.main is not None:
@@ -254,7 +254,7 @@ class Trees:
         return above
 
     def is_taken(self, symbol: Symbol, new: str) -> bool:
-        """Whether a variable named `new` would be the same as another one."""
+        """Whether a variable named `new` would be identified with another one."""
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""

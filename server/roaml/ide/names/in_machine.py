@@ -81,9 +81,9 @@ def in_machine(
 ) -> Iterator[Occurrence]:
     """
     Args:
-        owner: the system file, or the machine's own if it is looked at alone.
-        types: of the variables, per chart scope.
-        environment: what is known of the rest of the system.
+        owner: the system file, or the machine's own file if it is analysed alone.
+        types: the types of the variables, per chart scope.
+        environment: the types that other files of the system declare.
     """
     return _Machine(text, machine, path, owner, types, environment).all()
 

@@ -144,7 +144,7 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
 
 
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
-    """The part after the event. `part` is what the event carries."""
+    """The part of a name after the event. `part` is the part of the interface that the event carries."""
     if rest == ".valid":
         yield _plain(rest)
     elif variable.event in system.events:

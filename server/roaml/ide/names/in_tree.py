@@ -116,7 +116,7 @@ class _Tree:
         return None if start < 0 else decoded.span(start, start + len(name))
 
     def scripts(self, node: TreeNode, inside: str) -> Iterator[Occurrence]:
-        """The variables in scripts. Where there is no system, they have a meaning."""
+        """The variables in scripts, which have a meaning only where there is no system."""
         for attribute in script_attributes(node):
             script, _ = parsed(self.document.decoded(attribute.value_span))
             targets: set[int] = set()
@@ -159,7 +159,7 @@ class _Tree:
                 yield Occurrence(port.name.span, Symbol(path, SymbolKind.PORT, port.name.value))
 
     def defaults(self) -> Iterator[Occurrence]:
-        """Variables in the defaults of ports: each is one of every tree that does not set the port."""
+        """Variables in the defaults of ports: each is a variable of every tree that does not set the port."""
         for plugin, settings in self.trees.defaults.items():
             own = {key: setting for key, setting in settings.items() if setting.path == self.path}
             users = [

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a place to all places that mean the same thing.
 
-A file may belong to several systems, and its characters may mean something else in each. Everything that any of them
-ties together is one `SymbolGroup`: whoever renames one of its places must rename them all.
+A file may belong to several systems, and a name in it may mean different things in them. All places that any of them
+identifies are one `SymbolGroup`: a rename must change all of them.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class SymbolUse:
 
 @dataclass(frozen=True, eq=False)
 class SymbolGroup:
-    """All that is tied together. `symbols` begins with what stands at the place that was asked about.
+    """Symbols that denote the same thing. `symbols` begins with those at the requested place.
 
     `uses` are sorted by file and place, each place once.
     """
@@ -68,7 +68,7 @@ def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurren
 
 
 def thing_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup | None:
-    """All that means the same as the name at a caret; None if no name stands there."""
+    """The group of the name at a caret; `None` if there is no name."""
     occurrences = occurrences_at(analysis, path, offset)
     return thing(analysis, (occurrence.symbol for occurrence in occurrences)) if occurrences else None
 
@@ -100,7 +100,7 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
 
 
 def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
-    """The files that can use a symbol, as they are in the relevant systems."""
+    """The files that can use a symbol, each with the relevant systems."""
     if symbol.kind in _IN_ONE_FILE:
         for system in analysis.systems_of(symbol.path):
             yield symbol.path, uses(analysis, symbol.path, system)

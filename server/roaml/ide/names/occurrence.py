@@ -36,7 +36,7 @@ NOT_OURS = frozenset((SymbolKind.FIELD, SymbolKind.ROS_TYPE))
 
 
 class Access(enum.Enum):
-    """What a use does with the symbol: names it, reads or receives it, or writes or sends it."""
+    """The kind of a use: it names the symbol, reads or receives it, or writes or sends it."""
 
     TEXT = "names it"
     READ = "reads it"
@@ -48,8 +48,8 @@ class Form(enum.Enum):
 
     AS_IS = "as it is"
     SANITISED = "an interface name in an event name: `/` becomes `__`"
-    SAFE = "an automaton name in an event name: other characters become `_`"
-    WORD = "a subtree in a variable name: other characters than letters and digits become `_`"
+    SAFE = "an automaton name in an event name: characters that are not allowed become `_`"
+    WORD = "a subtree in a variable name: characters other than letters and digits become `_`"
     FLAT = "a parameter in a variable name: `.` becomes `__`"
 
 
@@ -72,7 +72,7 @@ def parameter(owner: str, event: str, name: str) -> Symbol:
 
 
 def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
-    """A node that has a name of its own; `position` as in `roaml.model.expand.Source`."""
+    """A node that has its own name; `position` as in `roaml.model.expand.Source`."""
     return Symbol(path, SymbolKind.TREE_NODE, name, f"{tree}:{position}")
 
 

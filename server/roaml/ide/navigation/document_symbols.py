@@ -109,7 +109,7 @@ def _state(state: State) -> DocumentSymbol:
 
 
 def _handler(handler: Handler) -> DocumentSymbol:
-    """Named by its event: that of a plain transition, or the element with what it refers to."""
+    """The name is the event of a plain transition, or the element with the name to which it refers."""
     element = handler.element
     words = [name.value for name in (handler.handle, handler.child) if name]
     if element.name != "transition":
@@ -131,7 +131,7 @@ def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
 
 
 def _node(node: TreeNode) -> DocumentSymbol:
-    """Named by its name; its plugin follows."""
+    """The name of the node, followed by its plugin."""
     plugin = node.plugin.value if node.plugin else node.element.name
     name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
     kind = DocumentSymbolKind.CONTROL if node.children else DocumentSymbolKind.LEAF
@@ -169,7 +169,7 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
 
 
 def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
-    """From the text, not from the model, which contains only the properties without errors."""
+    """The properties in the text, including those with errors, which the model does not contain."""
     json = analysis.json(path)
     entries = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
     for entry in entries.items if isinstance(entries, JsonArray) else ():

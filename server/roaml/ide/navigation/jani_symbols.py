@@ -76,7 +76,7 @@ def _automaton(item: JsonValue) -> DocumentSymbol | None:
 
 
 def _edge(item: JsonValue) -> DocumentSymbol | None:
-    """Named by its action; its source, its destinations and its guard follow."""
+    """The action of the edge, followed by its source, its destinations and its guard."""
     parts = members(item)
     location, action = parts.get("location"), parts.get("action")
     if not isinstance(location, JsonString):

@@ -45,7 +45,7 @@ class RenameRefusal:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """The place and the current name of what is renamed."""
+    """The place and the current name of the symbol to rename."""
 
     span: Span
     name: str

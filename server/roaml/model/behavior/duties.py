@@ -56,7 +56,7 @@ def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
 
 def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
     """The configurations to which a tick or halt (a request, a goal) may come, and from which no sequence of possible
-    steps leads to a handler for it. Meanwhile the tree asks nothing else."""
+    steps leads to a handler for it. The tree sends nothing else until the answer."""
     waiting = frozenset(
         n
         for n, c in enumerate(behavior.configurations)
@@ -91,7 +91,7 @@ def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
 def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
     """The steps after which the answer never comes.
 
-    If the answer was omitted early, but a further event was still to follow (the response to a request that was sent),
+    If the answer was omitted early, but a further event was still expected (the response to a request that was sent),
     the last step is reported, because the answer is missing there. But if the machine waits for the event in a state
     that handles the next tick, the answer is missing in the first step.
     """

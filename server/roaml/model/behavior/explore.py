@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
-A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step handles an
-event, or none, executes everything in the transition (docs/spec/machines.md#onentry) and ends in a configuration. The
-history decides which events may come: a response only after its request, a tick only when the last one is answered.
+A configuration is a state, the answers that are owed and awaited there (`phases`), and the knowledge about values. A
+step handles an event, or none, executes everything in the transition (docs/spec/machines.md#onentry) and ends in a
+configuration. The history decides which events may come: a response only after its request, a tick only when the last
+one is answered.
 
 - The graph contains every path that the chart can take, and it may contain paths that it cannot take.
 - Its size is bounded. If the knowledge about values has too many variants, it is discarded; a chart that is still too
@@ -72,16 +73,16 @@ class Fault:
     """Something that must not be sent at this point of a path.
 
     Attributes:
-        kind: "unasked" (nothing waits for the answer: it has been given, or was not asked for), "wrong-kind" (a tick
+        kind: "unasked" (nothing waits for the answer: it was sent before, or never requested), "wrong-kind" (a tick
             that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored),
             "foreign" (a value that is not the id of a goal), "other" (the id of a goal of another action), "earlier"
-            (the id of an earlier goal in place of the one that has just come), "rejected" or "undecided" (a result for
-            such a goal), or "thread" (a thread that does not exist).
-        duty: what is answered.
-        statement: what sends it.
-        certain: no condition on the way decides on it.
-        source: for "foreign" the expression that the variable was given, for "earlier" a variable that holds the id of
-            the goal that has come, if there is one.
+            (the id of an earlier goal instead of the goal that has just arrived), "rejected" or "undecided" (a result
+            for such a goal), or "thread" (a thread that does not exist).
+        duty: the duty that is answered.
+        statement: the statement that sends the answer.
+        certain: whether it does not depend on a condition.
+        source: for "foreign" the expression that the variable was given, for "earlier" a variable that contains the id
+            of the goal that has arrived, if there is one.
     """
 
     kind: str
@@ -122,14 +123,14 @@ class BehaviorStep:
     """
     Attributes:
         source, target: configurations, as indexes.
-        event: what is received; None for a transition without event.
-        handler: that receives it; where no condition holds the last one that was tried.
-        choice: which of the handler's targets is taken.
-        ignored: no condition holds, so that the event is consumed without effect
+        event: the received event; `None` for a transition without event.
+        handler: the handler that receives it; if no condition holds, the last one that was tried.
+        choice: the index of the handler's target that is taken.
+        ignored: whether no condition holds, so that the event is consumed without effect
             (docs/spec/semantics.md#discarded-events).
-        sent: what is sent, in order.
-        faults: what is wrong in it.
-        certain: no condition inside its bodies decides on where it leads.
+        sent: the events that are sent, in order.
+        faults: the errors in it.
+        certain: whether its target does not depend on a condition inside its bodies.
     """
 
     source: int
@@ -148,12 +149,12 @@ class Behavior:
     """The graph of a chart.
 
     Attributes:
-        configurations: the first ones are those in which it starts.
-        starts: how many these are.
+        configurations: all of them, the initial ones first.
+        starts: the number of initial configurations.
         steps: all of them; `outgoing` and `incoming` are their indexes by configuration.
-        at_start: what the `<onentry>` of the initial state sends, and what is wrong in it.
+        at_start: the events that the `<onentry>` of the initial state sends.
         statuses: the answers that each `<bt_return_status>` may certainly give.
-        approximate: some of what is known was forgotten, so that paths that depend on conditions may not exist.
+        approximate: whether some knowledge was discarded, so that paths that depend on conditions may not exist.
     """
 
     chart: Chart
@@ -181,7 +182,7 @@ def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior |
     It is cached with the chart and discarded with it.
 
     Args:
-        fine: follow values from step to step. This takes longer and leaves out more of the impossible paths, so it is
+        fine: follow values from step to step. This takes longer and excludes more of the impossible paths, so it is
             used for charts that may contain an error.
     """
     known: dict[bool, Behavior | None] = chart.__dict__.setdefault("behavior", {})
@@ -214,7 +215,7 @@ class _Path(NamedTuple):
         return next((variable for (kind, variable), id_ in self.phases if kind == "id" and id_ == held), "")
 
     def with_ids(self, before: str, after: str) -> _Path:
-        """With another phase for each variable that holds the id of a goal in this phase."""
+        """This path with the phase `after` instead of `before` for each variable that holds the id of a goal."""
         changed = ((key, after if key[0] == "id" and held == before else held) for key, held in self.phases)
         return self._replace(phases=tuple(changed))
 
@@ -268,9 +269,9 @@ _ANSWERABLE = (
 """Events that are lost if no condition holds, and that a client or parent waits for."""
 _CODES = (4, 5, 6)
 _ANSWERED = {ProtocolPart.RESPONSE: "response", ProtocolPart.RESULT: "outcome", ProtocolPart.GOAL_RESPONSE: "decision"}
-"""What a client waits for, by the event that it receives."""
+"""The answers that a client waits for, by the event that it receives."""
 _ARRIVED = {ProtocolPart.GOAL: "asked", ProtocolPart.THREAD_START: "accepted"}
-"""What the id of a goal is that an event brings."""
+"""The state of the goal whose id an event contains."""
 
 
 @dataclass(eq=False)
@@ -554,7 +555,7 @@ class _Explorer:
         return True
 
     def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
-        """The result depends on few phases only, so it is shared by many configurations."""
+        """Add the reactions of a group to an event. They depend on few phases, so many configurations share them."""
         taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
         inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
         key = (group.state, group.event, inside, taken.knowledge)
@@ -609,7 +610,7 @@ class _Explorer:
                     self.found.append((group.state.id.value, path, handlers[-1], 0, True))
 
     def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
-        """A goal is accepted, so that its result is awaited, or rejected."""
+        """Add the reactions in which a goal is accepted, so that its result is awaited, and rejected."""
         assert group.event is not None
         for choice, phase in ((0, "awaited"), (1, "")):
             self._execute(group, handler, [taken.at("outcome", group.event.name, phase)], choice)
@@ -849,7 +850,7 @@ class _Explorer:
         return path
 
     def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, statuses: tuple[str, ...]) -> _Path:
-        """A goal must be named by the id with which it arrived."""
+        """Check that a goal is named by the id with which it arrived; return the path with the fault, if any."""
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:
             return path

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can happen in a system while its clock stands still, and what comes only when time passes
+"""The events that can occur in a system without the passing of time, and those that need time
 (docs/spec/semantics.md#time).
 
 During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
-So a plugin can wait only for what it triggers itself: its request, the server's own requests, and so on.
+So a plugin can wait only for events that it triggers itself: by its request, the server's own requests, and so on.
 
 If an unreadable part of the system might send the awaited event, the event is assumed to come at once, and so is
 everything from a machine of which a part that handles events cannot be read.
@@ -60,8 +60,8 @@ class EventDelay:
     Attributes:
         automaton: the automaton that waits for it.
         event: the awaited event.
-        promise: for an answer, the one that does not come at once; `server` sends it.
-        next: what that waits for in turn; `None` for a timer.
+        promise: the delayed answer, if the event is an answer; `server` sends it.
+        next: the delay of the event that this depends on; `None` for a timer.
     """
 
     automaton: SystemAutomaton
@@ -73,7 +73,7 @@ class EventDelay:
 
 @dataclass(eq=False)
 class _Solver:
-    """The least solution of a system of facts "this event comes to this automaton", found by iteration."""
+    """The least solution of a system of facts "this event reaches this automaton", found by iteration."""
 
     system: System
     holds: Callable[[_Solver, int, ProtocolEvent], bool]
@@ -105,7 +105,7 @@ class _Solver:
     def senders(
         self, automaton: SystemAutomaton, event: ProtocolEvent
     ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
-        """The automata that may send what arrives at `automaton` as `event`, with the event that they send."""
+        """The automata that may send an event that `automaton` receives as `event`, with the event as they send it."""
         if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
@@ -141,7 +141,7 @@ def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent)
 
 @dataclass(eq=False)
 class Instants:
-    """What can happen after `plugin` has been ticked or halted, without any time passing."""
+    """The events that can occur after `plugin` has been ticked or halted, without the passing of time."""
 
     system: System
     plugin: SystemAutomaton
@@ -152,7 +152,7 @@ class Instants:
         self.below = {id(automaton) for automaton in _below(self.system, self.plugin)}
 
     def comes(self, event: ProtocolEvent) -> bool:
-        """Whether an event that the plugin waits for can come."""
+        """Whether an event that the plugin waits for can arrive."""
         return self.solver.solve(self.own, event)
 
     def possible(self, step: BehaviorStep) -> bool:
@@ -203,7 +203,7 @@ class Instants:
         return not any(all(self.solver.read(number, event) for event in needs) for needs in promise.needs)
 
     def delay(self, event: ProtocolEvent) -> EventDelay:
-        """Why an event does not come."""
+        """The reason why an event does not arrive."""
         self.comes(event)
         return self._delay(self.plugin, event, frozenset())
 
@@ -225,14 +225,14 @@ class Instants:
         return EventDelay(automaton, event)
 
     def _first(self, automaton: SystemAutomaton, needs: Needs) -> ProtocolEvent:
-        """The first event that does not come, of the alternative with the fewest events."""
+        """The first event that does not arrive, of the alternative with the fewest events."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
 
 
 def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
-    """Whether an event may come from an unreadable part."""
+    """Whether an unreadable part may send an event."""
     if event.part is ProtocolPart.EVENT:
         return system.may(SENDS, event.name)
     if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
@@ -254,7 +254,7 @@ def is_readable(system: System, automaton: SystemAutomaton) -> bool:
 
 
 def promises(server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
-    """The answers of a server that a client receives as `event` and that do not come at once."""
+    """The delayed answers of a server that a client receives as `event`."""
     for chart in server.automaton.outline.charts:
         for promise in chart.promises:
             if promise.duty == (_PROMISED[event.part], server.use.handle):

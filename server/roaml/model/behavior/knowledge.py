@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known about values on a path: which conditions have held, and which constants have been assigned.
+"""The knowledge about values on a path: the conditions that have held, and the constants that have been assigned.
 
 - A `Knowledge` is a conjunction with one `Domain` for each term (`level`, `_res.success`, `a + b`, `v.length`); a term
   without a domain may have any value. It is immutable.
-- It never excludes a possible value: an expression that is not understood adds nothing.
+- It never excludes a possible value: an unsupported expression adds no knowledge.
 - Two terms that are compared with each other have a domain as well: a subset of `<`, `=`, `>`.
 """
 
@@ -70,7 +70,7 @@ class Domain:
         return above and below
 
     def narrowed(self, is_integer: bool) -> Domain | None:
-        """In its simplest form; `None` if no value is left. `is_integer` means that the values are integers."""
+        """The domain in its simplest form; `None` if it is empty. `is_integer` means that the values are integers."""
         if self.only is not None:
             only = frozenset(value for value in self.only if self.admits(value))
             return Domain(only) if only else None
@@ -108,18 +108,18 @@ class _Entry:
 @dataclass(frozen=True, slots=True)
 class Knowledge:
     entries: tuple[_Entry, ...] = ()
-    """Sorted by term."""
+    """The entries of a conjunction, sorted by term."""
 
     def of(self, term: str) -> Domain | None:
         return next((entry.domain for entry in self.entries if entry.term == term), None)
 
     def without(self, variable: str) -> Knowledge:
-        """Without the terms that contain a variable."""
+        """The knowledge without the terms that contain a variable."""
         kept = tuple(entry for entry in self.entries if variable not in entry.roots)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
     def within(self, variables: frozenset[str]) -> Knowledge:
-        """Only the terms whose variables are all among these."""
+        """The knowledge about the terms whose variables are all among these."""
         kept = tuple(entry for entry in self.entries if entry.roots <= variables)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
@@ -323,7 +323,7 @@ class ConditionFacts:
         return (after if domain == Domain() else after._with(root, frozenset((root,)), domain),)
 
     def know(self, knowledge: Knowledge, term: str, domain: Domain) -> Knowledge:
-        """With a domain for a variable or for `_event` data."""
+        """The knowledge with a domain for a variable or for `_event` data."""
         return knowledge._with(term, frozenset((term.partition(".")[0],)), domain)
 
     def _is_logical(self, expr: Expr) -> bool:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The part of a graph that other machines use: what each answer waits for, and what makes a machine send something.
+"""The part of a graph that other machines use: the events that each answer needs, and those on which a machine sends
+events.
 
 It contains names of states and handles, but no positions, so most changes of a file do not change it.
 """
@@ -15,7 +16,8 @@ from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
-"""Alternatives: each is a set of events that together are sufficient. Without an alternative, it never comes."""
+"""Alternatives: each is a set of events that together are sufficient. Without an alternative, the event never
+occurs."""
 
 AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
@@ -34,14 +36,14 @@ REPEATED = (
 
 @dataclass(frozen=True, slots=True)
 class Promise:
-    """An answer of a server that does not come at once.
+    """A delayed answer of a server.
 
     Attributes:
         duty: "request", "goal" or "result".
-        state: where the machine waits; `scope` distinguishes the threads of a file.
+        state: the state in which the machine waits; `scope` distinguishes the threads of a file.
         taken: whether the request has been received; otherwise the machine does not even handle it there.
         busy: whether the result of an earlier goal is still owed there.
-        needs: what has to happen before the answer is sent, or before the request is handled.
+        needs: the events that must occur before the answer is sent, or before the request is handled.
     """
 
     duty: Duty
@@ -56,9 +58,9 @@ class Promise:
 class ChartOutline:
     """
     Attributes:
-        promises: the answers that do not come at once, for each configuration in which they are awaited.
+        promises: the delayed answers, for each configuration in which they are awaited.
         reactions: pairs: on the first event, in some state, the second one is sent.
-        repeats: for each event that is sent, what has to happen before it is sent again.
+        repeats: for each event that is sent, the events that must occur before it is sent again.
     """
 
     promises: tuple[Promise, ...]
@@ -84,8 +86,8 @@ def summarise(behavior: Behavior) -> ChartOutline:
 
 @dataclass(frozen=True, slots=True)
 class _Edge:
-    """Steps that are equivalent here. `event` is a bit, 0 for none; `taken` and `sent` are what is received and
-    sent."""
+    """Steps that are equivalent here. `event` is a bit, 0 for none; `taken` and `sent` are the events that are received
+    and sent."""
 
     source: int
     target: int
@@ -208,7 +210,7 @@ class _Summary:
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:
-    """Without sets that contain another one; if there are many, only the smallest."""
+    """The sets without those that contain another one; if there are many, only the smallest."""
     smallest: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
         if mask.bit_count() > MOST_EVENTS:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about ticks, halts, requests and goals that a machine has to answer."""
+"""Rules about ticks, halts, requests and goals that a machine must answer."""

@@ -18,7 +18,7 @@ from roaml.rules.support.asynchronous import rewritten
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A tick or halt must be answered in the instant in which it arrives; otherwise the clock of the model stops
+    """Report ticks and halts that are not answered in the instant in which they arrive: the clock of the model stops
     (docs/spec/semantics.md#time)."""
     system = context.system
     if system is None:

@@ -19,7 +19,7 @@ KINDS = ("unasked", "wrong-kind")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """An answer that is sent twice, or that nothing has asked for, is used as the answer to the next question."""
+    """Report answers that are sent twice or without a request: they are used as the answer to the next request."""
     told: set[tuple[Handler, Duty]] = set()
     in_tree = bool(plugins(context))
     for behavior in behaviors(context):
@@ -112,7 +112,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
 
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
-    """The statement that has answered the question before, in the same step or in the nearest step that leads to it."""
+    """The statement that answered the request before, in the same step or in the nearest step that leads to it."""
     if fault.kind == "wrong-kind":
         return None
     events = _answers(fault)
@@ -216,4 +216,4 @@ def _is_last(handler: Handler, statement: Statement) -> bool:
     return any(statement in target.body for target in handler.targets)
 
 
-RULE = Rule("repeated-answer", Severity.WARNING, "Something is answered twice, or without a question.", machine=check)
+RULE = Rule("repeated-answer", Severity.WARNING, "A machine answers twice, or without a request.", machine=check)

@@ -13,7 +13,7 @@ from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """In BehaviorTree.CPP, only action and control nodes may return RUNNING."""
+    """Report conditions that return RUNNING: in BehaviorTree.CPP, only action and control nodes may."""
     used = next((a for a in plugins(context) if a.instance is not None and a.instance.condition), None)
     if used is None:
         return

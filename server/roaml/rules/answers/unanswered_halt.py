@@ -28,7 +28,7 @@ from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A plugin whose parent halts it must answer; otherwise the parent waits for ever
+    """Report plugins that do not answer a halt: their parent waits for ever
     (docs/spec/plugins.md#protocol)."""
     halted = list(_halted(context))
     if not halted:

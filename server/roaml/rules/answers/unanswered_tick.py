@@ -28,7 +28,7 @@ ANSWER = '<bt_return_status status="SUCCESS" />'
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A plugin that is used in the tree and does not handle or answer a tick stops the whole tree."""
+    """Report plugins in the tree that do not handle or answer a tick: they stop the whole tree."""
     automata = plugins(context)
     if not automata:
         return

@@ -13,7 +13,7 @@ from roaml.rules.support.answers import behaviors, place
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Threads are numbered from 0; a start with another number reaches no thread."""
+    """Report starts of threads with a number that no thread has; threads are numbered from 0."""
     for behavior in behaviors(context):
         told: set[Statement] = set()
         for step in behavior.steps:
@@ -32,9 +32,9 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
         "so no thread receives this start; use the number of an existing thread, or raise `n_threads`"
     )
     count = thread.element.get("n_threads")
-    related = [Related(statement.element.name_span, "it is started here")]
+    related = [Related(statement.element.name_span, "started here")]
     related += [Related(count.value_span, "the number of threads")] if count else []
     return RULE.at(place(step.handler, statement), message, related=related)
 
 
-RULE = Rule("unknown-thread", Severity.WARNING, "A thread is started that does not exist.", machine=check)
+RULE = Rule("unknown-thread", Severity.WARNING, "A machine starts a thread that does not exist.", machine=check)

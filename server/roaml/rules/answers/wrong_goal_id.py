@@ -34,7 +34,7 @@ specific."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A goal has the id that it arrived with; an answer with another id reaches another client, or none."""
+    """Report answers with an id other than that with which the goal arrived: they reach another client, or none."""
     for behavior in behaviors(context):
         told: set[tuple[str, str]] = set()
         for step, fault in _faults(behavior).values():
@@ -74,7 +74,7 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
         )
     why = _WHY[fault.kind].format(id=variable, source=fault.source, advice=advice)
     message = f"`<{statement.element.name}>` names the wrong goal: {why}"
-    related = [Related(statement.element.name_span, "it is used here")]
+    related = [Related(statement.element.name_span, "used here")]
     return RULE.at(place(step.handler, statement), message, *_fixes(context, step, fault, statement), related=related)
 
 
@@ -157,4 +157,4 @@ def _store(context: MachineContext, step: BehaviorStep, variable: str) -> Iterat
         yield Fix(f"Store the goal id in `{variable}`", (edit,))
 
 
-RULE = Rule("wrong-goal-id", Severity.WARNING, "A goal is named by an id that is not its own.", machine=check)
+RULE = Rule("wrong-goal-id", Severity.WARNING, "An answer names a goal by a wrong id.", machine=check)

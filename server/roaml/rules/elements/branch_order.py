@@ -35,4 +35,4 @@ def _unwrapped(marker: Element) -> Iterator[Fix]:
         yield Fix(f"Close `<{marker.name}/>` before its content", (close, TextEdit(marker.close_span, "")))
 
 
-RULE = Rule("branch-order", Severity.ERROR, "The parts of an `<if>` are not in order.", machine=check, plain=True)
+RULE = Rule("branch-order", Severity.ERROR, "The branches of an `<if>` are not in order.", machine=check, plain=True)

@@ -48,7 +48,8 @@ def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
 
 
 def _known(context: TreeContext, node: TreeNode, forest: Forest) -> Iterator[Finding]:
-    """Without a system, libraries and models say how many; otherwise only the kind that the node is written as."""
+    """Check a node of a tree without a system: libraries and models define the number of children, otherwise its kind
+    does."""
     known = forest.known_node(node)
     if known is not None:
         yield from _counted(context, node, *known.children)
@@ -66,7 +67,7 @@ def _counted(context: TreeContext, node: TreeNode, least: int, most: int) -> Ite
                 node.children[0].element.name_span, f"`{name}` allows no children", _without(context, node, 0)
             )
     elif count > most:
-        message = f"`{name}` has {_children(most)}: this is one more"
+        message = f"`{name}` allows only {_children(most)}"
         yield RULE.at(node.children[most].element.name_span, message, _without(context, node, most))
     elif count < least:
         yield _too_few(node, least, most)

@@ -30,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
-    """Two values are legal; the attribute takes precedence (docs/spec/files.md#attribute-or-child)."""
+    """Report the ignored one of two values; the attribute takes precedence (docs/spec/files.md#attribute-or-child)."""
     return RULE.at(
         child.name_span,
         f"`{child.name}` is ignored: the attribute of the same name takes precedence",

@@ -34,8 +34,8 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """The system decides in which dialect its machines are written (docs/spec/files.md#dialects); the current dialect
-    has only one root."""
+    """Report the older root of machines. The system determines the dialect (docs/spec/files.md#dialects); the current
+    dialect has only one root."""
     machine = context.machine
     if context.system is not None and not context.older and machine.root != ROOT:
         message = f"machines of a `<roaml>` system need the root `<{ROOT}>`, not `<{machine.root}>`"
@@ -59,14 +59,14 @@ def check_system(context: SystemContext) -> Iterator[Finding]:
 
 
 def _is_newer_tree(root: Element | None) -> bool:
-    """Whether a tree declares a format in which older spellings are not valid any more."""
+    """Whether a tree declares a format in which older spellings are no longer valid."""
     version = root.get("BTCPP_format") if root else None
     return version is not None and version.value.strip() not in ("", "3")
 
 
 def _element(context: FileContext, element: Element, type_: ElementType, parent: Element | None) -> Finding:
     if parent is not None and parent.find(type_.use) is not None and context.grammar is not BEHAVIOR_TREE:
-        message = f"`<{element.name}>` is ignored: it is the older name of `<{type_.use}>`, which is given as well"
+        message = f"`<{element.name}>` is ignored: it is the older name of `<{type_.use}>`, which is also given"
         return _unread(context, element.name_span, message, element.span)
     message = f"`<{element.name}>` is now called `<{type_.use}>`"
     # The root decides how the other files of the system are read, so it must be changed last.
@@ -77,7 +77,7 @@ def _element(context: FileContext, element: Element, type_: ElementType, parent:
 
 def _attribute(context: FileContext, element: Element, attribute: Attribute, known: AttributeType) -> Iterator[Finding]:
     if known.use and element.get(known.use) is not None:
-        message = f"`{attribute.name}` is ignored: it is the older name of `{known.use}`, which is given as well"
+        message = f"`{attribute.name}` is ignored: it is the older name of `{known.use}`, which is also given"
         yield _unread(context, attribute.name_span, message, attribute.span)
     elif known.use:
         fix = Fix(f"Change to `{known.use}`", (TextEdit(attribute.name_span, known.use),), safe=True)

@@ -31,7 +31,7 @@ def _check(context: MachineContext, choice: If) -> Iterator[Finding]:
     fixes = [remove] if useless else []
     for branch in choice.branches:
         if not branch.body and not _content(parts, branch.element):
-            message = f"`<{branch.element.name}>` has no content; a part with a condition needs content"
+            message = f"`<{branch.element.name}>` has no content; a branch with a condition needs content"
             yield RULE.at(branch.element.name_span, message, *fixes)
 
 
@@ -41,4 +41,4 @@ def _content(parts: list[Element], marker: Element) -> bool:
     return bool(following) and following[0].name not in MARKERS
 
 
-RULE = Rule("empty-branch", Severity.ERROR, "A part of an `<if>` has no content.", machine=check)
+RULE = Rule("empty-branch", Severity.ERROR, "A branch of an `<if>` has no content.", machine=check)

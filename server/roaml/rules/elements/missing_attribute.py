@@ -35,7 +35,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """Attributes that the schema cannot require, because a child element may replace them."""
+    """Check attributes that the schema cannot require, because a child element may replace them."""
     for declaration in context.machine.declarations:
         if declaration.kind is not SymbolKind.TIMER:  # invalid-rate reports these
             yield from _interface(declaration)

@@ -44,7 +44,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """Children that the schema cannot limit, because it allows children in any order."""
+    """Check children that the schema cannot require, because it allows children in any order."""
     for chart in context.machine.charts:
         element = chart.element
         states = any(child.name == "state" for child in element.elements)
@@ -56,7 +56,7 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
-    """The datamodel of a machine is optional, that of a thread is not (docs/spec/ros.md#threads)."""
+    """Report threads without a datamodel; that of a machine is optional (docs/spec/ros.md#threads)."""
     element = thread.element
     needs_datamodel = element.complete and element.find("datamodel") is None
     if needs_datamodel and not misspelled.among(element.elements, "datamodel", HL_SCXML):

@@ -40,7 +40,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
-    """Children that the schema cannot limit, because it allows children in any order."""
+    """Check children whose number the schema cannot limit, because it allows children in any order."""
     for element, children in _families(context.document):
         for name in ONCE.get(element.name, ()):
             same = [child for child in children if child.name == name]

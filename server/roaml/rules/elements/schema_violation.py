@@ -19,8 +19,8 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def _told_elsewhere(context: FileContext, violation: SchemaViolation) -> bool:
-    """Whether another rule reports it: branch-order the order in an `<if>`, transition-target what is beside a
-    `<target>`."""
+    """Whether another rule reports the violation: branch-order the order in an `<if>`, transition-target the siblings
+    of a `<target>`."""
     name = violation.element.name
     return context.grammar is HL_SCXML and (name == "if" or name in HL_SCXML.groups["Transition"])
 

@@ -36,6 +36,6 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 _PORTS = {"bidirectional_port": "inout_port"}
-"""Names of ports in models that BehaviorTree.CPP does not know, with the right ones."""
+"""Names of ports in models that BehaviorTree.CPP does not support, with the correct names."""
 
-RULE = Rule("unknown-element", Severity.ERROR, "An element is not known in the language.", file=check)
+RULE = Rule("unknown-element", Severity.ERROR, "The language does not define an element.", file=check)

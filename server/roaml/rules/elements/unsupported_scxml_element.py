@@ -13,7 +13,7 @@ from roaml.rules.rule import FileContext, Rule
 
 ADVICE = {
     "parallel": "states are flat; write a separate machine for each region",
-    "final": "a `<state>` without transitions is final",
+    "final": "use a `<state>` without transitions, which is final",
     "history": "states are flat; store the history in a variable",
     "initial": "set the initial state in the attribute `initial` of the root",
     "raise": "use `<send>`, because there is no internal event queue",

@@ -37,7 +37,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[Finding]:
-    """All senders of an event must use the same types for its parameters (docs/spec/machines.md#send)."""
+    """Report parameters with different types in two senders of an event, which must be the same
+    (docs/spec/machines.md#send)."""
     if param.name is None:
         return
     for automaton, sent in event.senders:
@@ -105,7 +106,7 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPar
 
 
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
-    """The reference translator gives a field the type of its value, whatever the ROS type is
+    """Report fields with different types in two senders. The reference translator gives a field the type of its value
     (docs/spec/expressions.md#whole-reals)."""
     real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
     for name, value in sent:

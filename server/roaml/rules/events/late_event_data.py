@@ -27,12 +27,12 @@ _ANSWERS = {
     ProtocolPart.BT_TICK: (ProtocolPart.BT_STATUS,),
     ProtocolPart.BT_HALT: (ProtocolPart.BT_HALTED,),
 }
-"""What a machine must send before the next event of a kind can arrive."""
+"""The element that a machine must send before the next event of a kind can arrive."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Event data are shared variables that are read when the step is executed
-    (docs/spec/machines.md#event-data-lifetime)."""
+    """Report event data that may be overwritten before they are read: they are shared variables, read when the step is
+    executed (docs/spec/machines.md#event-data-lifetime)."""
     for value in context.typed.values:
         if not value.place.late or not isinstance(value.value, Expression):
             continue
@@ -86,7 +86,7 @@ def _names(tree: Expr) -> Iterator[Name]:
 
 
 def _message(value: TypedValue, name: str) -> str:
-    newer = f"when `{name}` may already hold the data of a newer event than the one that is handled"
+    newer = f"when `{name}` may already hold the data of a newer event"
     advice = f"store what you need of `{name}` in a variable at the beginning of the body"
     match value.use:
         case ValueUse.BRANCH:

@@ -24,7 +24,7 @@ def _send(send: Send) -> Finding:
     assert send.event is not None
     new = REMOVED_EVENTS[send.event.value]
     fix = Fix(f"Change to `{new}`", (TextEdit(send.element.span, new.replace("/>", " />")),))
-    return RULE.at(send.event.span, f"the tree does not react to events any more; write `{new}` instead", fix)
+    return RULE.at(send.event.span, f"the tree no longer reacts to events; write `{new}` instead", fix)
 
 
 def _handler(handler: Handler, text: str) -> Finding:
@@ -37,7 +37,7 @@ def _handler(handler: Handler, text: str) -> Finding:
         edits.append(TextEdit(element.close_name_span, event.value))
     new = f"<{event.value}>"
     fix = Fix(f"Change to `{new}`", tuple(edits))
-    return RULE.at(event.span, f"the tree does not send the event `{event.value}` any more; write `{new}` instead", fix)
+    return RULE.at(event.span, f"the tree no longer sends the event `{event.value}`; write `{new}` instead", fix)
 
 
 RULE = Rule(

@@ -15,7 +15,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """A sender that cannot be read might send the parameter."""
+    """Report parameters that no sender sends, unless an unreadable sender might send them."""
     if context.system is None:
         return
     for value in context.typed.values:

@@ -138,7 +138,7 @@ def _advice(cells: int) -> str:
 
 
 def _comparison_advice(name: str, operator: Operator, bound: Fraction, values: int) -> str:
-    """What to write for a probability of `bound`, or 1 - `bound`."""
+    """The advice for a probability of `bound`, or 1 - `bound`."""
     if (bound * values).denominator == 1:
         other = "<" if operator is Operator.LESS_EQUAL else ">="
         return f"write `{name} {other} {float(bound):g}`"

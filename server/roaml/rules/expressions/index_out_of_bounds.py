@@ -67,7 +67,7 @@ def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterat
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """`v[v.length]` writes after the end of a bounded array that is full, unless a condition prevents it."""
+    """Report `v[v.length]`, which writes after the end of a full bounded array, unless a condition prevents it."""
     if not isinstance(tree, Index) or not _is_length_of(context, tree.index, tree.object):
         return
     array = _type_of(context, value.place, tree.object)
@@ -83,7 +83,7 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
 
 
 def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """`v.length` is set to more than the array can hold."""
+    """Report a `v.length` that is set to more than the array can hold."""
     if not isinstance(tree, Member) or tree.name != "length":
         return
     array = _type_of(context, value.place, tree.object)

@@ -31,4 +31,4 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     )
 
 
-RULE = Rule("misplaced-random", Severity.ERROR, "A random number is drawn where that is not possible.", machine=check)
+RULE = Rule("misplaced-random", Severity.ERROR, "`Math.random()` is used where it is not allowed.", machine=check)

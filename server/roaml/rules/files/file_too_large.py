@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""file-too-large: see file_too_large.md. Found where files are read (`roaml.project.checking`)."""
+"""file-too-large: see file_too_large.md. Reported where files are read (`roaml.project.checking`)."""
 
 from __future__ import annotations
 

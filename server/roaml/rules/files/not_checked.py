@@ -129,7 +129,7 @@ def _listing(questions: list[str]) -> str:
 RULE = Rule(
     "not-checked",
     Severity.INFORMATION,
-    "Something cannot be checked because of an error elsewhere.",
+    "A part of the system cannot be checked because of an error.",
     machine=check,
     tree=check,
     system=check,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-suppression: see unused_suppression.md. Found by `roaml.project.checking`, which knows all findings."""
+"""unused-suppression: see unused_suppression.md. Reported by `roaml.project.checking`, which has all findings."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from roaml.text import Span, TextEdit
 def finding(
     text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
 ) -> Iterator[Finding]:
-    """The finding for a comment that suppresses `codes` (`None`: all), of which it needs only those in `used`; `known`
-    are the codes of all rules."""
+    """The finding for a comment that suppresses `codes` (`None`: all), of which only those in `used` are needed;
+    `known` are the codes of all rules."""
     used, known = frozenset(used), frozenset(known)
     misspelt = [code for code in codes or () if code not in known]
     if misspelt:
@@ -33,9 +33,7 @@ def finding(
     tags = (Tag.UNNECESSARY,)
     if not kept:
         fix = Fix("Remove the comment", (removal(text, comment),))
-        yield RULE.at(
-            comment, "unused suppression: nothing is reported here that this comment suppresses", fix, tags=tags
-        )
+        yield RULE.at(comment, "unused suppression: this comment suppresses no finding", fix, tags=tags)
     else:
         fix = Fix(
             f"Leave out {listing(superfluous)}", (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),)

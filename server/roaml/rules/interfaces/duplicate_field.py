@@ -23,7 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _twice(context: MachineContext, params: tuple[Param, ...], kind: str) -> Iterator[Finding]:
-    """In the translation, `a.b` and `a__b` are the same (docs/spec/plain-scxml.md#flattening)."""
+    """Report fields that are set twice; in the translation, `a.b` and `a__b` are the same
+    (docs/spec/plain-scxml.md#flattening)."""
     first: dict[str, Name] = {}
     for param in params:
         if param.name is None:

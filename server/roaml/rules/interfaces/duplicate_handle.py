@@ -82,14 +82,15 @@ def _written(value: Name | PortRead | None) -> str:
 
 
 def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
-    """A machine declares each service and action that it uses only once (docs/spec/ros.md#services)."""
+    """Report a service or action that a client declares twice (docs/spec/ros.md#services)."""
     assert before.handle is not None
     message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
 
 
 def _same_threads(context: MachineContext) -> Iterator[Finding]:
-    """Two declarations would create two threads for each number (docs/spec/ros.md#threads)."""
+    """Report repeated declarations of threads, which would create two threads for each number
+    (docs/spec/ros.md#threads)."""
     known: dict[str, Name] = {}
     for thread in context.machine.threads:
         if thread.server is None:

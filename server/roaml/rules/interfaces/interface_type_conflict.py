@@ -39,7 +39,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...]]]:
-    """The types at the other side, which take precedence; if there is none, those at the same side."""
+    """The types at the other side; if there are none, those at the same side."""
     other = [endpoint for endpoint in channel.endpoints if endpoint.use.kind is other_kind(kind)]
     is_clock = kind is SymbolKind.SUBSCRIBER and channel.name == CLOCK_TOPIC and system.has_timer
     if is_clock:

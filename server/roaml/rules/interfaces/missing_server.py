@@ -32,7 +32,7 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
     for other in served:
         if other.name.lstrip("/") == channel.name.lstrip("/"):
             message = (
-                f"no machine serves `{channel.name}`, but `{other.name}`: the leading `/` makes a difference "
+                f"no machine serves `{channel.name}`, only `{other.name}`: the leading `/` makes a difference "
                 f"for {kind_name}s"
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)

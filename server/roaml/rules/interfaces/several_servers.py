@@ -35,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _same_events(declaration: Declaration, channel: Channel, other: Channel, noun: str) -> Finding:
-    """Two names of which one form is used in the names of events (docs/spec/plain-scxml.md#interface-names)."""
+    """Report two names that have the same form in the names of events (docs/spec/plain-scxml.md#interface-names)."""
     message = (
         f"the {noun}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
         f"translation, which cannot tell them apart; rename one of them"

@@ -26,7 +26,8 @@ ANSWERS = {
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report handlers that wait for an answer to something that this machine never sends, once for each handle."""
+    """Report handlers that wait for an answer to a request or goal that this machine never sends, once for each
+    handle."""
     sent = set(_sent(context))
     for chart in context.machine.charts:
         for state in chart.states:
@@ -76,5 +77,8 @@ def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
 
 
 RULE = Rule(
-    "silent-client", Severity.ERROR, "A handler waits for an answer to something that is never sent.", machine=check
+    "silent-client",
+    Severity.ERROR,
+    "A handler waits for an answer to a request or goal that is never sent.",
+    machine=check,
 )

@@ -21,7 +21,8 @@ PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapp
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Fields that the reference translator omits need not be set; a field that no machine sets is empty."""
+    """Report fields that are read and never set. Fields that the reference translator omits need not be set; then they
+    are empty."""
     if context.system is None:
         return
     for value in context.typed.values:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavior trees that belong to no system, and what libraries and models say of their nodes."""
+"""Rules about behavior trees that belong to no system, with the declarations of their nodes in libraries and models."""

@@ -26,9 +26,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
-    """The uses with another type than that of the entry, each with the use that determines the type of the entry.
+    """The uses with a type other than that of the entry, each with the use that determines the type of the entry.
 
-    The first port determines it. An entry created as a text accepts other types, but only values of one type.
+    The first port determines it. An entry created as a string accepts other types, but only values of one type.
     """
     first = typed[0]
     for use in typed[1:]:

@@ -72,7 +72,7 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
     elif opens != closes and inner.count("{") != inner.count("}"):
         name = inner.strip("{}").strip()
         fixes = replacements(setting.value.span, (f"{{{name}}}",)) if _NAME.match(name) else ()
-        message = f"`{inner}` has only one of two braces, so it is a text and not an entry"
+        message = f"`{inner}` has only one of two braces, so it is a string and not an entry"
         yield RULE.at(setting.value.span, message, *fixes, severity=Severity.WARNING)
 
 
@@ -81,7 +81,7 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
     if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
-        reason = f"`{name}` is a text" if name else "nothing is given"
+        reason = f"`{name}` is a string" if name else "nothing is given"
         message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
         yield RULE.at(span, message, *fixes, severity=_severity(known))
         return

@@ -67,4 +67,6 @@ def _finding(name: Name, operator: str, near: str | None, closed: bool) -> Findi
     return RULE.at(name.span, f"nothing in the trees creates `{name.name}`{hint}", *fixes)
 
 
-RULE = Rule("script-name", Severity.INFORMATION, "A script uses a name that nothing creates.", tree=check)
+RULE = Rule(
+    "script-name", Severity.INFORMATION, "A script uses an entry that no script and no port creates.", tree=check
+)

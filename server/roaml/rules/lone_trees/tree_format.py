@@ -33,7 +33,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         yield RULE.at(span, message, fix)
     elif version is not None and context.file.format != CURRENT:
         fix = Fix(f"Change to `{CURRENT}`", (TextEdit(version.value_span, CURRENT),), preferred=True)
-        yield RULE.at(version.value_span, f"the format is `3` or `4`, not `{version.value}`", fix)
+        yield RULE.at(version.value_span, f"the format must be `3` or `4`, not `{version.value}`", fix)
 
 
 def _plan(context: TreeContext) -> tuple[TextEdit, ...]:

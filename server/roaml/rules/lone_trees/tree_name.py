@@ -66,7 +66,7 @@ def _instances(tree: Tree) -> Iterator[Finding]:
 def _models(context: TreeContext) -> Iterator[Finding]:
     lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
     for extra in lists[1:]:
-        message = "a file has one `<TreeNodesModel>`; BehaviorTree.CPP reads only the first"
+        message = "only one `<TreeNodesModel>` is allowed; BehaviorTree.CPP reads only the first"
         related = [Related(lists[0].name_span, "the first one")]
         yield RULE.at(extra.name_span, message, related=related, severity=Severity.WARNING)
     first: dict[str, Name] = {}
@@ -94,14 +94,12 @@ def _models(context: TreeContext) -> Iterator[Finding]:
 def _port(name: Name) -> Iterator[Finding]:
     text = name.value
     if text in _RESERVED_PORTS:
-        yield RULE.at(
-            name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a port: it has a meaning of its own"
-        )
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a port: it has a special meaning")
     elif not text[:1].isalpha() or not text[:1].isascii():
-        yield RULE.at(name.span, "the name of a port begins with a letter")
+        yield RULE.at(name.span, "the name of a port must begin with a letter")
     elif match := _FORBIDDEN.search(text):
         shown = "white space" if match[0].isspace() else f"`{match[0]}`"
         yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a port")
 
 
-RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP refuses a name, or it is not unique.", tree=check)
+RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP rejects a name, or the name is not unique.", tree=check)

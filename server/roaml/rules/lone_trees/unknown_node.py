@@ -35,7 +35,7 @@ def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
         return
     renamed, absent, old = CPP.renamed.get(name), forest.absent(name), CPP.nodes.get(name)
     if renamed is not None:
-        message = f"`{name}` is the name of `{renamed.now}` in version 3"
+        message = f"`{name}` is the name in version 3; write `{renamed.now}`"
         yield RULE.at(span, message, _renaming(node, renamed.now), severity=Severity.ERROR)
     elif absent is not None:
         fixes = (_renaming(node, absent.instead),) if absent.instead else ()

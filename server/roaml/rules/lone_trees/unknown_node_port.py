@@ -59,7 +59,7 @@ def _known(names: list[str]) -> str:
 
 
 def _conditions(node: TreeNode) -> Iterator[Finding]:
-    """The library ignores unknown attributes that begin with `_`."""
+    """Report unknown attributes that begin with `_`, which the library ignores."""
     for attribute in node.element.attributes:
         if attribute.name.startswith("_") and attribute.name not in _OF_LIBRARY:
             near = probably_meant(attribute.name, _OF_LIBRARY)

@@ -34,7 +34,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
         outer = [name.value for name in own if name.value not in inner]
         if len(outer) > 1:
             several = listing(outer[:MAX_TREES])
-            message = f"`main_tree_to_execute` does not say which tree is executed: {several} are parts of no other"
+            message = (
+                "`main_tree_to_execute` is missing, so the executed tree is ambiguous: "
+                f"{several} are not part of another tree"
+            )
             yield RULE.at(context.file.element.name_span, message)
 
 

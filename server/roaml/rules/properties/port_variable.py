@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.PORT_VARIABLE,
     Severity.ERROR,
-    "A variable of a port cannot have a value.",
+    "A variable of a port cannot get a value.",
 )

@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.UNKNOWN_PORT,
     Severity.ERROR,
-    "A port names something that the system does not have.",
+    "A port names an interface, node or event that the system does not have.",
 )

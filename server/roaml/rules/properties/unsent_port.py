@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.UNSENT,
     Severity.WARNING,
-    "Nothing is ever sent at a port.",
+    "A port listens to an event that is never sent.",
 )

@@ -11,7 +11,7 @@ from roaml.rules.rule import MachineContext, Rule, listing
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report the transition that always holds, because it usually lacks its event or condition."""
+    """Report the unconditional transition, which usually lacks its event or condition."""
     for chart in context.machine.charts:
         for state in chart.states:
             handlers = [handler for handler in state.handlers if handler.effective]
@@ -21,14 +21,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 names = listing(dict.fromkeys(_awaited(handler) for handler in waiting))
                 yield RULE.at(
                     always.element.name_span,
-                    f"without event and condition this is taken at once, so the state never waits for {names}; "
+                    f"without an event or condition this is taken at once, so the state never waits for {names}; "
                     "give it an `event` or a `cond`",
                     related=(Related(handler.element.name_span, "never taken") for handler in waiting),
                 )
 
 
 def _awaited(handler: Handler) -> str:
-    """What a transition waits for: an event, a handle, or a part of the tree protocol."""
+    """The name of the event, handle or part of the tree protocol that a transition waits for."""
     name = handler.event or handler.handle
     return name.value if name else handler.element.name
 

@@ -13,7 +13,8 @@ from roaml.rules.support.conditions import covered
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """The first branch whose condition holds is executed (docs/spec/machines.md#if)."""
+    """Report branches that are never executed: only the first branch whose condition holds is
+    (docs/spec/machines.md#if)."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if not isinstance(statement, If) or len(statement.branches) < 2:

@@ -71,7 +71,7 @@ def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Han
 
 
 def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:
-    """With a condition, the transition can be moved before the other one; without one it is useless."""
+    """Move the transition before the earlier one if it has a condition; otherwise remove it."""
     document, element = context.document, handler.element
     if handler.cond is not None:
         text = document.text[slice(*element.span)]

@@ -68,7 +68,7 @@ def _states_below(root: Element) -> Iterator[str]:
 
 
 def _plain_references(document: Document, root: Element) -> Iterator[Name]:
-    """In plain SCXML, states are nested, and a transition may lead to several of them."""
+    """Check references in plain SCXML, where states are nested and a transition may lead to several of them."""
     for element in root.walk():
         attribute = element.get("target" if element.name == "transition" else "initial")
         if attribute is not None and attribute.has_value and element.name in ("scxml", "state", "transition"):
@@ -77,4 +77,4 @@ def _plain_references(document: Document, root: Element) -> Iterator[Name]:
                 yield Name(word[0], source.span(*word.span()))
 
 
-RULE = Rule("undefined-state", Severity.ERROR, "A reference to a state has no such state.", machine=check, plain=True)
+RULE = Rule("undefined-state", Severity.ERROR, "A state that is referred to does not exist.", machine=check, plain=True)

@@ -53,7 +53,7 @@ def behaviors(context: MachineContext) -> Iterator[Behavior]:
 
 
 def plugins(context: MachineContext) -> list[SystemAutomaton]:
-    """The automata that the machine is in the tree; none if it still uses the removed events."""
+    """The automata of the machine in the tree; none if it still uses the removed events."""
     if uses_removed_events(context.machine):
         return []
     return [automaton for automaton in context.automata if automaton.instance is not None]
@@ -100,7 +100,7 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
-    """Where a fault in a step is reported: at the handler, or at the statement in `<onentry>` or `<onexit>` that is
+    """The place where a fault in a step is reported: the handler, or the statement in `<onentry>` or `<onexit>` that is
     executed."""
     if statement is not None and not _within(statement.element.span, handler.element.span):
         return statement.element.name_span
@@ -207,7 +207,7 @@ class Deaf(NamedTuple):
     Attributes:
         name, span: the identifier of the state.
         standing: the status of the node: "" (not yet ticked), "running" or "ended".
-        needs_time: the state is left, but only after time has passed.
+        needs_time: whether the state is left, but only after time has passed.
     """
 
     state: State
@@ -258,7 +258,7 @@ def deaf_states(
 
 def _is_for_errors(behavior: Behavior, state: State) -> bool:
     """Whether a state without transitions is entered only if a condition holds: a plugin that checks its ports ends
-    there on purpose."""
+    there intentionally."""
     if any(handler.effective for handler in state.handlers):
         return False
     entering = [

@@ -17,8 +17,8 @@ RUNNING = '<bt_return_status status="RUNNING" />'
 
 
 def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
-    """The edits, if the rewrite is mechanical: the tick only starts something, and all handlers that end it answer and
-    lead to the same state."""
+    """The edits, if the rewrite is mechanical: the tick only starts an operation, and all handlers that end it answer
+    and lead to the same state."""
     chart = context.machine.chart
     states = {state.id.value: state for state in chart.states if state.id}
     if tick.trigger is not ProtocolPart.BT_TICK or _answers(tick) or not _is_tidy(tick):

@@ -51,7 +51,7 @@ def described(variable: str, written: str) -> str:
 
 
 def renamings(span: Span, written: str, variable: str, close: Iterable[str]) -> Iterator[Fix]:
-    """A fix for each variable that `{written}` at `span` may be a misspelling of, in the main tree."""
+    """A fix for each variable of which `{written}` at `span` is probably a misspelling, in the main tree."""
     if written == variable:
         for number, name in enumerate(close):
             yield Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),), preferred=number == 0)

@@ -7,5 +7,5 @@ from roaml.language.grammar import ElementType
 
 
 def has_counted_children(type_: ElementType) -> bool:
-    """Whether child-count says what is wrong with the children of an element, so that others keep quiet."""
+    """Whether the rule child-count reports errors in the children of an element, so that other rules do not."""
     return bool(type_.node)

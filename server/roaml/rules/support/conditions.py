@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conditions that are tested in order: which of them can never hold because earlier ones do."""
+"""Conditions that are tested in order: which of them can never decide because an earlier one holds."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from roaml.model.syntax import Expression
 
 
 class Covered(NamedTuple):
-    """A condition that holds only where earlier ones do.
+    """A condition that holds only where an earlier one holds.
 
     Attributes:
         number: the index of the condition, from 0.
         by: the indices of the earlier conditions that cover it alone; empty if only several together cover it.
-        same: one of these is the same condition.
+        same: whether one of these is the same condition.
     """
 
     number: int
@@ -49,5 +49,5 @@ def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> I
 
 
 def _beside(facts: ConditionFacts, first: Expr, other: Expr) -> bool:
-    """Whether `other` may hold where `one` does not."""
+    """Whether `other` may hold where `first` does not."""
     return any(facts.assume(known, other) for known in facts.assume(NOTHING, first, False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The blackboard entries of trees that belong to no system, found once for all rules."""
+"""The blackboard entries of trees that belong to no system, computed once for all rules."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ from roaml.forest.forest import Forest
 
 @functools.lru_cache(maxsize=8)
 def entries_of(forest: Forest) -> Entries:
-    """A forest never changes and compares by identity."""
+    """The entries of a forest, which is immutable and compared by identity."""
     return find_entries(forest)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about trees that belong to no system share."""
+"""Helpers of the rules about trees that belong to no system."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from roaml.rules.rule import TreeContext
 from roaml.suggest import close_names
 
 MAX_WRONG_LETTERS = 3
-"""So many letters of a name may be wrong."""
+"""The maximum number of wrong letters in a misspelled name."""
 
 
 def forest_of(context: TreeContext) -> Forest | None:
-    """The forest of a file that is checked as such. A file of version 3 is converted first, what else is said about it
-    would only follow."""
+    """The forest of a file that is checked without a system. A file of version 3 must be converted first: other
+    findings in it would only be consequences."""
     forest = context.forest
     return None if forest is None or forest.is_version_3 else forest
 
@@ -23,8 +23,8 @@ def forest_of(context: TreeContext) -> Forest | None:
 def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTERS) -> str | None:
     """The known name that differs from `name` in a few letters, or only in upper and lower case or underscores.
 
-    Names of nodes are chosen by people, and many resemble each other: `IsDoorClosed` is not meant for `DoorClosed`. So
-    a name that only has more letters than another at one end differs in one of them at most.
+    Users choose the names of nodes, and many are similar: `IsDoorClosed` is not a misspelling of `DoorClosed`. So
+    a name that only has additional letters at one end may have at most one of them.
     """
     by_plain = {other.lower().replace("_", ""): other for other in known}
     plain = name.lower().replace("_", "")
@@ -41,7 +41,7 @@ def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTER
 
 
 def _distance(name: str, other: str) -> int:
-    """How many letters differ: the edit distance with swapped neighbours as one edit (Damerau 1964)."""
+    """The number of different letters: the edit distance, in which a transposition is one edit (Damerau 1964)."""
     before: list[int] = []
     row = list(range(len(other) + 1))
     for i, letter in enumerate(name, 1):

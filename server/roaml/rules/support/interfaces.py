@@ -27,7 +27,7 @@ class Naming:
     """A place where an automaton names a topic, service or action.
 
     Attributes:
-        span: the name, or what replaces it: see `name_span` and `port_span`.
+        span: the place of the name, or its replacement; see `name_span` and `port_span`.
         literal: whether the name itself is written there.
         related: for the port of a node, the declaration in its plugin.
     """
@@ -55,7 +55,7 @@ def named_here(context: MachineContext | TreeContext, kind: SymbolKind) -> Itera
         if use.kind is kind and channel_meant is not None:
             setting = next((setting for setting in node.ports if setting.key.value == use.port), None)
             literal = setting is not None and setting.variable is None
-            related = (Related(automaton.symbol(use), "it is used here"),)
+            related = (Related(automaton.symbol(use), "used here"),)
             yield Naming(port_span(node, use.port), literal, use, channel_meant, related)
 
 
@@ -65,7 +65,7 @@ def other_kind(kind: SymbolKind) -> SymbolKind:
 
 
 def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declaration, SystemAutomaton, Channel]]:
-    """The declarations of a kind, in each automaton that the machine is, with the topic, service or action meant."""
+    """The declarations of a kind in each automaton of the machine, with their topic, service or action."""
     of_kind = [d for d in context.machine.declarations if d.kind is kind and d.handle is not None]
     for automaton in context.automata:
         for declaration in of_kind:
@@ -75,7 +75,7 @@ def declared(context: MachineContext, kind: SymbolKind) -> Iterator[tuple[Declar
 
 
 def channels_of(context: MachineContext, declaration: Declaration) -> Iterator[tuple[SystemAutomaton, Channel]]:
-    """What one declaration means, in each automaton that the machine is."""
+    """The topic, service or action of a declaration, in each automaton of the machine."""
     for automaton in context.automata:
         channel = _channel(context, automaton, declaration)
         if channel is not None:
@@ -109,7 +109,7 @@ def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceU
 
 
 def name_span(declaration: Declaration) -> Span:
-    """Where the topic, service or action is named; the handle if it comes from a port."""
+    """The place where the topic, service or action is named; the handle if the name comes from a port."""
     if isinstance(declaration.interface, Name):
         return declaration.interface.span
     return declaration.handle.span if declaration.handle else declaration.element.name_span

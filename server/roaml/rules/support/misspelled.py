@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Something that seems to be missing may only be misspelled: the rule about the misspelling reports it, and other rules
+"""An apparently missing part may only be misspelled: the rule about the misspelling reports it, and other rules
 do not."""
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:
-    """Whether something in a machine is probably meant to declare `name` with a `<tag>`, but cannot be read as such.
+    """Whether an element of a machine is probably intended to declare `name` with a `<tag>`, but cannot be read as a
+    declaration.
 
     It is a `<tag>` whose name is missing or misspelled, a `<tag>` in a place where it is ignored, or another element
     instead of a `<tag>`.
@@ -31,7 +32,7 @@ def declaration(machine: Machine, tag: str, name: str) -> bool:
 
 @lru_cache(maxsize=16)  # an unreadable declaration leads to a finding at each of its uses
 def _meant(machine: Machine, tag: str) -> frozenset[str]:
-    """The names that may be meant; "" in the result means any name."""
+    """The names that are probably meant; "" in the result means any name."""
     read = {data.element for chart in machine.charts for data in chart.data if data.id}
     read |= {state.element for chart in machine.charts for state in chart.states if state.id}
     key = "key" if tag.startswith("bt_") else "id"

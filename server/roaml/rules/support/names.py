@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about names share."""
+"""Helpers of the rules about names."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ from roaml.facts import Facts
 
 @dataclass(frozen=True, slots=True)
 class WrongName(Facts):
-    """`name` cannot be used for what is at the span of the finding, where it is written."""
+    """`name`, which is written at the span of the finding, cannot be used there."""
 
     name: str

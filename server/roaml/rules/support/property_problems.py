@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about property files in XML report what was found when the file was linked (`roaml.model.property_links`)."""
+"""Rules about property files in XML, which report the problems of linking (`roaml.model.property_links`)."""
 
 from __future__ import annotations
 

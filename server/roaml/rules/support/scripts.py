@@ -17,7 +17,7 @@ from roaml.xml_syntax.escapes import escape
 
 
 def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[ScriptProblem, ...]]]:
-    """Each script with what is wrong with its form; the places are those of the file."""
+    """Each script with its syntax errors, at their places in the file."""
     forest = forest_of(context)
     if forest is None:
         return

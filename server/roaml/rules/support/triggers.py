@@ -15,7 +15,7 @@ from roaml.roles import ProtocolPart
 from roaml.rules.support.conditions import covered
 
 Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
-"""What is received, the name of it and the result code; comparable within a state."""
+"""The received part, its name and the result code; comparable within a state."""
 
 
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:

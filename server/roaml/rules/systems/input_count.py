@@ -16,7 +16,7 @@ from roaml.rules.rule import Rule, SystemContext
 
 @dataclass(frozen=True, slots=True)
 class InputCount(Facts):
-    """`kind` is the kind of file that the system lists none of."""
+    """The system lists no file of `kind`."""
 
     kind: FileKind
 
@@ -38,7 +38,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
 
 
 def _property_files(context: SystemContext) -> Iterator[Finding]:
-    """The property files that are listed again: each of their properties would exist twice."""
+    """Report property files that are listed again: each of their properties would exist twice."""
     first: dict[str, ListedFile] = {}
     for listed in context.files:
         if listed.required_kind not in _PROPERTY_FILES or not listed.path:

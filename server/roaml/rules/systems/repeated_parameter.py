@@ -27,7 +27,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
             related = (Related(last[element.name].name_span, "this one is used"),)
             remove = Fix("Remove this one", (removal(context.source.text, element.span),), safe=True)
             yield RULE.at(
-                element.name_span, f"`<{element.name}>` is ignored: it is given again below", remove, related=related
+                element.name_span,
+                f"`<{element.name}>` is ignored: only the last value is used",
+                remove,
+                related=related,
             )
 
 

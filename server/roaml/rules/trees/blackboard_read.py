@@ -72,8 +72,8 @@ def _reason(context: MachineContext, value: TypedValue) -> str:
     }
     mixed = sorted(names & EVENT_VARIABLES.keys())
     if mixed:
-        return f"the blackboard is read before this body is executed, and then `{mixed[0]}` is not available any more"
+        return f"the blackboard is read before this body is executed, and then `{mixed[0]}` is no longer available"
     return ""
 
 
-RULE = Rule("blackboard-read", Severity.ERROR, "The blackboard is read where that is not possible.", machine=check)
+RULE = Rule("blackboard-read", Severity.ERROR, "The blackboard is read where it cannot be read.", machine=check)

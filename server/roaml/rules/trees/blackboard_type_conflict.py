@@ -23,7 +23,7 @@ class TypeConflict(Facts):
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """All ports that are bound to one variable must have exactly the same type (docs/spec/trees.md#blackboard)."""
+    """Report ports of different types that are bound to one variable (docs/spec/trees.md#blackboard)."""
     if context.system is None:
         return
     for variable, ports in context.system.blackboard.items():

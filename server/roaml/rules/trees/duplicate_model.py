@@ -17,7 +17,7 @@ from roaml.scxml.names import is_generated
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
-    """Names of automata must be unique, and names of plugins among each other."""
+    """Report repeated names of automata, and repeated names of plugins."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
     first: dict[tuple[str, str], ListedFile] = {}
     generated = _generated(context.system)

@@ -35,7 +35,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 _COUNTS = ("success_count", "failure_count", "max_failures", "num_cycles", "num_attempts", "return_on_mismatch")
-"""The ports that `_problem` looks at."""
+"""The ports that `_problem` checks."""
 
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
@@ -102,4 +102,4 @@ def _number(text: str) -> int | None:
     return value
 
 
-RULE = Rule("node-configuration", Severity.ERROR, "The settings of a node prevent it from ever answering.", tree=check)
+RULE = Rule("node-configuration", Severity.ERROR, "A node never answers because of its settings.", tree=check)

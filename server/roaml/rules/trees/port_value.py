@@ -130,7 +130,7 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
 
 
 def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """All values that a `Switch` compares have the type of the first variable among them: string or int
+    """Check that all values that a `Switch` compares have the type of the first variable among them: string or int
     (docs/spec/nodes.md#control)."""
     for node, automaton in instances(context):
         assert context.system is not None
@@ -158,7 +158,7 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
 
 
 def _literal_choice(node: TreeNode) -> Iterator[Finding]:
-    """If a `Switch` uses no variable, its values are strings, and values that look like a float or boolean are
+    """Report values like a float or boolean in a `Switch` that uses no variable: they are strings and probably
     suspicious.
 
     A text that a `<SubTree>` passes may be meant as a string, such as a version.

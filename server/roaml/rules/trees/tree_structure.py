@@ -62,7 +62,7 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
 
 
 def _is_first(context: TreeContext, tree: Tree) -> bool:
-    """Whether a tree is the first of its name, the one that keeps it."""
+    """Whether a tree is the first with its name, which keeps the name."""
     assert context.forest is not None
     return tree.id is not None and context.forest.trees[tree.id.value][1] is tree
 
@@ -83,7 +83,8 @@ def _subtree(
 
 
 def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tuple[str, str]]:
-    """The uses that close cycles, when the trees are gone through from the executed one, or the first, on."""
+    """The uses that close cycles, in a traversal of the trees that begins at the executed tree or, without it, the
+    first one."""
     main = context.file.main
     first = (main.value,) if main is not None and main.value in uses else ()
     closing: set[tuple[str, str]] = set()
@@ -107,7 +108,7 @@ def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tup
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
-    """Without a system, or if an include cannot be read, the tree may be in an unknown file.
+    """Report a missing tree. Without a system, or if an include cannot be read, the tree may be in an unknown file.
 
     A misspelled `<BehaviorTree>` may also be the missing one.
     """
@@ -224,7 +225,7 @@ def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Fi
         for name in candidates
         if context.file.element.get("main_tree_to_execute") is None
     )
-    message = f"it is ambiguous which tree is executed; set `main_tree_to_execute` to one of {listing(candidates)}"
+    message = f"the executed tree is ambiguous; set `main_tree_to_execute` to one of {listing(candidates)}"
     yield RULE.at(root, message, *itertools.islice(fixes, MOST))
 
 

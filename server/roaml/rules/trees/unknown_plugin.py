@@ -58,4 +58,4 @@ def _subtree(node: TreeNode, name: str) -> Iterator[Fix]:
         yield Fix(f'Change to `<SubTree ID="{name}">`', (*rename.edits, TextEdit(Span(at, at), f' ID="{name}"')))
 
 
-RULE = Rule("unknown-plugin", Severity.ERROR, "A node of the tree has no plugin.", tree=check)
+RULE = Rule("unknown-plugin", Severity.ERROR, "No plugin has the name of a node of the tree.", tree=check)

@@ -72,7 +72,7 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
             kind_name = CHANNEL_KINDS[use.kind].value
             empty = f"`{use.port}` names {_a(kind_name)} and cannot be empty"
             message = _with_spaces(text, kind_name) if text else empty
-            related = (Related(automaton.symbol(use), "it is used here"),)
+            related = (Related(automaton.symbol(use), "used here"),)
             # A default is reported at the name of the node, which is no wrong name.
             is_here = any(setting.key.value == use.port for setting in node.ports)
             facts = WrongName(text) if is_here else None
@@ -95,7 +95,7 @@ def _a(noun: str) -> str:
 RULE = Rule(
     "invalid-name",
     Severity.ERROR,
-    "A name is not valid for the thing that it names.",
+    "A name is not valid.",
     machine=check,
     tree=check_tree,
     facts=WrongName,

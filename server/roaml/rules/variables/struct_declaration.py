@@ -37,7 +37,7 @@ def check(context: StructsContext) -> Iterator[Finding]:
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
-    """Report another, different declaration of the struct, in this file or elsewhere in the system."""
+    """Report another, different declaration of the struct, in this file or another file of the system."""
     name, outline = declaration.name, declaration.outline
     assert name is not None
     same = [other for other in context.outlines if other.name == name.value]

@@ -126,7 +126,7 @@ def _closer(beside: Type, result_type: Type | None) -> Type:
 
 
 def _named(type_: Type | None) -> Scalar | None:
-    """The base type under a name that can be declared."""
+    """The base type, if it has a name that can be declared."""
     if not isinstance(type_, Scalar):
         return None
     return type_ if type_.name else Scalar(type_.kind, DEFAULT_TYPES[type_.kind])

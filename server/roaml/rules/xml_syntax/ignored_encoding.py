@@ -17,4 +17,6 @@ def check(context: FileContext) -> Iterator[Finding]:
         yield RULE.at(place, f"`{declared}` is ignored: the file {reason}, so it is read as {real}; declare {real}")
 
 
-RULE = Rule("ignored-encoding", Severity.WARNING, "A file is read with another encoding than it declares.", file=check)
+RULE = Rule(
+    "ignored-encoding", Severity.WARNING, "A file is read with an encoding other than the declared one.", file=check
+)
