@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The end of an exhaustive `match`, like `typing.assert_never` of Python 3.11.
-
-A type checker reports missing cases.
-"""
+"""The last case of an exhaustive `match`, like `typing.assert_never` of Python 3.11."""
 
 from __future__ import annotations
 
@@ -10,4 +7,5 @@ from typing import NoReturn
 
 
 def assert_never(value: NoReturn) -> NoReturn:
-    raise AssertionError(f"unexpected value: {value!r}")
+    """Marks a case that a type checker proves to be unreachable: it reports the kinds that the other cases omit."""
+    raise AssertionError(f"a value of an unexpected kind: {value!r}")
