@@ -20,20 +20,25 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
 from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.model_arguments import (
+    UsageError,
+    add_model_arguments,
+    check_model_arguments,
+    error_report,
+    read_target,
+    report_of,
+    settings_of,
+)
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
-from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.model.system_file import NO_OVERRIDES, Overrides
-from roaml.project.configuration import find_settings
-from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
@@ -76,10 +81,6 @@ INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
 
 
-class UsageError(ValueError):
-    """Wrong arguments; the message contains the reason."""
-
-
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -97,29 +98,18 @@ def run(arguments: Sequence[str]) -> int:
 def _run(options: argparse.Namespace) -> int:
     expectations = _expectations(options.expect)
     limits = _limits(options)
-    settings_found, problems = find_settings(os.path.abspath(options.main))
-    if problems:
-        raise UsageError(problems[0])
-    settings = replace(settings_found, ament_prefixes=ament_prefixes())
-    overrides = Overrides(options.max_time, None)
-    if options.main.endswith(".jani"):
-        if overrides != NO_OVERRIDES:
-            raise UsageError("--max-time needs a system; a JANI model has no such parameter")
-    elif options.constant:
-        raise UsageError("--constant needs a JANI model; a system has no constants")
+    check_model_arguments(options)
+    settings = settings_of(options.main)
     only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
     names = options.property or None
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            target = api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
+            target = read_target(options, settings)
             status.stage("compiling")
             verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
-    except api.ModelError as error:
-        return _errors(options, error.result.diagnostics, error.result.source, error.result.files)
-    except api.JaniError as error:
-        source = error.source
-        return _errors(options, error.diagnostics, lambda _: source, (source.path,))
+    except (api.ModelError, api.JaniError) as error:
+        return _errors(options, error_report(error))
     except FaultError as fault:
         return _fault(options, target, fault)
     if not verifier.names:
@@ -407,10 +397,7 @@ def parser() -> ArgumentParser:
         metavar="N",
         help="with --exact: reject models with more states (200000)",
     )
-    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example '
-        '"100 s"')  # fmt: skip
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
-        "MODEL.jani declares without one; may be repeated")  # fmt: skip
+    add_model_arguments(result)
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
@@ -420,7 +407,6 @@ def parser() -> ArgumentParser:
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
-    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add("--format", default="text", choices=("text", "json", "junit"), help="format of the results")
     return result
 
@@ -507,19 +493,12 @@ def _fault(options: argparse.Namespace, target: VerificationTarget, fault: Fault
         if options.format == "json":
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
-    return _errors(options, (diagnostic,), _source_of(target), target.files)
+    return _errors(options, report_of((diagnostic,), _source_of(target), len(target.files)))
 
 
-def _errors(
-    options: argparse.Namespace,
-    diagnostics: Sequence[Diagnostic],
-    source_of: Callable[[str], SourceFile],
-    files: Sequence[str],
-) -> int:
-    entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
-    report = CheckReport(entries, len(files), color=takes_color(sys.stderr))
+def _errors(options: argparse.Namespace, report: CheckReport) -> int:
     if options.format == "json":
-        print_text(as_json((), [_row(finding) for finding in entries]), "utf-8")
+        print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
     elif options.format == "junit":
         print_text(FORMATS["junit"](report), "utf-8")
     else:

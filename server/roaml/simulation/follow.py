@@ -7,23 +7,30 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
-from roaml.simulation.state import (
+from roaml.scxml.names import (
+    BLACKBOARD,
+    CLOCK,
     NODE_AUTOMATON,
+    RECEIVED,
+    TREE_EVENT,
+    is_generated,
+    is_length,
+    is_timer,
+    received_by,
+    sent_by,
+)
+from roaml.simulation.state import (
     EventState,
     MachineState,
     NodeState,
     NodeStatus,
     SystemState,
 )
-from roaml.simulation.words import TREE_EVENT, who
+from roaml.simulation.words import STATUS_NAMES, who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
-from roaml.views.event_words import said
+from roaml.views.event_words import interface_name, said
 from roaml.views.events import EventReader
 from roaml.views.turns import is_inner
-
-_STATUS_NAMES = {number: NodeStatus(name) for name, number in STATUSES.items() if name in NodeStatus.__members__}
 
 
 class Follower:
@@ -56,10 +63,10 @@ class Follower:
         return self._is_machine[instance]
 
     def is_named(self, event: str, name: str) -> bool:
-        """Whether `name` refers to an event: by the name of the event, or of its topic, service or action."""
-        if not event:
-            return False
-        return name in (event, self.events.name(event)) or f"`{name}`" in said(event, "", self._names)
+        """Whether an event has this name, or belongs to a topic, service or action of this name, with or without the
+        leading `/`."""
+        interface = interface_name(event, self._names)
+        return name in (event, self.events.name(event)) or (bool(interface) and interface == f"/{name.lstrip('/')}")
 
     def read(self, step: TraceStep) -> None:
         """Read the next step."""
@@ -94,7 +101,8 @@ class Follower:
                 self._status[node] = NodeStatus.TICKED
             case "response":
                 status = self.events.parameters(event).get("status")
-                self._status[node] = _STATUS_NAMES.get(status if isinstance(status, int) else 0, NodeStatus.IDLE)
+                name = STATUS_NAMES.get(status, "") if isinstance(status, int) else ""
+                self._status[node] = NodeStatus.__members__.get(name, NodeStatus.IDLE)
             case "halt_response":
                 self._status[node] = NodeStatus.IDLE
 

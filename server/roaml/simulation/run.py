@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
@@ -110,8 +111,13 @@ class Run:
         self.position = 0
         self.status = self._kernel.begin(self.seed, self.trace)
         self._check()
-        self.has_ended = self._kernel.ended()
+        self._look_for_end()
         self._reader.start()
+
+    def _look_for_end(self) -> None:
+        self.has_ended = self._kernel.ended()
+        if self.has_ended:
+            self._learn(self._kernel.close())
 
     def _check(self) -> None:
         if self.status == FAULTY:
@@ -127,13 +133,18 @@ class Run:
 
         Raises:
             RunError: the decision is not possible here.
-            FaultError: the model executes an undefined operation in the step, such as a division by zero.
+            FaultError: the model executes an undefined operation in the step, such as a division by zero; the run stays
+                in the state before it.
         """
         if self.has_ended:
             return None
         if decision is not None:
             self._check_possible(decision)
-        self._take(decision)
+        try:
+            self._take(decision)
+        except FaultError:
+            self._return()
+            raise
         if self.position <= len(self.steps) and self.decisions[self.position - 1] == decision:
             self._reader.start()
             return self.steps[self.position - 1]
@@ -141,6 +152,12 @@ class Run:
         self.steps.append(self._reader.read(self.position))
         self.decisions.append(decision)
         return self.steps[-1]
+
+    def _return(self) -> None:
+        """Restore the state at the position, after a step that failed."""
+        position = self.position
+        self._begin()
+        self.go_to(position)
 
     def go_to(self, position: int) -> None:
         """Go to the state after the first `position` of the steps taken."""
@@ -166,9 +183,7 @@ class Run:
             self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
             self._learn(self._kernel.look())
             self.position += 1
-        self.has_ended = self._kernel.ended()
-        if self.has_ended:
-            self._learn(self._kernel.close())
+        self._look_for_end()
 
     def _check_possible(self, decision: Decision) -> None:
         for enabled in self.enabled():

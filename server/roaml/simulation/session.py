@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
@@ -174,9 +174,8 @@ class Session:
 
     def fork(self) -> Session:
         """An independent session with the same run up to the position."""
-        run = self._run
-        decisions = tuple(run.decisions[: self.position])
-        saved = SavedSession(run.asked.question.name, run.seed, run.trace, self.position, decisions)
+        run, saved = self._run, self.save()
+        saved = replace(saved, decisions=saved.decisions[: self.position])
         return Session(run.checker, run.asked, clock=self._clock, saved=saved)
 
     def story(self) -> Story:
@@ -241,15 +240,20 @@ class Session:
 
     def has_event(self, name: str) -> bool:
         """Whether the system has an event with this name, or of a topic, service or action with this name."""
-        return any(self._follower.is_named(sent_by(action or ""), name) for _, action in self._run.legend.vectors)
+        return bool(self._events_named(name))
+
+    def _events_named(self, name: str) -> frozenset[str]:
+        events = {sent_by(action or "") for _, action in self._run.legend.vectors} - {""}
+        return frozenset(event for event in events if self._follower.is_named(event, name))
 
     def is_machine(self, instance: int) -> bool:
         """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
         return self._follower.is_machine(instance)
 
-    def automaton(self, instance: int) -> str:
-        """The name of the automaton of an instance."""
-        return self._automata[instance].name
+    @property
+    def automata(self) -> Sequence[str]:
+        """The name of the automaton of each instance."""
+        return [automaton.name for automaton in self._automata]
 
     def turn(self) -> bool:
         """Take steps until a state machine has handled an event completely; returns whether one has.
@@ -266,15 +270,7 @@ class Session:
 
     def tick(self) -> bool:
         """Take steps until the root of the tree has answered a tick; returns whether it has."""
-        return self.go_on(
-            lambda step: (
-                bool(received_by(step.action or ""))
-                and any(
-                    part.automaton.startswith(TREE_ROOT_PREFIX) and received_by(step.action or "").endswith("response")
-                    for part in step.parts
-                )
-            )
-        )
+        return self.go_on(_answers_root)
 
     def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
         """Take steps until the time of the clock is at least `seconds`; returns whether it is."""
@@ -283,11 +279,12 @@ class Session:
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
         """Take steps until an event is sent, named as in plain SCXML or by its topic, service or action; returns
         whether it was sent."""
-        return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
+        events = self._events_named(event)
+        return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
         """Take steps until the property is decided; returns whether it is."""
-        return self.is_decided or self.go_on(lambda _: self.is_decided, limit) or self.is_decided
+        return self.is_decided or self.go_on(lambda _: self.is_decided, limit)
 
     def back(self, steps: int = 1) -> None:
         """Go back by `steps` steps, at most to the start."""
@@ -302,3 +299,9 @@ class Session:
             self._follower.read(step)
         while self.position < position and self.step() is not None:
             pass
+
+
+def _answers_root(step: TraceStep) -> bool:
+    """Whether the root of the tree receives the answer to its tick."""
+    has_answer = received_by(step.action or "").endswith("response")
+    return has_answer and any(part.automaton.startswith(TREE_ROOT_PREFIX) for part in step.parts)

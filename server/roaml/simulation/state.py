@@ -4,15 +4,11 @@
 from __future__ import annotations
 
 import enum
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.jani.node import Origin
 from roaml.smc.record import Plain
-
-NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
-"""Matches the name of the automaton of a tree node, with its number and its type."""
 
 
 class NodeStatus(enum.Enum):
