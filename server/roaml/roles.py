@@ -28,6 +28,8 @@ class SymbolKind(RoleValue):
     PARAMETER = "parameter"
     PLUGIN = "plugin"
     PORT = "port"
+    PORT_VARIABLE = "port-variable"
+    PROPERTY = "property"
     PUBLISHER = "publisher"
     SERVICE = "service"
     SERVICE_CLIENT = "service-client"
