@@ -90,6 +90,21 @@ class NodeSource:
 
 
 @dataclass(frozen=True, slots=True)
+class TreeUse:
+    """One use of a tree: that of the executed tree, or that of a `<SubTree>`.
+
+    Attributes:
+        name: the name of the `<SubTree>`; the ID of the tree if it has none.
+        tree: the ID of the tree.
+        outer: the index of the use around it; `None` for the executed tree.
+    """
+
+    name: str
+    tree: str
+    outer: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class Instance:
     """One node of the executed tree.
 
@@ -99,6 +114,7 @@ class Instance:
         ports: the values that the tree sets, including defaults of `<TreeNodesModel>`.
         children: the numbers of its children.
         condition: whether it is written or modelled as `<Condition>`.
+        use: the index of the `TreeUse` that the node is in.
     """
 
     number: int
@@ -109,6 +125,7 @@ class Instance:
     children: tuple[int, ...]
     source: NodeSource
     condition: bool = False
+    use: int = 0
 
     @property
     def automaton(self) -> str:
@@ -321,6 +338,7 @@ class Frame:
 
     Attributes:
         use: the `<SubTree>` node of the instance; `None` for the executed tree.
+        name: the name of that node; the ID of the tree if it has none.
         word, suffix: its part of `prefix`, `<word><suffix>__`: the name of that node, and what makes it unique.
         prefix: the beginning of the full names of its variables.
         remapped: the values that its names have from outside.
@@ -333,6 +351,7 @@ class Frame:
 
     tree: TreeOutline
     use: NodeSource | None
+    name: str
     word: str
     suffix: str
     prefix: str
@@ -383,6 +402,15 @@ class Expansion:
     frames: tuple[Frame, ...] = ()
     frame_of: Mapping[int, Frame] = field(default_factory=dict)
 
+    @property
+    def uses(self) -> tuple[TreeUse, ...]:
+        """The uses of trees, in the order of `frames`."""
+        indices = {id(frame): index for index, frame in enumerate(self.frames)}
+        return tuple(
+            TreeUse(frame.name, frame.tree.id, None if frame.outer is None else indices[id(frame.outer)])
+            for frame in self.frames
+        )
+
 
 def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
     """The executed tree; it is empty if the tree is ambiguous or has too many nodes."""
@@ -424,7 +452,7 @@ class _Expander:
 
     def run(self, main: TreeOutline) -> Expansion:
         assert main.root is not None
-        frame = Frame(main, None, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
+        frame = Frame(main, None, main.id, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
         self.frames.append(frame)
         pending: list[tuple[NodeOutline, Frame, int | None]] = [(main.root, frame, None)]
         while pending:
@@ -436,6 +464,7 @@ class _Expander:
                 continue
             number = self.place(node, frame, parent)
             pending += ((child, frame, number) for child in reversed(node.children))
+        indices = {id(frame): index for index, frame in enumerate(self.frames)}
         instances = (
             Instance(
                 number,
@@ -446,6 +475,7 @@ class _Expander:
                 tuple(placed.children),
                 placed.source,
                 placed.condition,
+                indices[id(self.frame_of[number])],
             )
             for number, placed in enumerate(self.placed, ROOT_NUMBER)
         )
@@ -480,7 +510,19 @@ class _Expander:
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
         autoremap = _is_autoremapped(node)
         use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
-        entered = Frame(inner, use, word, suffix, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
+        entered = Frame(
+            inner,
+            use,
+            node.name or node.plugin,
+            word,
+            suffix,
+            prefix,
+            remapped,
+            autoremap,
+            frame,
+            self.names_in(inner),
+            inside,
+        )
         self.frames.append(entered)
         return entered
 
