@@ -177,8 +177,8 @@ def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
-    """Whether a comment suppresses a finding. Whether a comment suppresses a finding. A comment without codes does not
-    suppress the finding that it is unused."""
+    """Whether a comment suppresses a finding. A comment without codes does not suppress the finding that it is
+    unused."""
     is_about_comments = finding.code == unused_suppression.RULE.code
     return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 

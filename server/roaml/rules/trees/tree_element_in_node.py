@@ -18,7 +18,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not element.name.startswith("bt_"):
             continue
         if element.name.startswith("bt_declare_port"):
-            message = "a ROS node has no ports, so this element has no effect; list the file in `<behavior_tree>` if it is a plugin"
+            message = (
+                "a ROS node has no ports, so this has no effect; list the file in `<behavior_tree>` if it is a plugin"
+            )
             drop = remove(context.document, element)
             yield RULE.at(element.name_span, message, drop, severity=Severity.WARNING)
         else:

@@ -108,8 +108,7 @@ def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tup
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
-    """Report a missing tree. Report a missing tree. Without a system, or if an include cannot be read, the tree may be
-    in an unknown file.
+    """Report a missing tree. Without a system, or if an include cannot be read, the tree may be in an unknown file.
 
     A misspelled `<BehaviorTree>` may also be the missing one.
     """
