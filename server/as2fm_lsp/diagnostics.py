@@ -42,7 +42,7 @@ IDLE_DELAY_S = 0.3
 """The time without input after which the user is considered idle."""
 
 MAX_INTERRUPTIONS = 5
-"""How often a computation gives way to messages before it is completed."""
+"""The maximum number of times that a computation gives way to messages before it is completed."""
 
 
 class Diagnostics:

@@ -69,7 +69,7 @@ class Inbox:
                     self.put(body)
                     tell()
             except (OSError, ValueError) as error:  # the connection is lost, or the stream was closed
-                log.debug("the client cannot be read any more: %s", error)
+                log.debug("reading from the client failed: %s", error)
             finally:
                 self.end()
 

@@ -54,7 +54,7 @@ class Requests:
         self._id = id_
 
     def guarded(self, method: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-        """A handler that stops when its answer is not needed any more."""
+        """A handler that stops when its answer is no longer needed."""
         if asyncio.iscoroutinefunction(handler):
 
             @functools.wraps(handler)
@@ -78,7 +78,7 @@ class Requests:
 
     def checkpoint(self) -> None:
         """Raises:
-        Interrupted: the answer to the current request is not needed any more.
+        Interrupted: the answer to the current request is no longer needed.
         """
         request = _current.get()
         if request is not None and (self._is_cancelled(request) or self._is_stale(request)):

@@ -2,8 +2,8 @@
 """The language server: assembles its parts, and begins and ends a session.
 
 Handlers convert the input, make one call and convert the output. Messages are handled one after the other on one event
-loop, so a handler never sees a half-applied change; computations stop at their next checkpoint when their result is not
-needed any more.
+loop, so a handler never sees a half-applied change; computations stop at their next checkpoint when their result is no
+longer needed.
 """
 
 from __future__ import annotations

@@ -2,10 +2,9 @@
 """Waiting for one client on sockets.
 
 Anyone who can reach a port can send data to it: other users of the machine, and every web page that is open in a
-browser, which posts whatever it likes. So a client is served only after its first message, and that must be an
-`initialize` with the token that the server was started with. Who begins in any other way, as HTTP does, is disconnected
-before anything that it has sent is looked at. A socket file needs no token: the system lets nobody but its owner
-connect.
+browser, which can send any data. So a client is served only after its first message, and that must be an `initialize`
+with the token that the server was started with. Who begins in any other way, as HTTP does, is disconnected before
+anything that it has sent is looked at. A socket file needs no token: the system lets nobody but its owner connect.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ log = logging.getLogger(__name__)
 FIRST_MESSAGE_TIMEOUT_S = 30.0
 
 MAX_WAITING_CONNECTIONS = 16
-"""The maximum number of connections without a first message. Others are rejected meanwhile."""
+"""The maximum number of connections without a first message. Further connections are rejected."""
 
 MAX_FIRST_MESSAGE_BYTES = 1 << 24
 

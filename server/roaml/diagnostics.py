@@ -32,7 +32,7 @@ class Severity(enum.IntEnum):
 
 
 class Tag(enum.Enum):
-    """How an editor may show the text of a finding (LSP `DiagnosticTag`)."""
+    """The presentation of the text of a finding in an editor (LSP `DiagnosticTag`)."""
 
     UNNECESSARY = "unnecessary"
     DEPRECATED = "deprecated"

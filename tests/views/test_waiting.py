@@ -42,7 +42,7 @@ def test_a_plugin_waits_for_a_service_that_waits_for_time(tmp_path: Path) -> Non
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Fetch (bt_1002) to answer its tick (tree.xml:5)
 Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
-Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock goes on (pharmacy.ascxml:8)
+Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock advances (pharmacy.ascxml:8)
 help: a tick must be answered before time passes; let Fetch (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
@@ -91,7 +91,7 @@ def test_a_plugin_waits_for_the_result_of_an_action(tmp_path: Path) -> None:
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Move (bt_1001) to answer its tick (tree.xml:3)
 Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
-Arm waits in `busy` for its timer `step`, which ticks when the clock goes on (Arm.ascxml:11)
+Arm waits in `busy` for its timer `step`, which ticks when the clock advances (Arm.ascxml:11)
 help: a tick must be answered before time passes; let Move (bt_1001) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
@@ -135,7 +135,7 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Ask (bt_1002) to answer its tick (tree.xml:3)
 Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
-Publisher waits in `s` for its timer `t`, which ticks when the clock goes on (Publisher.ascxml:5)
+Publisher waits in `s` for its timer `t`, which ticks when the clock advances (Publisher.ascxml:5)
 help: a tick must be answered before time passes; let Ask (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
@@ -201,7 +201,7 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
     assert found[1:] == [
         "the tree waits for Slow (bt_1002) to answer its halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
-        "Server waits in `busy` for its timer `t`, which ticks when the clock goes on (Server.ascxml:5)",
+        "Server waits in `busy` for its timer `t`, which ticks when the clock advances (Server.ascxml:5)",
         "help: a halt must be answered before time passes; let Slow (bt_1002) answer it at once",
         "[answer-needs-time]",
     ]

@@ -32,7 +32,8 @@ COMMANDS = {
     "simulate": "run a system step by step",
     "init": "write a small working system",
 }
-"""What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is called."""
+"""The implementation of each command. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is
+called."""
 
 EXAMPLES = """\
 examples:

@@ -34,7 +34,7 @@ def register(context: Context) -> None:
             arguments: the URI of the system file.
 
         Returns:
-            The place; null if the system has no errors any more.
+            The place; null if the system no longer has errors.
         """
         if len(arguments) != 1 or not isinstance(arguments[0], str):
             text = f"{COMMAND} needs the URI of a system file."

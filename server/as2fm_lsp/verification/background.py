@@ -29,7 +29,7 @@ async def answer(
     """The result of a property.
 
     Args:
-        checkpoint: called in the thread, several times a second; what it raises ends the work.
+        checkpoint: called in the thread, several times per second; an exception that it raises ends the work.
         show: called on the event loop with the intermediate result.
 
     Raises:

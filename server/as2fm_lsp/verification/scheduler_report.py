@@ -66,7 +66,7 @@ def _looked(question: Question, choices: Choices) -> str:
 
 
 def rows(choices: Choices | None) -> dict[str, Any]:
-    """For JSON: `schedulers`, whether all agree (null if unknown) and why, `minimum` and `maximum`."""
+    """The members for JSON: `schedulers` (whether all agree, null if unknown, and why), `minimum` and `maximum`."""
     if choices is None:
         return {"schedulers": {"wanted": "uniform"}}
     agree = True if choices.agreement else False if choices.differ else None

@@ -18,7 +18,7 @@ NOT_STUCK = "does not get stuck"
 
 
 def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
-    """For users.
+    """The result as text for users.
 
     Args:
         shown: where the waiting automata have been shown; "" to show them here.

@@ -125,7 +125,7 @@ def verify(
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
 ) -> Iterator[Result]:
-    """Estimate how probable properties are, by random traces with uniform choices. Results are returned one by one.
+    """Estimate the probabilities of properties by random traces with uniform choices. Results are returned one by one.
 
     Args:
         subject: a system, a JANI model, or the result of `target`.

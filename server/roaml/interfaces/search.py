@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where definition files are found.
+"""The search for definition files.
 
 - Places are searched in this order: workspace folders, `--ros-path` folders, the prefixes of `AMENT_PREFIX_PATH`, and
   the standard packages of this tool. The first file is used, type by type: a folder that contains a part of a package

@@ -54,7 +54,7 @@ class Clause(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Constant(CommentedNode):
-    """Without `value`, the user of the model chooses the value."""
+    """A constant. Without `value`, the user of the model chooses the value."""
 
     name: str
     type: Type
@@ -63,7 +63,7 @@ class Constant(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Variable(CommentedNode):
-    """Without `initial_value`, the variable may initially have any value. A transient variable is reset in each
+    """A variable. Without `initial_value`, it may initially have any value. A transient variable is reset in each
     state."""
 
     name: str

@@ -21,7 +21,7 @@ from roaml.text import Span
 
 
 class FilterFunction(enum.Enum):
-    """How a filter combines the values in its states."""
+    """The function with which a filter combines the values in its states."""
 
     MIN = "min"
     MAX = "max"
@@ -128,7 +128,7 @@ class UnaryFormula(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class BinaryFormula(CommentedNode):
-    """For example a probability and its threshold: `Pmin(...) ≥ 0.95`."""
+    """A formula with two operands, such as a probability and its threshold: `Pmin(...) ≥ 0.95`."""
 
     operator: BinaryOperator
     left: Formula

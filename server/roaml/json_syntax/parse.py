@@ -307,7 +307,7 @@ class _Parser:
         self.report(Span(start, end), f"{'a value' if colon else '`:` and a value'} must follow `{text[:40]}`")
 
     def value_without_name(self, value: JsonValue) -> None:
-        """In an object, a value is where a name is expected; a string is read as a name without a colon."""
+        """Read a value where an object requires a name; a string is read as a name without a colon."""
         if isinstance(value, JsonString):
             self.key, self.wants_comma = _Key(value.value, value.start, value.end, value.quotes, False), False
             return

@@ -97,7 +97,7 @@ class AttributeType:
 
 @dataclass(frozen=True, slots=True)
 class Multiplicity:
-    """How often a child may occur in its parent."""
+    """The minimum and maximum number of occurrences of a child in its parent."""
 
     least: int
     most: int
@@ -117,10 +117,10 @@ class ElementType:
 
     Attributes:
         children: name -> multiplicity; `Grammar.child` returns the type of a child.
-        any_child: how many children of any name there may be, or None; children in foreign namespaces are ignored.
+        any_child: the allowed number of children with any name, or `None`; children in foreign namespaces are ignored.
         any_is_opaque: whether the grammar ignores the names and the content of these children.
-        any_attribute: attributes not listed are allowed; attributes in foreign namespaces always are.
-        text: character data is allowed.
+        any_attribute: whether attributes that are not listed are allowed; attributes in foreign namespaces always are.
+        text: whether character data is allowed.
         sends, receives: part of an interface or of the tree protocol, if any.
         code: the corresponding result code, or 0.
         ignored: whether it has no effect on the model.

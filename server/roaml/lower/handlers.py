@@ -33,7 +33,7 @@ def on(event: ScxmlEvent, target: str, body: Iterable[Statement], origin: Locati
 
 
 def declared_at(endpoint: ChannelEndpoint, program: TranslatableSystem) -> Location:
-    """Where a client or server is declared."""
+    """The place where a client or server is declared."""
     machine = program.machines.get(endpoint.automaton.path)
     for declaration in machine.declarations if machine else ():
         if (

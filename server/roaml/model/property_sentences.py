@@ -23,8 +23,8 @@ from roaml.observers.sentences import Clause, Times, formula_sentence, pattern_f
 
 
 def sentence(file: PropertyFile, written: WrittenProperty) -> str:
-    """What a property requires, in one sentence with the names in backquotes; "" if it has neither a pattern nor a
-    formula."""
+    """A sentence that states the requirement of a property, with the names in backquotes; "" if it has neither a
+    pattern nor a formula."""
     text = _sentence(file, written)
     return f"Assumed: {text[:1].lower()}{text[1:]}" if text and written.section == ASSUMES else text
 
@@ -83,7 +83,7 @@ def _sentence(file: PropertyFile, written: WrittenProperty) -> str:
 
 
 def clause(condition: Expression, ports: Mapping[str, Port]) -> Clause:
-    """A condition as a clause: an event variable alone says what is sent, other conditions hold.
+    """A condition as a clause: an event variable alone states that the event is sent, other conditions hold.
 
     Args:
         ports: the ports of the event variables, by their ids.
@@ -101,7 +101,7 @@ def quoted(text: str) -> str:
 
 
 def event_clause(port: Port) -> Clause:
-    """What happens when the event of a port is sent."""
+    """A clause for the sending of the event of a port."""
     name = quoted(port.name.value) if port.name is not None else "…"
     by = f" by {quoted(port.origin.value)}" if port.origin is not None else ""
     to = f" to {quoted(port.target.value)}" if port.target is not None else ""

@@ -130,7 +130,7 @@ def _scope(scope: ScopeKind, clauses: _Clauses) -> str:
 
 
 def _condition_of_scope(scope: ScopeKind) -> str:
-    """What a scope that is evaluated at its end requires besides."""
+    """The additional requirement of a scope that is evaluated at its end."""
     return "; nothing is required if that end never comes" if scope.is_judged_at_close else ""
 
 

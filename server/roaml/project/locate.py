@@ -12,7 +12,7 @@ from roaml.text import Location
 
 
 def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The position where a symbol is defined; `None` if it does not exist any more."""
+    """The position where a symbol is defined; `None` if it no longer exists."""
     name = _find(analysis, symbol)
     return None if name is None else Location(symbol.path, name.span)
 

@@ -405,13 +405,12 @@ BY_CODE = {rule.code: rule for rule in RULES}
 
 
 def document(code: str) -> str:
-    """The document of a rule (Markdown), with links relative to its file. Raises `KeyError` if there is no such
-    rule."""
+    """The document of a rule (Markdown), with links relative to its file. Raises `KeyError` for unknown codes."""
     return document_file(code).read_text(encoding="utf-8")
 
 
 def document_file(code: str) -> Path:
-    """The file of the document of a rule. Raises `KeyError` if there is no such rule."""
+    """The file of the document of a rule. Raises `KeyError` for unknown codes."""
     rule_name = BY_CODE[code].code.replace("-", "_")
     files = (_FOLDER / group / f"{rule_name}.md" for group in GROUPS)
     return next(file for file in files if file.is_file())

@@ -130,7 +130,7 @@ def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> It
 
 
 def _consequences(automaton: Automaton, destination: Destination, clients: Sequence[str]) -> Iterator[str]:
-    """What an automaton does from a destination on, as far as this is already determined."""
+    """A description of the actions of an automaton after a destination, as far as they are already determined."""
     rest = resting(automaton)
     name = who(automaton.name)
     visited: set[str] = set()

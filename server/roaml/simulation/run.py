@@ -73,7 +73,7 @@ class Run:
         steps: all steps taken, including those after the position.
         decisions: the decision of each of these steps.
         position: the number of steps before the current state.
-        status: what is known of the property in the current state (`roaml.smc.program`).
+        status: the verdict on the property in the current state (`roaml.smc.program`).
         has_ended: whether no further step changes anything.
 
     Raises:
@@ -197,7 +197,7 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """Store what is known of the property after a step; a decided property stays decided."""
+        """Store the verdict on the property after a step; a decided property stays decided."""
         if self.status == UNKNOWN or status == FAULTY:
             self.status = status
             self._check()

@@ -146,7 +146,7 @@ class Session:
 
     @property
     def verdict(self) -> str:
-        """What is known of the property: `passed`, `failed` or `undecided`."""
+        """The verdict on the property: `passed`, `failed` or `undecided`."""
         return VERDICTS[self._run.status]
 
     @property

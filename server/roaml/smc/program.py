@@ -16,7 +16,7 @@ from roaml.jani.operators import Operator
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The verdict on a trace. The kernel uses the same numbers. UNKNOWN: the trace can continue; if it does not, it is
-not."""
+undecided."""
 
 AT_END = -1
 """A lower bound; see `Goal`."""

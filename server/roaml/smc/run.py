@@ -89,8 +89,8 @@ class Tally:
 
     Attributes:
         accepted: the decision of a sequential test.
-        is_revised: whether the options were changed after results were known: then the number of traces was chosen with
-            knowledge of them.
+        is_revised: whether the options were changed after results were known: then the number of traces depends on
+            earlier results.
         examples: for each verdict the first traces; shortest: for each the shortest one.
         ends: why traces have ended, by reason.
     """
@@ -359,7 +359,7 @@ def _is_narrow(tally: Tally, question: Question, options: Options, bounds: Bound
 
 
 def _is_hopeless(tally: Tally, options: Options) -> bool:
-    """Whether so many traces are undecided that no number of traces makes the interval narrow enough."""
+    """Whether there are too many undecided traces for any number of traces to make the interval narrow enough."""
     if tally.undecided == 0:
         return False
     share = clopper_pearson(tally.undecided, tally.traces, options.confidence)

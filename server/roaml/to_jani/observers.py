@@ -275,7 +275,7 @@ class _ObserverWriter:
         self._edge(TIME_OVER_ACTION, [over, *self._ends(self.first_index + 1)])
 
     def _ends(self, index: int) -> list[Assignment]:
-        """What the property says if the trace ends now."""
+        """The verdict of the property if the trace ends now."""
         if not self.is_pending:
             return []
         pending = self._translated(self.outputs.pending, {})
@@ -344,7 +344,7 @@ class _ObserverWriter:
 
 
 def _is_existence(property_: ObservedProperty) -> bool:
-    """Whether the property is that something happens at some time."""
+    """Whether the property requires an event or condition at some time."""
     pattern = property_.property
     return (
         isinstance(pattern, PatternProperty)

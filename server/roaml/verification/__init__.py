@@ -3,7 +3,7 @@
 
 - A `Target` is a model with the texts that its positions refer to: a translated system or a JANI file.
 - A `Verifier` decides its properties. Each `Result` contains the answer, a verdict on each expectation, whether traces
-  got stuck, what is known of other schedulers, or a refusal with the reason why there is no answer.
+  got stuck, the knowledge about other schedulers, or a refusal with the reason why there is no answer.
 - A result can simulate its traces again: `counterexample` explains the shortest one that contradicts an expectation.
 
 Nothing here reads or writes files, prints, or depends on editors.

@@ -30,7 +30,7 @@ class Turn:
     """The steps of one automaton from one event to the next.
 
     Attributes:
-        heard: the event with which it begins; `None` if there is none.
+        heard: the received event with which it begins; `None` if there is none.
         action: the action with which it begins together with others, if it is not an event.
         parts: the parts of the automaton in its steps.
         changes: of its own variables, and of those of the model that carry no event.

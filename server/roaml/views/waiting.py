@@ -310,7 +310,7 @@ class _Chain:
             text = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
-                text += ", which ticks when the clock goes on"
+                text += ", which ticks when the clock advances"
         return Wait(who, text, origin, self.automata[number].name, here, them, unanswered, for_timer)
 
     def place_in_tree(self, answer: str) -> Origin | None:

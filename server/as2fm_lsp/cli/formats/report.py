@@ -84,7 +84,7 @@ class Entry:
 @dataclass(frozen=True)
 class CheckReport:
     """Attributes:
-    checked: how many files were checked.
+    checked: the number of checked files.
     limit: the least severity that makes the check fail.
     color: whether the output goes to a terminal with colors.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For terminals: the position, the message, and the line with the range underlined."""
+"""The format for terminals: the position, the message, and the line with the range underlined."""
 
 from __future__ import annotations
 

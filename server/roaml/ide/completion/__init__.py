@@ -121,7 +121,7 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
 
 
 def _tags(request: Request, place: Content) -> list[CompletionItem]:
-    """Whole elements, where not even the `<` has been typed."""
+    """The completions where not even the `<` has been typed: whole elements."""
     items = [
         CompletionItem(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
         for i in elements(request, place.parents, bare=True)

@@ -56,7 +56,7 @@ def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem
 
 
 def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
-    """For each handle that an element may use: the element with all fields of the message."""
+    """An item for each handle that an element may use: the element with all fields of the message."""
     name = type_.attributes.get("name")
     if name is None or "field" not in type_.children:
         return

@@ -2,8 +2,8 @@
 """The hover text for a place in a file, as Markdown.
 
 - `place` looks up the place once; each of the other modules describes one kind of thing, and none calls another.
-- A name says what it denotes; where there is none, elements, attributes, values, functions and operators say what their
-  language says of them.
+- A name says what it denotes; where there is none, elements, attributes, values, functions and operators have the
+  documentation of their language.
 """
 
 from __future__ import annotations

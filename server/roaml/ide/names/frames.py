@@ -2,8 +2,8 @@
 """The executed tree with the places of its parts: the text from which a blackboard variable or a port's constant
 comes from.
 
-`roaml.model.expand` puts the subtrees in place, without places in the text; here each part gets the text that it is
-made of.
+`roaml.model.expand` expands the subtrees without positions; this module adds the text of each
+part.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in property files in XML: those of properties and variables, and what ports name in the system."""
+"""The names in property files in XML: those of properties and variables, and the interfaces and nodes that ports
+name."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ def in_property_file(
 ) -> Iterator[Occurrence]:
     """
     Args:
-        owner: the system file, or `path` if the file is looked at alone.
+        owner: the system file, or `path` if the file is analysed alone.
         table: the names of the global variables of the translation -> their parts.
     """
     names = _PropertyFile(text, file, path, owner, system, trees, table, find)
@@ -163,7 +164,7 @@ class _PropertyFile:
             yield self.trees.tree_symbol(frame.path, id_)
 
     def symbol_of(self, automaton: SystemAutomaton) -> Symbol:
-        """What the name of a node of the tree is: its own, or that of its plugin."""
+        """The symbol that the name of a node of the tree denotes: the node, or its plugin."""
         assert automaton.instance is not None
         _, node = self.trees.nodes.get(automaton.instance.number, (None, None))
         source = automaton.instance.source

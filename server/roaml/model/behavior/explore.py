@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
-A configuration is a state, what is owed and awaited there (`phases`), the goals whose ids
-variables hold (`ids`), and what is known about values. A step handles an
-event, or none, executes everything in the transition (docs/spec/machines.md#onentry) and ends in a configuration. The
-history decides which events may come: a response only after its request, a tick only when the last one is answered.
+A configuration is a state, the answers that are owed and awaited there (`phases`), the goals whose ids variables hold
+(`ids`), and the knowledge about values. A step handles an event, or none, executes everything in the transition
+(docs/spec/machines.md#onentry) and ends in a configuration. The history decides which events may come: a response only
+after its request, a tick only when the last one is answered.
 
 - The graph contains every path that the chart can take, and it may contain paths that it cannot take.
 - Its size is bounded. If the knowledge about values has too many variants, it is discarded; a chart that is still too
@@ -71,7 +71,7 @@ NOWHERE = "?"
 
 class FaultKind(Vocabulary):
     UNASKED = "unasked"
-    """Nothing waits for the answer: it has been given, or was not asked for."""
+    """Nothing waits for the answer: it was sent before, or never requested."""
     WRONG_KIND = "wrong-kind"
     """A tick that is answered like a halt, or a halt like a tick."""
     UNSTORED = "unstored"
@@ -81,7 +81,7 @@ class FaultKind(Vocabulary):
     OTHER = "other"
     """The id of a goal of another action."""
     EARLIER = "earlier"
-    """The id of an earlier goal in place of the one that has just come."""
+    """The id of an earlier goal instead of the goal that has just arrived."""
     REJECTED = "rejected"
     """A result for a goal that was rejected."""
     UNDECIDED = "undecided"
@@ -245,7 +245,7 @@ class _Path(NamedTuple):
         return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
 
     def held(self, variable: str) -> HeldId | None:
-        """What a variable for the id of a goal holds; `None` if no id was stored in it."""
+        """The content of a variable for the id of a goal; `None` if no id was stored in it."""
         return next((held for name, held in self.ids if name == variable), None)
 
     def holding(self, variable: str, held: HeldId | None) -> _Path:
@@ -260,7 +260,7 @@ class _Path(NamedTuple):
         return next((variable for variable, other in self.ids if other == held), "")
 
     def with_ids(self, handle: str, before: GoalStatus, after: GoalStatus) -> _Path:
-        """With another status of the goals of a server that have this status."""
+        """This path with the status `after` for the goals of a server that have the status `before`."""
         old, new = HeldId(before, handle), HeldId(after, handle)
         return self._replace(ids=tuple((variable, new if held == old else held) for variable, held in self.ids))
 
@@ -786,7 +786,7 @@ class _Explorer:
         return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
-        """What a variable for the id of a goal holds after an assignment; `None` for a constant."""
+        """The content of a variable for the id of a goal after an assignment; `None` for a constant."""
         if not isinstance(location, Name) or value is None:
             return ANY_ID
         if access_path(value) == ("_action", "goal_id"):

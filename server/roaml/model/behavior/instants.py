@@ -297,7 +297,7 @@ def comes_again(
     system: System, receiver: SystemAutomaton, chart: int, event: ProtocolEvent, sent: frozenset[ProtocolEvent]
 ) -> bool:
     """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
-    `sent` since. Time may pass meanwhile (docs/spec/semantics.md#time).
+    `sent` since. Time may pass in between (docs/spec/semantics.md#time).
 
     Args:
         chart: its index in the outline; a copy of a thread does not block the other copies.

@@ -44,7 +44,7 @@ TICK, HALT = Duty(DutyKind.TICK, ""), Duty(DutyKind.HALT, "")
 
 
 class Subject(Vocabulary):
-    """What a phase is the phase of."""
+    """The subject to which a phase applies."""
 
     TREE = "tree"
     """The plugin itself, as a node of the tree."""
@@ -57,7 +57,7 @@ class Subject(Vocabulary):
     RESPONSE = "response"
     DECISION = "decision"
     OUTCOME = "outcome"
-    """What a client waits for; the outcome is the result of its goal."""
+    """The answers that a client waits for; the outcome is the result of its goal."""
 
 
 class Phase(Vocabulary):
@@ -75,11 +75,11 @@ class Phase(Vocabulary):
 
 
 OWED = {DutyKind.REQUEST: Subject.REQUEST, DutyKind.GOAL: Subject.GOAL, DutyKind.RESULT: Subject.RESULT}
-"""The subject whose phase says whether a server owes the answer to a duty."""
+"""The subject whose phase states whether a server owes the answer to a duty."""
 
 
 class GoalStatus(Vocabulary):
-    """What a variable for the id of a goal holds."""
+    """The status of a goal whose id a variable holds."""
 
     ASKED = "asked"
     ACCEPTED = "accepted"

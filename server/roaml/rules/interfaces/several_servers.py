@@ -38,7 +38,7 @@ def _same_events(declaration: Declaration, channel: Channel, other: Channel, nou
     """Report two names that have the same form in the names of events (docs/spec/plain-scxml.md#interface-names)."""
     message = (
         f"the {noun}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
-        f"translation, which cannot tell them apart; rename one of them"
+        f"translation, which cannot distinguish them; rename one of them"
     )
     return RULE.at(name_span(declaration), message, related=[Related(other.sources[0].symbol, "the other one")])
 

@@ -13,7 +13,7 @@ from roaml.rules.support.conditions import covered
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report branches that are never executed: only the first branch whose condition holds is
+    """Report branches that are never executed: only the first branch whose condition holds is executed
     (docs/spec/machines.md#if)."""
     for chart in context.machine.charts:
         for statement in chart.statements:

@@ -158,10 +158,10 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
 
 
 def _literal_choice(node: TreeNode) -> Iterator[Finding]:
-    """Report values like a float or boolean in a `Switch` that uses no variable: they are strings and probably
-    suspicious.
+    """Report values like a float or boolean in a `Switch` that uses no variable: they are strings, which is
+    probably not intended.
 
-    A text that a `<SubTree>` passes may be meant as a string, such as a version.
+    A text that a `<SubTree>` passes may be intended as a string, such as a version.
     """
     setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
     if setting is not None:
