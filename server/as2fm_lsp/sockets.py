@@ -102,7 +102,7 @@ def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[t
 
 @contextmanager
 def listening_at(path: str) -> Iterator[tuple[socket.socket, ...]]:
-    """A socket file to which only the user can connect; it is removed at the end. A leftover one of another server is
+    """A socket file to which only the user can connect; it is removed at the end. A leftover file of another server is
     replaced.
 
     Raises:

@@ -37,7 +37,7 @@ class Trust:
         """Check that the workspace is trusted.
 
         Args:
-            name: of the command or request.
+            name: the name of the command or request.
 
         Raises:
             NotTrustedError: the workspace is not trusted.

@@ -67,7 +67,7 @@ class Fix:
     Fixes with equal titles are equal.
 
     Attributes:
-        title: in the imperative.
+        title: a phrase in the imperative.
         plan: the edits, or a function that computes all of them.
         preferred: whether it is the one obvious fix.
         safe: whether it removes nothing that has an effect and guesses nothing, so that it may be applied without a

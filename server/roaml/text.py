@@ -241,7 +241,7 @@ def decode(path: str, data: bytes) -> SourceFile:
 
 
 def _ignored_encoding(text: str, encoding: str) -> Span | None:
-    """The place where a text declares another encoding than the one it was read with; `None` if there is none.
+    """The place where a text declares an encoding other than the one with which it was read; `None` if there is none.
 
     Names that Python does not know are reported by the XML parser.
     """

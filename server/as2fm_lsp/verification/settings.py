@@ -39,7 +39,7 @@ def verification_settings(settings: object, options: object = None) -> Verificat
 
     Args:
         settings: the client's settings, as received.
-        options: those of one call.
+        options: the options of one call.
     """
     section = settings.get("verify") if isinstance(settings, Mapping) else None
     values = {**_mapping(section), **_mapping(options)}

@@ -41,9 +41,9 @@ class LoadedSystem:
     """A system without errors, in the state of its files at the time of loading.
 
     Attributes:
-        path: of the system file.
-        properties: those in its property files in JANI, in their order.
-        observed: those in its property files in XML, in their order.
+        path: the path of the system file.
+        properties: the properties in its JANI files, in their order.
+        observed: the properties in its XML files, in their order.
         analysis: the analysis of its files.
     """
 

@@ -23,7 +23,7 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
     """A model with values for some of its constants.
 
     Args:
-        texts: of the form `NAME=VALUE`.
+        texts: assignments of the form `NAME=VALUE`.
 
     Raises:
         ValueError: a text is not of this form; there is no constant with this name, or it has a value; or the value is

@@ -27,7 +27,7 @@ from roaml.text import Decoded, Location, Span
 class LoweringContext:
     """
     Attributes:
-        name: of the plain automaton.
+        name: the name of the plain automaton.
         thread: the number of the copy of an action thread; `None` for the machine itself.
         timers: timer handle -> the event of its ticks for this chart.
         ports: key -> the value of a port that the tree does not set.

@@ -18,11 +18,11 @@ class TranslatableSystem:
     """A system without errors.
 
     Attributes:
-        machines: by path, those that the system lists.
+        machines: the machines that the system lists, by path.
         environment: structs, ROS types and the data of plain events.
         place: the root of the system file, as the origin of parts that come from the system as a whole.
         nodes: number of a tree node -> its place.
-        parameters: of the translation; they may differ from those in the system file.
+        parameters: the parameters of the translation, which may differ from those in the system file.
     """
 
     system: System

@@ -10,7 +10,8 @@ _FOREIGN_ATTRIBUTES = ("targetexpr", "eventexpr")
 
 
 def dialect_of(machine: Machine, document: Document, in_older_system: bool | None) -> Dialect:
-    """If a system lists the machine, the system decides (`in_older_system`); otherwise its own root and content do."""
+    """The dialect of a machine: that of the system that lists it (`in_older_system`); otherwise its root and content
+    determine it."""
     if in_older_system is not None:
         return Dialect.OLDER if in_older_system else Dialect.CURRENT
     if machine.root == "ascxml":

@@ -64,7 +64,8 @@ class InterfaceUse:
     Attributes:
         name: topic, service or action as written; "" if it comes from port `port`.
         sends, receives: the parts, as in the roles of the schema.
-        fields: of each part that is sent, the fields with the types of their values, including those that are not set.
+        fields: for each part that is sent, its fields with the types of their values, including fields that are not
+            set.
         awaited: for a subscriber, whether the machine can reach a state in which it waits for this topic alone.
     """
 

@@ -320,7 +320,7 @@ class PortLinker:
 
     def _field(self, variable: PortVariable, data: Struct | None, prefix: str) -> tuple[Type, str]:
         if variable.field is None:
-            message = "`field` is missing: the field whose value the variable has"
+            message = "`field` is missing; name the field whose value the variable gets"
             self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
             return UNKNOWN, ""
         parts = variable.field.value.split(".")

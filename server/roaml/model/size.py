@@ -21,7 +21,7 @@ class Share:
     """The contribution of one part of the models to a size.
 
     Attributes:
-        count: in cells or parts.
+        count: the number of cells or parts.
         words: a phrase for the part.
         path: the file of the part; "" if it is in no file.
         symbol: the declaration of the part, if it has a name.

@@ -169,7 +169,7 @@ class System:
     """A system file and everything that it names.
 
     Attributes:
-        path: of the system file.
+        path: the path of the system file.
         older: whether the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: listed nodes, in order; plugins: listed plugins, in order.
         instances: the nodes of the executed tree, in pre-order.

@@ -94,7 +94,7 @@ class Parameters:
 
     Attributes:
         max_time: the bound of the clock in ns; `None` if it is not given or not a duration.
-        tick_rate: of the behavior tree, in Hz.
+        tick_rate: the tick rate of the behavior tree, in Hz.
         random_values: the number n of values of `Math.random()`: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
     """
 
@@ -135,7 +135,7 @@ class SystemFile:
 
     Attributes:
         older: whether it has the older root (docs/spec/files.md#older-dialect).
-        inputs: of all sections, in order; misspelled inputs are included in the intended form.
+        inputs: the inputs of all sections, in order; misspelled inputs are included in the intended form.
         unread: the sections that may list files that `inputs` does not contain, because they contain a misplaced
             element.
     """

@@ -142,7 +142,7 @@ class TypedValue:
 @dataclass(frozen=True, slots=True, eq=False)
 class TypedMachine:
     """Attributes:
-    values: in document order within each chart.
+    values: all values, in document order within each chart.
     variables: per chart scope, the types of its data; if ids are equal, the first declaration is used.
     unset: for each sending element, the fields that it should set and does not; see `unset_fields`.
     """

@@ -77,7 +77,7 @@ def pattern_formula(pattern: Pattern, scope: ScopeKind, conditions: Mapping[str,
     """A pattern in a scope as a formula of temporal logic with past operators, the scope in words.
 
     Args:
-        conditions: by the names of inputs.
+        conditions: the conditions by the names of inputs.
     """
     left, right, opened, closed = (conditions.get(name, "…") for name in (LEFT, RIGHT, OPEN, CLOSE))
     bounds = f"[{times.after or '0'}, {times.within or '∞'}]" if times.after or times.within else ""

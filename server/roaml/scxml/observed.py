@@ -17,7 +17,7 @@ class PortEvent:
     """An event of the translation.
 
     Attributes:
-        name: of the event.
+        name: the name of the event.
         sender: the only automaton whose events are observed; "" for all automata.
         constants: the values that follow from the event itself: kind of variable -> value.
     """

@@ -76,7 +76,7 @@ class Question:
     """The question about all traces.
 
     Attributes:
-        name: of the property.
+        name: the name of the property.
         operator: `Pmin`, `Pmax`, `Emin` or `Emax`.
         is_reward: whether it is about an expected reward, not a probability.
         threshold: the comparison of the value, if there is one.

@@ -119,7 +119,7 @@ class OperatorAssembler:
         return Operand(kind, register)
 
     def folded(self, node: Unary | Binary, operands: Sequence[Operand], kind: str) -> Operand:
-        """An operator whose operands are constants."""
+        """The value of an operator whose operands are constants."""
         constants: list[Expression] = []
         for operand in operands:
             value = operand.value

@@ -71,7 +71,7 @@ class StepReader:
     """Reads the last step from a kernel.
 
     Attributes:
-        variables: those of the model, then those of each instance.
+        variables: the variables of the model, then those of each instance.
     """
 
     def __init__(self, kernel: Kernel, legend: Legend) -> None:

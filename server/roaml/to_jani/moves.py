@@ -45,7 +45,7 @@ class AutomatonMoves:
     """
     Attributes:
         start: the statements that the initial state executes first; `None` if there are none.
-        moves: by state, in document order.
+        moves: the moves of each state, in document order.
     """
 
     automaton: Automaton

@@ -24,7 +24,7 @@ class Refusal:
 def refusal(fault: FaultError, target: VerificationTarget, seed: int) -> Refusal:
     """
     Args:
-        seed: of the traces.
+        seed: the seed of the traces.
     """
     return Refusal(fault.code, fault_message(fault, seed), target.place(fault.origin))
 

@@ -18,7 +18,7 @@ class EventReader:
     """Reads the steps of a trace one after the other.
 
     Args:
-        automata: of each instance.
+        automata: the automaton of each instance.
         start: the variables of the model before the first step.
 
     Attributes:

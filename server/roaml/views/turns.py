@@ -33,7 +33,7 @@ class Turn:
         heard: the received event with which it begins; `None` if there is none.
         action: the action with which it begins together with others, if it is not an event.
         parts: the parts of the automaton in its steps.
-        changes: of its own variables, and of those of the model that carry no event.
+        changes: the changes of its own variables, and of those of the model that carry no event.
         messages: the events that it has sent.
         ends: whether the trace ends with it.
     """

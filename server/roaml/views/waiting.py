@@ -84,7 +84,7 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     """The chain of waiting automata, beginning with the clock if there is one; empty if none waits.
 
     Args:
-        time: of the model, in s.
+        time: the time of the model, in s.
     """
     return tuple(_Chain(standstill, time).told())
 

@@ -20,7 +20,7 @@ KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
 @dataclass(frozen=True, slots=True)
 class WorkspaceEdit:
     """Attributes:
-    edits: of existing files, by path; those of one file do not overlap.
+    edits: the edits of existing files, by path; those of one file do not overlap.
     created: the text of new files, by path.
     renamed: files with their new paths. They are edited before they are renamed.
     """
@@ -38,7 +38,7 @@ class CodeAction:
     """A code action at a place.
 
     Attributes:
-        title: in the imperative; unique among those of one kind and place.
+        title: a phrase in the imperative; unique among those of one kind and place.
         make: computes the change when it is requested.
         mends: the diagnostic that a quick fix removes.
         preferred: whether it is the one obvious action.

@@ -40,7 +40,7 @@ class Beginning(NamedTuple):
 def beginning(text: str, start: int, offset: int) -> Beginning | None:
     """
     Args:
-        text: of the file.
+        text: the text of the file.
         start: where the expression begins in it.
 
     Returns:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Building blocks of Markdown, and Markdown as plain text.
 
-Names and comments may contain any text, so they are escaped, so that they cannot affect the text around them. Some
+Names and comments may contain any text, so they are escaped and cannot affect the text around them. Some
 editors show HTML in Markdown, load images and follow links; no text of a file becomes a tag, an image or a link.
 """
 

@@ -17,7 +17,7 @@ from roaml.project.analysis import Analysis
 class Place:
     """
     Attributes:
-        kind: of the file.
+        kind: the kind of the file.
         systems: the systems of the file; `(None,)` if it is in none.
         names: the meaning of the text at the place, in each system.
         elements: the enclosing XML elements, outermost first.

@@ -44,8 +44,8 @@ class Frame:
 
     Attributes:
         expanded: the same instance without places.
-        tree: of the file.
-        prefix: of the full names of its variables.
+        tree: the tree in the file.
+        prefix: the prefix of the full names of its variables.
         settings: the values from the attributes of the subtree node and from defaults.
         outer: the enclosing instance.
         names: the variables that the tree's text mentions, also through defaults.
@@ -92,7 +92,7 @@ class Trees:
     """The tree files of a system, the executed one first.
 
     Args:
-        outlines: of the files.
+        outlines: the outlines of the files.
         owner: the system file, or the first tree file if there is no system.
         is_alone: whether there is no system; then scripts also name variables.
     """
