@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Everything that the extension does, in the order in which a user meets it. */
+/** End-to-end tests of all features, in the order in which a user encounters them. */
 
 import { describe } from "node:test";
 import { editing } from "./editing";
 import { firstStart } from "./firstStart";
-import { harmony } from "./harmony";
-import { life } from "./life";
+import { compatibility } from "./compatibility";
+import { serverLifeCycle } from "./serverLifeCycle";
 import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
@@ -15,7 +15,7 @@ import { withoutPython } from "./withoutPython";
 import { walkthrough } from "./walkthrough";
 import { Stage } from "./support/stage";
 
-// One server and one browser for what needs nothing special: it is what takes long to start.
+// Tests without special requirements share one server and one browser, which take long to start.
 const stage = new Stage();
 
 describe("first start", () => {
@@ -39,11 +39,11 @@ describe("walkthrough and templates", () => {
 describe("themes", () => {
     themes(stage);
 });
-describe("life of the server", () => {
-    life(stage);
+describe("server life cycle", () => {
+    serverLifeCycle(stage);
 });
-describe("harmony with other extensions", () => {
-    harmony(stage);
+describe("compatibility with other extensions", () => {
+    compatibility(stage);
 });
 describe("restricted mode", () => {
     restricted(stage);

@@ -7,7 +7,7 @@ import { MEND, sample, type Stage } from "./support/stage";
 export function editing(stage: Stage): void {
     stage.use();
 
-    stage.test("the quick fix mends the mistake", sample, async (window) => {
+    stage.test("a quick fix corrects the error", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         await window.goBehind("nodes/battery.ascxml", 'location="levl');
@@ -38,7 +38,7 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
-        "_msg. typed straight through lists the fields, quickly and slowly",
+        "completion after _msg. lists the fields at any typing speed",
         () => sample(MEND),
         async (window) => {
             await window.openFile("battery.ascxml");
@@ -58,7 +58,7 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
-        "an accepted attribute opens its values",
+        "an accepted attribute opens the list of its values",
         () => sample(MEND),
         async (window) => {
             await window.openFile("battery.ascxml");
@@ -103,7 +103,7 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
-        "a lens counts the uses of a thing and shows them",
+        "a lens counts the uses of a symbol and shows them",
         () => sample(MEND),
         async (window) => {
             await window.openFile("battery.ascxml");
@@ -139,7 +139,7 @@ export function editing(stage: Stage): void {
     );
 
     stage.test(
-        "a node from the template has no mistakes",
+        "a node from the template has no errors",
         () => sample(MEND),
         async (window) => {
             await window.openFile("main.xml");

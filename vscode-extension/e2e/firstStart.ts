@@ -5,7 +5,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { sample, type Stage } from "./support/stage";
 
-/** Wait until it is known whether the kernel can be compiled. */
+/** Waits until the kernel has been compiled or its compilation has failed. */
 async function kernelMark(home: string): Promise<void> {
     const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
     const isKnown = () =>
@@ -20,7 +20,7 @@ async function kernelMark(home: string): Promise<void> {
 export function firstStart(stage: Stage): void {
     stage.use();
 
-    stage.test("one click creates the private environment, and the mistake is shown", sample, async (window) => {
+    stage.test("one click installs the server, and the error is shown", sample, async (window) => {
         await window.openFile("battery.ascxml");
         const offer = window.notification("is not installed yet");
         await offer.waitFor();
@@ -40,7 +40,7 @@ export function firstStart(stage: Stage): void {
         await window.screenshot("mistake");
     });
 
-    stage.test("the next start needs nothing", sample, async (window) => {
+    stage.test("the next start installs nothing", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         assert.equal(await window.page.locator(".notification-list-item").count(), 0);

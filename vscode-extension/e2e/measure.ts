@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * How long it takes from opening a workspace to its first diagnostics, with the server's environment in place.
+ * The time from opening a workspace to its first diagnostics, with an installed server.
  *
- * Most of it is the workbench's own: an extension that has nothing to do but to show a diagnostic tells how much.
+ * Most of it is spent in VS Code itself: an extension that only shows a diagnostic measures this part.
  */
 
 import { sample } from "./support/stage";
@@ -40,7 +40,7 @@ console.log(
         `of an extension that has nothing to do: ${median(least)} s; median of ${TIMES}`,
 );
 
-/** In seconds. */
+/** The time in s. */
 async function untilFirstProblem(workbench: Workbench): Promise<number> {
     const started = performance.now();
     const window = await workbench.open(sample());

@@ -10,7 +10,7 @@ export function pictures(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "the machine: its states, a click, the caret",
+        "a machine: its states, navigation by click and by caret",
         () => sample(MEND),
         async (window) => {
             await window.openFile("battery.ascxml");
@@ -37,7 +37,7 @@ export function pictures(stage: Stage): void {
     );
 
     stage.test(
-        "the behavior tree with its ports",
+        "the behavior tree and its ports",
         () => sample(MEND),
         async (window) => {
             await window.openFile("tree.xml");
@@ -55,7 +55,7 @@ export function pictures(stage: Stage): void {
     );
 
     stage.test(
-        "the ROS graph, its keyboard and its search",
+        "the ROS graph: keyboard navigation and search",
         () => sample(MEND),
         async (window) => {
             await window.openFile("main.xml");
@@ -80,7 +80,7 @@ export function pictures(stage: Stage): void {
     );
 
     stage.test(
-        "a picture is saved as SVG and as PNG",
+        "a diagram is saved as SVG and as PNG",
         () => sample(MEND),
         async (window) => {
             await window.openFile("main.xml");

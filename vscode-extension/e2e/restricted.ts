@@ -5,7 +5,7 @@ import * as path from "node:path";
 import { MEND, sample, type Stage } from "./support/stage";
 import { write } from "./support/workbench";
 
-/** A workspace that tries to have code of its own run: a program in place of the server, and modules of its names. */
+/** A workspace that tries to run its own code: a program in place of the server, and modules with names that it imports. */
 function hostile(change = {}): string {
     const folder = sample(change);
     for (const module of ["as2fm_lsp", "pip", "venv", "encodings"]) {
@@ -22,7 +22,7 @@ function hostile(change = {}): string {
 export function restricted(stage: Stage): void {
     stage.use({ trustEverything: false });
 
-    stage.test("models are checked, nothing of the workspace is started", hostile, async (window) => {
+    stage.test("models are checked, and no program of the workspace is started", hostile, async (window) => {
         await window.page.getByRole("button", { name: "No, I don't trust the authors" }).click();
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
@@ -38,7 +38,7 @@ export function restricted(stage: Stage): void {
     });
 
     stage.test(
-        "the lenses write nothing and verify nothing",
+        "lenses neither write files nor verify",
         () => hostile(MEND),
         async (window) => {
             await window.page.getByRole("button", { name: "No, I don't trust the authors" }).click();
@@ -55,7 +55,7 @@ export function restricted(stage: Stage): void {
         },
     );
 
-    stage.test("once trusted, the workspace decides", hostile, async (window) => {
+    stage.test("a trusted workspace determines the server", hostile, async (window) => {
         await window.page.getByRole("button", { name: "Yes, I trust the authors" }).click();
         await window.openFile("battery.ascxml");
         await window.until(() => fs.existsSync(path.join(window.folder, "started")));
@@ -64,7 +64,7 @@ export function restricted(stage: Stage): void {
     });
 }
 
-/** The files of a folder with their content. */
+/** The files of a folder with their contents. */
 function content(folder: string): Record<string, string> {
     const names = fs.readdirSync(folder, { recursive: true, encoding: "utf8" });
     const files = names.map((name) => path.join(folder, name)).filter((file) => fs.statSync(file).isFile());

@@ -20,7 +20,7 @@ export function systems(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "translate writes a compact JANI file and opens it laid out, with its outline",
+        "translation writes a compact JANI file and opens it formatted, with its outline",
         () => sample(MEND),
         async (window) => {
             await window.openFile("tree.xml");
@@ -47,7 +47,7 @@ export function systems(stage: Stage): void {
         },
     );
 
-    stage.test("a system with errors is not translated, says why, and leads to the error", sample, async (window) => {
+    stage.test("a system with errors is not translated; the message leads to the error", sample, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Translate to JANI");
@@ -57,7 +57,7 @@ export function systems(stage: Stage): void {
         assert.ok(!fs.existsSync(path.join(window.folder, "main.jani")));
     });
 
-    stage.test("the lens of a system with errors says so and leads to the error", sample, async (window) => {
+    stage.test("the lens of a system with errors counts them and leads to the first one", sample, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         const lens = window.page.locator(".codelens-decoration a", {
@@ -92,32 +92,36 @@ export function systems(stage: Stage): void {
         write(path.join(folder, "as2fm.toml"), 'ros-path = ["msgs"]\ningore = []\n');
         return folder;
     };
-    stage.test("mistakes in as2fm.toml are diagnostics there, gone when mended", configured, async (window) => {
-        await window.openFile("main.xml");
-        await window.running();
-        await window.openFile("as2fm.toml");
-        await window.squiggles.first().waitFor();
-        await window.page.locator(".squiggly-warning").first().waitFor();
-        await window.run("View: Focus Problems");
-        const problems = window.page.locator(".markers-panel");
-        await problems.getByText("there is no setting `ingore`; did you mean `ignore`?").waitFor();
-        await problems.getByText("there is no folder `msgs`").waitFor();
-        await window.screenshot("configuration");
-        assert.equal(await window.page.locator(".notification-list-item").count(), 0);
-        await window.openFile("as2fm.toml");
-        await window.goTo(2, 3);
-        await window.press("Control+.");
-        await window.page
-            .locator(".action-widget .monaco-list-row", { hasText: "Change to `ignore`" })
-            .first()
-            .waitFor();
-        await window.press("Enter");
-        await window.squiggles.first().waitFor({ state: "detached" });
-        await window.goTo(1, 1);
-        await window.press("Shift+End", "Delete");
-        await window.page.locator(".squiggly-warning").first().waitFor({ state: "detached" });
-        assert.equal(await window.page.locator(".notification-list-item").count(), 0);
-    });
+    stage.test(
+        "errors in as2fm.toml are diagnostics that disappear after the correction",
+        configured,
+        async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.openFile("as2fm.toml");
+            await window.squiggles.first().waitFor();
+            await window.page.locator(".squiggly-warning").first().waitFor();
+            await window.run("View: Focus Problems");
+            const problems = window.page.locator(".markers-panel");
+            await problems.getByText("there is no setting `ingore`; did you mean `ignore`?").waitFor();
+            await problems.getByText("there is no folder `msgs`").waitFor();
+            await window.screenshot("configuration");
+            assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+            await window.openFile("as2fm.toml");
+            await window.goTo(2, 3);
+            await window.press("Control+.");
+            await window.page
+                .locator(".action-widget .monaco-list-row", { hasText: "Change to `ignore`" })
+                .first()
+                .waitFor();
+            await window.press("Enter");
+            await window.squiggles.first().waitFor({ state: "detached" });
+            await window.goTo(1, 1);
+            await window.press("Shift+End", "Delete");
+            await window.page.locator(".squiggly-warning").first().waitFor({ state: "detached" });
+            assert.equal(await window.page.locator(".notification-list-item").count(), 0);
+        },
+    );
 
     const unusual = () => {
         const folder = sample(MEND);
@@ -129,7 +133,7 @@ export function systems(stage: Stage): void {
         );
         return folder;
     };
-    stage.test("no yellow box around operators of JANI", unusual, async (window) => {
+    stage.test("operators of JANI are not marked as ambiguous characters", unusual, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
         // The Greek letter, which does look like a Latin one, shows that VS Code has looked.
@@ -140,7 +144,7 @@ export function systems(stage: Stage): void {
     });
 
     stage.test(
-        "plain SCXML beside its source follows the caret and the edits",
+        "plain SCXML beside its source follows the caret and edits",
         () => sample(MEND),
         async (window) => {
             await window.openFile("battery.ascxml");
@@ -161,7 +165,7 @@ export function systems(stage: Stage): void {
         },
     );
 
-    stage.test("check workspace is a task that marks what it finds", sample, async (window) => {
+    stage.test("the command Check Workspace runs a task and marks its findings", sample, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Check Workspace");
@@ -174,7 +178,7 @@ export function systems(stage: Stage): void {
         assert.equal(await rows.count(), 1);
     });
 
-    stage.test("migrating shows what would change, and changes it", oldSystem, async (window) => {
+    stage.test("migration shows the changes and applies them", oldSystem, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Migrate System");

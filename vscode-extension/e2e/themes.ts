@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * What the walkthrough shows. `npm run e2e -- --pictures` takes its pictures in each kind of theme; otherwise, one theme
- * is tried, in high contrast: all other tests have a light one.
+ * The pictures of the walkthrough. `npm run e2e -- --pictures` takes them in each kind of theme; otherwise only a theme
+ * with high contrast is tested, because all other tests use a light one.
  */
 
 import * as path from "node:path";
@@ -18,8 +18,8 @@ const THEMES =
               "hc-light": "Default High Contrast Light",
               ...HIGH_CONTRAST,
           };
-/** A verification takes its time where no compiler has made the kernel fast. */
-const PATIENCE = 120_000;
+/** The time limit for a verification, in ms; it is slow without a compiled kernel. */
+const TIMEOUT_MS = 120_000;
 
 export function themes(stage: Stage): void {
     stage.use();
@@ -42,7 +42,7 @@ export function themes(stage: Stage): void {
             return folder;
         };
 
-        stage.test(`the walkthrough's pictures of a mistake, ${theme}`, broken, async (window) => {
+        stage.test(`the walkthrough's pictures of an error, ${theme}`, broken, async (window) => {
             const { page } = window;
             await window.openFile("battery.ascxml");
             await window.running();
@@ -90,7 +90,7 @@ export function themes(stage: Stage): void {
             await window.openFile("properties.jani");
             await window.run("AS2FM: Verify");
             const row = page.locator(".test-explorer-tree .monaco-list-row", { hasText: "never_empty" });
-            await row.locator(".codicon-testing-failed-icon").waitFor({ timeout: PATIENCE });
+            await row.locator(".codicon-testing-failed-icon").waitFor({ timeout: TIMEOUT_MS });
             await page
                 .locator(".view-line", { hasText: /never_empty.*✗/ })
                 .first()

@@ -10,29 +10,29 @@ export function verification(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "a lens verifies a property and tells the result",
+        "a lens verifies a property and shows the result",
         () => sample(MEND),
         async (window) => {
             await window.openFile("properties.jani");
             await window.running();
             await lens(window, "Verify").nth(1).click();
-            await hint(window, "never_empty", "=\\s1\\s\\[").waitFor({ timeout: PATIENCE });
+            await hint(window, "never_empty", "=\\s1\\s\\[").waitFor({ timeout: TIMEOUT_MS });
             await window.screenshot("verified");
         },
     );
 
-    stage.test("the Test Explorer runs properties and tells what came of them", late, async (window) => {
+    stage.test("the Test Explorer runs properties and shows their results", late, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
         await explore(window);
         const [delivered, empty] = [row(window, "all_delivered"), row(window, "never_empty")];
         await delivered.hover();
         await delivered.getByRole("button", { name: "Run Test" }).click();
-        await icon(delivered, "passed").waitFor({ timeout: PATIENCE });
+        await icon(delivered, "passed").waitFor({ timeout: TIMEOUT_MS });
         await delivered.filter({ hasText: /1 \[0\.9\d+, 1\]/ }).waitFor();
         await icon(empty, "unset").waitFor();
         await window.run("Test: Run All Tests");
-        await icon(empty, "failed").waitFor({ timeout: PATIENCE });
+        await icon(empty, "failed").waitFor({ timeout: TIMEOUT_MS });
         await empty.filter({ hasText: /0 \[0, 0\.0\d*\]/ }).waitFor();
         await icon(row(window, "main.xml"), "failed").waitFor();
         // What was expected, and the way to a trace in which it is not so.
@@ -46,14 +46,14 @@ export function verification(stage: Stage): void {
         await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
     });
 
-    stage.test("a counterexample leads to the lines, and lights where it is in the pictures", late, async (window) => {
+    stage.test("a counterexample leads to its lines and is highlighted in diagrams", late, async (window) => {
         await window.openFile("tree.xml");
         await window.running();
         await button(window, "Show Behavior Tree").click();
         const tree = await window.picture();
         await window.openFile("properties.jani");
         await lens(window, "Verify").nth(1).click();
-        await lens(window, "Show counterexample").click({ timeout: PATIENCE });
+        await lens(window, "Show counterexample").click({ timeout: TIMEOUT_MS });
         await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
         await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
@@ -81,13 +81,13 @@ export function verification(stage: Stage): void {
         await window.screenshot("counterexample-machine");
     });
 
-    stage.test("a result is stale while its system says something else", late, async (window) => {
+    stage.test("a result is stale while its system differs", late, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
         await explore(window);
         await lens(window, "Verify").first().click();
         const [delivered, told] = [row(window, "all_delivered"), "=\\s1\\s\\[0\\.9\\d+,\\s1\\]"];
-        await hint(window, "all_delivered", told).waitFor({ timeout: PATIENCE });
+        await hint(window, "all_delivered", told).waitFor({ timeout: TIMEOUT_MS });
         await icon(delivered, "passed").waitFor();
         await window.openFile("tree.xml");
         await window.goBehind("tree.xml", 'level="');
@@ -102,11 +102,11 @@ export function verification(stage: Stage): void {
         await hint(window, "all_delivered", `${told}(?!,\\sstale)`).waitFor();
     });
 
-    stage.test("a property that fails says so once on its line", late, async (window) => {
+    stage.test("a failed property is reported once on its line", late, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
         await lens(window, "Verify").nth(1).click();
-        await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor({ timeout: PATIENCE });
+        await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor({ timeout: TIMEOUT_MS });
         await lens(window, "Show counterexample").waitFor();
         // By then the test has failed; VS Code would have written its message behind the line.
         await window.page.locator(".testing-run-glyph.codicon-testing-failed-icon").first().waitFor();
@@ -120,19 +120,19 @@ export function verification(stage: Stage): void {
         assert.equal((content ?? "").split("0.9").length, 2, "the expectation stands there once");
     });
 
-    stage.test("AS2FM: Verify runs all properties of the system, and shows them", late, async (window) => {
+    stage.test("the command AS2FM: Verify runs all properties of the system and shows them", late, async (window) => {
         await window.openFile("tree.xml");
         await window.running();
         await window.run("AS2FM: Verify");
-        await icon(row(window, "never_empty"), "failed").waitFor({ timeout: PATIENCE });
-        await icon(row(window, "all_delivered"), "passed").waitFor({ timeout: PATIENCE });
+        await icon(row(window, "never_empty"), "failed").waitFor({ timeout: TIMEOUT_MS });
+        await icon(row(window, "all_delivered"), "passed").waitFor({ timeout: TIMEOUT_MS });
     });
 }
 
-/** A verification takes its time where no compiler has made the kernel fast. */
-const PATIENCE = 120_000;
+/** The time limit for a verification, in ms; it is slow without a compiled kernel. */
+const TIMEOUT_MS = 120_000;
 
-/** The robot charges too late: its battery is empty before. */
+/** A robot that charges too late, after its battery is empty. */
 function late(): string {
     const folder = sample({ ...MEND, "tree.xml": (text) => text.replace('level="30"', 'level="0"') });
     const verify = { "as2fm.verify.epsilon": 0.05, "as2fm.verify.expectations": { never_empty: ">= 0.9" } };
@@ -144,19 +144,19 @@ function lens(window: Window, title: string): Locator {
     return window.page.locator(".codelens-decoration a", { hasText: new RegExp(`^${title}$`) });
 }
 
-/** What stands behind the name of a property; spaces are those that the editor draws. */
+/** The text after the name of a property, with the spaces that the editor draws. */
 function hint(window: Window, property: string, text: string): Locator {
     return window.page.locator(".view-line", { hasText: new RegExp(`${property}.*${text}`) }).first();
 }
 
-/** Above the editor, as soon as the server has said what its file is. */
+/** A button above the editor, which appears when the server has reported the kind of the file. */
 function button(window: Window, name: string): Locator {
     return window.page.locator(".editor-actions").getByRole("button", { name });
 }
 
 /** Show the properties of the system in the Test Explorer. */
 async function explore(window: Window): Promise<void> {
-    // VS Code asks for no lenses once the focus has gone elsewhere.
+    // VS Code requests no lenses while the focus is elsewhere.
     await lens(window, "Verify").first().waitFor();
     await window.run("Testing: Focus on Test Explorer View");
     await row(window, "main.xml").click();

@@ -9,7 +9,7 @@ export function walkthrough(stage: Stage): void {
     stage.use();
 
     stage.test(
-        "from the walkthrough to a sample with a mistake",
+        "the walkthrough opens a sample with an error",
         () => temporaryFolder("empty"),
         async (window) => {
             const { page } = window;
@@ -32,7 +32,7 @@ export function walkthrough(stage: Stage): void {
     );
 
     stage.test(
-        "a new system is checked and has no mistakes, and CI is set up",
+        "a new system has no errors, and CI is set up",
         () => {
             const folder = temporaryFolder("new");
             fs.writeFileSync(path.join(folder, "start.ascxml"), "<ascxml");

@@ -6,13 +6,13 @@ import { sample } from "./support/stage";
 import { temporaryFolder, Workbench, write } from "./support/workbench";
 
 export function withoutPython(): void {
-    test("a machine without Python gets a message that helps", async () => {
+    test("without Python, the message states how to install it", async () => {
         await install({ PATH: programs("sh", "cat", "uname", "env") }, async (said) => {
             await said("needs Python 3.10 or newer", "no-python");
         });
     });
 
-    test("without a package index the message says what to do", async () => {
+    test("without a package index, the message states what to do", async () => {
         const nowhere = {
             PIP_INDEX_URL: "http://127.0.0.1:9/simple",
             PIP_RETRIES: "0",
@@ -24,7 +24,7 @@ export function withoutPython(): void {
         });
     });
 
-    test("a Python without venv is told of, with the package to install", async () => {
+    test("without venv, the message names the package to install", async () => {
         const folder = programs("sh", "cat", "uname", "env");
         // It answers what it is asked about itself, and nothing else.
         const script = ["#!/bin/sh", 'case "$*" in', '*" venv "*) echo "ensurepip is not available" >&2; exit 1 ;;'];
@@ -56,7 +56,7 @@ async function install(
     }
 }
 
-/** A folder for PATH with some programs and nothing else. */
+/** A folder for PATH that contains only the given programs. */
 function programs(...names: string[]): string {
     const folder = temporaryFolder("path");
     for (const name of names) {

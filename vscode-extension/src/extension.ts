@@ -14,7 +14,7 @@ import { StatusItem } from "./editor/statusItem";
 import { done, watchMending } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
-import { wanted } from "./editor/wanted";
+import { modelsExist } from "./editor/activation";
 import { offerSchemas } from "./editor/xmlExtension";
 
 let server: LanguageServer | undefined;
@@ -62,7 +62,7 @@ async function start(
     server: LanguageServer,
     log: vscode.LogOutputChannel,
 ): Promise<void> {
-    await wanted(context.subscriptions);
+    await modelsExist(context.subscriptions);
     await Promise.all([server.open(), offerSchemas(context, log)]);
 }
 

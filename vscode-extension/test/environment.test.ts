@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PrivateEnvironment, type Step } from "../src/server/environment";
 import type { Ended } from "../src/server/run";
-import { FakeMachine, python } from "./support/machine";
+import { FakeHost, python } from "./support/host";
 
 const HOME = "/storage/2";
 const INSIDE = `${HOME}/bin/python`;
@@ -14,21 +14,21 @@ interface Answers {
     readonly version?: Partial<Ended>;
 }
 
-function machine({ venv = {}, pip = {}, version = { out: "as2fm-lsp 0.1.0" } }: Answers = {}): FakeMachine {
-    return new FakeMachine({
+function host({ venv = {}, pip = {}, version = { out: "as2fm-lsp 0.1.0" } }: Answers = {}): FakeHost {
+    return new FakeHost({
         "/bin/python3": (args) => (args.includes("venv") ? venv : python("/bin/python3")(args)),
         [INSIDE]: (args) => (args.includes("pip") ? pip : version),
     });
 }
 
-function install(on: FakeMachine, preferred: string[] = [], onStep: (step: Step) => void = () => undefined) {
+function install(on: FakeHost, preferred: string[] = [], onStep: (step: Step) => void = () => undefined) {
     return new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").install(preferred, {
         onStep,
     });
 }
 
 test("an environment is created, the wheel installed and the mark written last", async () => {
-    const on = machine();
+    const on = host();
     on.files.set("/storage/1/ready.json", "{}");
     const steps: Step[] = [];
     const found = await install(on, [], (step) => steps.push(step));
@@ -49,8 +49,8 @@ test("an environment is created, the wheel installed and the mark written last",
 });
 
 /** An environment that has been made, in which the attempt to compile ends like this. */
-function made(ended: Partial<Ended>): { on: FakeMachine; environment: PrivateEnvironment } {
-    const on = new FakeMachine({ [INSIDE]: () => ended });
+function made(ended: Partial<Ended>): { on: FakeHost; environment: PrivateEnvironment } {
+    const on = new FakeHost({ [INSIDE]: () => ended });
     on.files.set(`${HOME}/ready.json`, '{"version": "0.1.0"}');
     return { on, environment: new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2") };
 }
@@ -80,13 +80,13 @@ test("an attempt that was interrupted is repeated at the next start", async () =
 });
 
 test("nothing is compiled without an environment", async () => {
-    const on = machine();
+    const on = host();
     await new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2").compile(() => undefined);
     assert.deepEqual(on.ran, []);
 });
 
 test("the preferred interpreter comes first", async () => {
-    const on = new FakeMachine({
+    const on = new FakeHost({
         "/bin/python3": python("/bin/python3"),
         "/conda/python": (args) => (args.includes("venv") ? {} : python("/conda/python", "3.13")(args)),
         [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
@@ -96,27 +96,27 @@ test("the preferred interpreter comes first", async () => {
 });
 
 test("no Python of an untrusted folder is started", async () => {
-    const on = machine();
+    const on = host();
     const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2");
     assert.deepEqual(await environment.install(["/bin/python3"], { avoid: ["/bin"] }), { kind: "no-python" });
     assert.deepEqual(on.ran, []);
 });
 
 test("no Python, or an old one only", async () => {
-    assert.deepEqual(await install(new FakeMachine({})), { kind: "no-python" });
-    const old = new FakeMachine({ "/bin/python3": python("/bin/python3", "3.9") });
+    assert.deepEqual(await install(new FakeHost({})), { kind: "no-python" });
+    const old = new FakeHost({ "/bin/python3": python("/bin/python3", "3.9") });
     assert.deepEqual(await install(old), { kind: "no-python" });
 });
 
 test("a Python without venv", async () => {
-    const on = machine({ venv: { status: 1, out: "ensurepip is not available" } });
+    const on = host({ venv: { status: 1, out: "ensurepip is not available" } });
     const found = await install(on);
     assert.deepEqual(found, { kind: "no-venv", python: "3.11", detail: "ensurepip is not available" });
     assert.equal(on.files.size, 0);
 });
 
 test("another Python is tried if one lacks venv", async () => {
-    const on = new FakeMachine({
+    const on = new FakeHost({
         "/bin/python3": (args) => (args.includes("venv") ? { status: 1 } : python("/bin/python3")(args)),
         "/bin/python3.12": (args) => (args.includes("venv") ? {} : python("/bin/python3.12", "3.12")(args)),
         [INSIDE]: () => ({ out: "as2fm-lsp 0.1.0" }),
@@ -126,14 +126,14 @@ test("another Python is tried if one lacks venv", async () => {
 
 test("no package index: the end of the output of pip is reported, no files are left", async () => {
     const said = [...Array.from({ length: 20 }, (_, i) => `line ${i}`), "ERROR: No matching distribution"].join("\n");
-    const found = await install(machine({ pip: { status: 1, err: said } }));
+    const found = await install(host({ pip: { status: 1, err: said } }));
     assert.ok("kind" in found && found.kind === "no-packages");
     assert.equal(found.detail.split("\n").length, 8);
     assert.match(found.detail, /No matching distribution$/);
 });
 
 test("an environment that does not work is not kept", async () => {
-    const on = machine({ version: { status: 1, err: "No module named as2fm_lsp" } });
+    const on = host({ version: { status: 1, err: "No module named as2fm_lsp" } });
     const found = await install(on);
     assert.ok("kind" in found && found.kind === "no-packages");
     assert.equal(
@@ -143,7 +143,7 @@ test("an environment that does not work is not kept", async () => {
 });
 
 test("the environment of an earlier version is known, and stays until the new one is there", async () => {
-    const on = machine({ pip: { status: 1 } });
+    const on = host({ pip: { status: 1 } });
     on.files.set("/storage/1/ready.json", JSON.stringify({ version: "0.0.9" }));
     const environment = new PrivateEnvironment(on, "/storage", "/server.whl", "/requirements.txt", "2");
     assert.equal(await environment.server(), undefined);

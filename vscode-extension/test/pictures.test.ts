@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import ELK from "elkjs/lib/elk.bundled.js";
 import type { Picture, PictureEdge, PictureNode, Place } from "../src/pictures/contract";
-import { partAt } from "../src/pictures/here";
+import { partAt } from "../src/pictures/partAt";
 import { fit, neighbour, reveal, search, zoom } from "../src/pictures/view/find";
 import { drawingOf, graphOf, pathOf, type Drawing } from "../src/pictures/view/layout";
 

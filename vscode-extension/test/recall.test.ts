@@ -50,7 +50,7 @@ test("unchanged data is not written again", async () => {
 test("data of another version, or no data, is not a server", async () => {
     const kept = new Kept();
     for (const server of [null, "as2fm-lsp", {}, { ...SERVER, args: "-m" }, { ...SERVER, args: [1] }]) {
-        await kept.update("server", { wishes: WISHES, server });
+        await kept.update("server", { settings: WISHES, server });
         assert.equal(new Recall(kept).server(WISHES), undefined);
     }
     await kept.update("server", [SERVER]);

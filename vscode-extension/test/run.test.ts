@@ -4,7 +4,7 @@ import * as fs from "node:fs";
 import * as os from "node:os";
 import * as path from "node:path";
 import { test } from "node:test";
-import { thisMachine } from "../src/server/machine";
+import { thisHost } from "../src/server/host";
 import { run } from "../src/server/run";
 
 test("a program's output and status", async () => {
@@ -32,10 +32,10 @@ test("programs are searched only in absolute folders of PATH", async () => {
         fs.chmodSync(path.join(folder, "tool"), 0o755);
         process.chdir(folder);
         process.env["PATH"] = ["", ".", "relative"].join(path.delimiter);
-        assert.equal(await thisMachine.which("tool"), undefined);
+        assert.equal(await thisHost.which("tool"), undefined);
         process.env["PATH"] = folder;
-        assert.equal(await thisMachine.which("tool"), path.join(folder, "tool"));
-        assert.equal(await thisMachine.which("data"), undefined);
+        assert.equal(await thisHost.which("tool"), path.join(folder, "tool"));
+        assert.equal(await thisHost.which("data"), undefined);
     } finally {
         process.chdir(cwd);
         process.env["PATH"] = before;

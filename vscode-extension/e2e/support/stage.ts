@@ -5,13 +5,13 @@ import { after, afterEach, before, test } from "node:test";
 import { Window } from "./window";
 import { EXTENSION, temporaryFolder, Workbench, type Options } from "./workbench";
 
-/** A workbench that goes on from one group of tests to the next, with the server's environment made by the first. */
+/** A workbench that the groups of tests share, with the server's environment that the first group has created. */
 export class Stage {
     private running: Workbench | undefined;
     private current: Window | undefined;
     home: string | undefined;
 
-    /** For the tests of a group: the workbench runs, and is told apart by its options. */
+    /** Starts the workbench for a group of tests; different options need a different workbench. */
     use(options: Options = {}): void {
         before(async () => {
             this.running = await Workbench.start({
@@ -64,7 +64,7 @@ export class Stage {
     }
 }
 
-/** The sample, as the walkthrough writes it: with a mistake in it. */
+/** The sample as the walkthrough writes it, with an error. */
 export function sample(change: Readonly<Record<string, (text: string) => string>> = {}): string {
     const folder = path.join(temporaryFolder("sample"), "delivery_robot");
     fs.cpSync(path.join(EXTENSION, "dist/sample"), folder, { recursive: true });

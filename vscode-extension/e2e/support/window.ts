@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What a user does in a window of VS Code, and sees there. Waits for what is to be seen, never for a time. */
+/** The actions of a user in a window of VS Code, and the visible results. Waits for visible text, never for a time. */
 
 import * as fs from "node:fs";
 import * as path from "node:path";
@@ -12,7 +12,7 @@ export class Window {
         readonly folder: string,
     ) {}
 
-    /** Open a file by its name, as one does with Ctrl+P. */
+    /** Opens a file by its name, as with Ctrl+P. */
     async openFile(name: string): Promise<void> {
         const { page } = this;
         await page.keyboard.press("Control+P");
@@ -29,7 +29,7 @@ export class Window {
         await this.editor.locator(".view-line").first().waitFor();
     }
 
-    /** Run a command by its title in the palette. */
+    /** Runs a command by its title in the palette. */
     async run(title: string): Promise<void> {
         await this.page.keyboard.press("F1");
         await this.page.locator(".quick-input-widget input").fill(`>${title}`);
@@ -37,7 +37,7 @@ export class Window {
         await this.page.keyboard.press("Enter");
     }
 
-    /** The titles of the palette that a text finds. */
+    /** The titles in the palette that match a text. */
     async commands(text: string): Promise<string[]> {
         await this.page.keyboard.press("F1");
         await this.page.locator(".quick-input-widget input").fill(`>${text}`);
@@ -48,7 +48,7 @@ export class Window {
         return labels.map((label) => label ?? "");
     }
 
-    /** Put the caret at a line and column, counted from 1. */
+    /** Moves the caret to a line and column, counted from 1. */
     async goTo(line: number, column = 1): Promise<void> {
         await this.page.keyboard.press("Control+G");
         await this.page.locator(".quick-input-widget input").fill(`:${line}:${column}`);
@@ -56,7 +56,7 @@ export class Window {
         await this.statusItem(`Ln ${line}, Col ${column}`).waitFor();
     }
 
-    /** Put the caret behind the first occurrence of a text in a file of the workspace. */
+    /** Moves the caret after the first occurrence of a text in a file of the workspace. */
     async goBehind(file: string, text: string): Promise<void> {
         const [line, column] = placeOf(fs.readFileSync(path.join(this.folder, file), "utf8"), text);
         await this.goTo(line, column + text.length);
@@ -67,7 +67,7 @@ export class Window {
         await this.page.locator(".tab.active:not(.dirty)").first().waitFor();
     }
 
-    /** The editor with the focus, else the first. */
+    /** The focused editor, otherwise the first one. */
     get editor(): Locator {
         return this.page
             .locator(
@@ -84,7 +84,7 @@ export class Window {
         return this.page.locator(".statusbar-item", { hasText: text });
     }
 
-    /** The count in the status bar, as soon as there is anything to count. */
+    /** The number of problems in the status bar, when it is not zero. */
     get firstProblem(): Locator {
         return this.page.locator('[id="status.problems"]', { hasText: "1" });
     }
@@ -93,14 +93,14 @@ export class Window {
         return this.page.locator(".notification-list-item", { hasText: text });
     }
 
-    /** Until the language server runs. */
+    /** Waits until the language server runs. */
     async running(): Promise<void> {
         await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 300_000 });
     }
 
-    /** Until something holds that cannot be seen in the page; what it gives. */
+    /** Waits for a condition that is not visible on the page; resolves to its value. */
     async until<T>(get: () => T | Promise<T>): Promise<NonNullable<T>> {
-        const end = Date.now() + PATIENCE;
+        const end = Date.now() + TIMEOUT_MS;
         for (;;) {
             const found = await get();
             if (found) return found;
@@ -116,7 +116,7 @@ export class Window {
         }
     }
 
-    /** The text of the line that the caret of an editor group is in. */
+    /** The text of the line with the caret of an editor group. */
     async caretLine(group: number): Promise<string> {
         const editor = this.page.locator(".editor-group-container").nth(group);
         const caret = await editor.locator(".cursors-layer .cursor").first().boundingBox();
@@ -136,7 +136,7 @@ export class Window {
         await this.page.keyboard.type(text);
     }
 
-    /** The document of a picture, inside of the frames of its webview; of several, the one that shows something. */
+    /** The document of a diagram, inside the frames of its webview; if there are several, the one with content. */
     async picture(shown = "svg.picture"): Promise<Frame> {
         for (;;) {
             for (const frame of this.page.frames()) {
@@ -152,7 +152,7 @@ export class Window {
         }
     }
 
-    /** Kept as output of the tests, for the README and for the walkthrough: the window, or a part of it. */
+    /** Saves a picture of the window or a part of it, for the README and the walkthrough. */
     async screenshot(name: string, clip?: Clip): Promise<void> {
         fs.mkdirSync(OUTPUT, { recursive: true });
         await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`), ...(clip ? { clip } : {}) });
@@ -170,10 +170,10 @@ export interface Clip {
     readonly height: number;
 }
 
-/** In milliseconds, for whatever is waited for. */
-export const PATIENCE = 180_000;
+/** The time limit for all waits, in ms. */
+export const TIMEOUT_MS = 180_000;
 
-/** Text with the spaces that the editor draws. */
+/** A text with the spaces that the editor draws. */
 function plain(text: string): string {
     return text.replaceAll("\u00a0", " ");
 }

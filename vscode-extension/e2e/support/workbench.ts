@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** A VS Code server with the packaged extension in it, and a browser in which its workbench is used. */
+/** A VS Code server with the packaged extension, and a browser that shows its workbench. */
 
 import { spawn, execFileSync, type ChildProcess } from "node:child_process";
 import * as fs from "node:fs";
@@ -7,7 +7,7 @@ import * as net from "node:net";
 import * as os from "node:os";
 import * as path from "node:path";
 import { chromium, type Browser } from "playwright-core";
-import { PATIENCE, Window } from "./window";
+import { TIMEOUT_MS, Window } from "./window";
 
 export const EXTENSION = path.resolve(import.meta.dirname, "..", "..");
 export const ROOT = path.resolve(EXTENSION, "..");
@@ -16,15 +16,15 @@ const MAIN = path.join(VSCODE, "out/server-main.js");
 export const OUTPUT = path.join(EXTENSION, "out", "e2e-output");
 
 export interface Options {
-    /** A fresh home if not given; of an earlier workbench to go on with what it has installed. */
+    /** The home folder; a new one if not given. That of an earlier workbench contains what it has installed. */
     readonly home?: string;
     readonly settings?: Readonly<Record<string, unknown>>;
     readonly trustEverything?: boolean;
-    /** In place of what the tests themselves have. */
+    /** Replaces the environment variables of the tests. */
     readonly environment?: Readonly<Record<string, string>>;
-    /** Further extensions, as folders. */
+    /** The folders of further extensions. */
     readonly extensions?: readonly string[];
-    /** Without the packaged extension. */
+    /** Whether to omit the packaged extension. */
     readonly bare?: boolean;
 }
 
@@ -74,7 +74,7 @@ export class Workbench {
         return new Workbench(home, port, server, browser);
     }
 
-    /** The workbench with a folder open. */
+    /** Opens a folder in the workbench. */
     async open(folder: string): Promise<Window> {
         const context = await this.browser.newContext({
             viewport: { width: 1280, height: 760 },
@@ -83,7 +83,7 @@ export class Workbench {
         });
         await context.grantPermissions(["clipboard-read", "clipboard-write"]);
         // Generous: other work on the machine makes a test slow, not wrong.
-        context.setDefaultTimeout(PATIENCE);
+        context.setDefaultTimeout(TIMEOUT_MS);
         const page = await context.newPage();
         await page.goto(`http://127.0.0.1:${this.port}/?folder=${folder}`);
         await page.locator(".monaco-workbench").waitFor();
@@ -128,7 +128,7 @@ const FLAGS = [
     "--disable-sync",
 ];
 
-/** As an installation would do: the folder, and its entry in the list. */
+/** Installs an extension: its folder, and its entry in the list. */
 function addExtension(extensions: string, folder: string): void {
     const target = path.join(extensions, path.basename(folder));
     fs.cpSync(folder, target, { recursive: true });
@@ -147,7 +147,7 @@ function addExtension(extensions: string, folder: string): void {
     fs.writeFileSync(list, JSON.stringify(known));
 }
 
-/** The folder of an extension made of one script. */
+/** The folder of an extension that consists of one script. */
 export function fakeExtension(
     publisher: string,
     name: string,
@@ -170,7 +170,7 @@ interface Manifest {
 
 const folders: string[] = [];
 
-/** An empty folder that goes when the tests have ended. */
+/** An empty folder that is removed after the tests. */
 export function temporaryFolder(name: string): string {
     const folder = fs.realpathSync(fs.mkdtempSync(path.join(os.tmpdir(), `as2fm-${name}-`)));
     if (folders.length === 0) {

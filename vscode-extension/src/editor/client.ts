@@ -39,7 +39,7 @@ export const SHOW_REFERENCES = "as2fm.showReferences";
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
 
 const WELL_FORMEDNESS = "xml-syntax";
-const LAST_WORDS = 4000;
+const MAX_LOGGED_CHARACTERS = 4000;
 
 /** Handles the results of lenses and commands of the server. */
 export interface Listener {
@@ -170,7 +170,7 @@ function spawned(process: ChildProcess): Promise<void> {
 function endOf(process: ChildProcess, log: vscode.LogOutputChannel): Promise<Exit> {
     let detail = "";
     process.stderr?.setEncoding("utf8").on("data", (text: string) => {
-        detail = (detail + text).slice(-LAST_WORDS);
+        detail = (detail + text).slice(-MAX_LOGGED_CHARACTERS);
         log.append(text);
     });
     return new Promise((resolve) => {

@@ -2,7 +2,7 @@
 import * as vscode from "vscode";
 import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE } from "../protocol";
-import { thisMachine } from "../server/machine";
+import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
 import { SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
 import type { Counterexamples } from "./counterexamples";
@@ -147,7 +147,7 @@ async function migrateSystem({ server, documents }: Parts): Promise<void> {
 async function showChanges({ state }: LanguageServer, system: vscode.Uri): Promise<void> {
     if (state.kind !== "running") return;
     const { command, args } = state.server;
-    const ended = await thisMachine.run(command, [...args, "migrate", system.fsPath, "--diff"]);
+    const ended = await thisHost.run(command, [...args, "migrate", system.fsPath, "--diff"]);
     const content = ended.out === "" ? ended.err : ended.out;
     await vscode.window.showTextDocument(await vscode.workspace.openTextDocument({ language: "diff", content }));
 }
@@ -156,7 +156,7 @@ async function selectInterpreter(): Promise<void> {
     const browse = { label: vscode.l10n.t("$(folder) Browse…"), path: "" };
     const automatic = { label: vscode.l10n.t("$(search) Find one automatically"), path: "" };
     const items = [browse, automatic];
-    for await (const python of pythons(thisMachine, [], untrustedFolders())) {
+    for await (const python of pythons(thisHost, [], untrustedFolders())) {
         items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });
     }
     const title = vscode.l10n.t("The Python interpreter that starts the language server, or for which it is installed");

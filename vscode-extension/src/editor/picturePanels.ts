@@ -4,11 +4,11 @@
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
-import { partAt } from "../pictures/here";
+import { partAt } from "../pictures/partAt";
 import { picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
 
-const PAUSE = 200;
+const DELAY_MS = 200;
 
 export class PicturePanels implements vscode.Disposable {
     private readonly panels = new Map<PictureKind, PicturePanel>();
@@ -63,7 +63,7 @@ export class PicturePanels implements vscode.Disposable {
         clearTimeout(this.timer);
         this.timer = setTimeout(() => {
             for (const panel of this.panels.values()) void panel.refresh();
-        }, PAUSE);
+        }, DELAY_MS);
     }
 
     private follow(editor: vscode.TextEditor): void {

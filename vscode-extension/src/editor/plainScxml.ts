@@ -7,7 +7,7 @@ import { lineOf, placeOf } from "./plainPlaces";
 import type { LanguageServer } from "./server";
 
 const SCHEME = "as2fm-plain";
-const PAUSE = 200;
+const DELAY_MS = 200;
 
 export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vscode.Disposable {
     private readonly changes = new vscode.EventEmitter<vscode.Uri>();
@@ -65,7 +65,7 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
             for (const document of vscode.workspace.textDocuments) {
                 if (document.uri.scheme === SCHEME) this.changes.fire(document.uri);
             }
-        }, PAUSE);
+        }, DELAY_MS);
     }
 
     private follow({ textEditor, selections }: vscode.TextEditorSelectionChangeEvent): void {

@@ -10,7 +10,7 @@ import type { LanguageClient } from "vscode-languageclient/node";
 import { DidChangeConfigurationNotification, type RequestType } from "vscode-languageserver-protocol";
 import { PrivateEnvironment, type Step } from "../server/environment";
 import { expanded, findServer } from "../server/find";
-import { thisMachine } from "../server/machine";
+import { thisHost } from "../server/host";
 import { Recall } from "../server/recall";
 import { isFailure, type Failure, type Server } from "../server/server";
 import { Supervisor, type State } from "../server/supervisor";
@@ -18,8 +18,8 @@ import { connect, type Connection, type Listener } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
 import { tellStep } from "./wording";
 
-/** In ms. */
-const PATIENCE = 5000;
+/** The time limit for stopping the server. */
+const TIMEOUT_MS = 5000;
 
 export class LanguageServer implements vscode.Disposable {
     private readonly supervisor: Supervisor;
@@ -42,7 +42,7 @@ export class LanguageServer implements vscode.Disposable {
         const folder = join(context.globalStorageUri.fsPath, "environments");
         this.wheel = wheel.id;
         this.recall = new Recall(context.workspaceState);
-        this.environment = new PrivateEnvironment(thisMachine, folder, wheel.file, wheel.requirements, wheel.id);
+        this.environment = new PrivateEnvironment(thisHost, folder, wheel.file, wheel.requirements, wheel.id);
         this.supervisor = new Supervisor({
             find: (hurry) => this.find(hurry),
             install: (onStep) => this.installWithProgress(onStep),
@@ -52,7 +52,7 @@ export class LanguageServer implements vscode.Disposable {
             },
             now: Date.now,
             changed: (state) => {
-                if (state.kind === "running") void this.recall.keep(this.wishes(), state.server);
+                if (state.kind === "running") void this.recall.keep(this.searchSettings(), state.server);
                 else this.connection = undefined;
                 void vscode.commands.executeCommand("setContext", "as2fm.running", state.kind === "running");
                 this.states.fire(state);
@@ -77,7 +77,7 @@ export class LanguageServer implements vscode.Disposable {
 
     /** Start the server of a new window; the server that ran last is started before the search ends. */
     open(): Promise<void> {
-        const recalled = this.recall.server(this.wishes());
+        const recalled = this.recall.server(this.searchSettings());
         const expected = vscode.workspace.isTrusted || recalled?.origin === "private" ? recalled : undefined;
         return expected ? this.supervisor.expect(expected) : this.supervisor.start();
     }
@@ -120,7 +120,7 @@ export class LanguageServer implements vscode.Disposable {
     }
 
     /** The settings that determine which server is found, without other extensions and the machine. */
-    private wishes(): readonly unknown[] {
+    private searchSettings(): readonly unknown[] {
         return [path("server.path"), path("interpreter"), vscode.workspace.isTrusted, this.wheel];
     }
 
@@ -128,7 +128,7 @@ export class LanguageServer implements vscode.Disposable {
         const trusted = vscode.workspace.isTrusted;
         const [server, interpreter] = [path("server.path"), path("interpreter")];
         const active = trusted && server === "" && interpreter === "" ? await this.active(hurry) : [];
-        const found = await findServer(thisMachine, { server, interpreter, active, trusted }, this.environment);
+        const found = await findServer(thisHost, { server, interpreter, active, trusted }, this.environment);
         const usable = isFailure(found) && found.kind === "no-server" ? await this.renewed(found) : found;
         if (!isFailure(usable) && usable.origin === "private") this.compileKernel();
         return usable;
@@ -149,7 +149,7 @@ export class LanguageServer implements vscode.Disposable {
         const late = new Promise<readonly string[]>((resolve) => {
             setTimeout(() => {
                 resolve([]);
-            }, PATIENCE);
+            }, TIMEOUT_MS);
         });
         return Promise.race([asked, late]);
     }

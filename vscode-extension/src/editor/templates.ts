@@ -2,7 +2,7 @@
 /** Creates new systems, machines and files for CI, and the sample of the walkthrough. */
 
 import * as vscode from "vscode";
-import { thisMachine } from "../server/machine";
+import { thisHost } from "../server/host";
 import type { LanguageServer } from "./server";
 
 /** Create a small working system with `as2fm-lsp init`. */
@@ -11,7 +11,7 @@ export async function newSystem(server: LanguageServer): Promise<void> {
     if (state.kind !== "running") return;
     const folder = await newFolder(vscode.l10n.t("Folder of the new system"), "my_robot");
     if (!folder) return;
-    const ended = await thisMachine.run(state.server.command, [...state.server.args, "init", folder.fsPath]);
+    const ended = await thisHost.run(state.server.command, [...state.server.args, "init", folder.fsPath]);
     if (ended.status !== 0) {
         void vscode.window.showErrorMessage((ended.err || ended.out).trim());
         return;

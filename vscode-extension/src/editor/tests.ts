@@ -20,7 +20,7 @@ import type { LanguageServer } from "./server";
 import { done } from "./steps";
 import { isTrusted } from "./trust";
 
-const PAUSE = 300;
+const DELAY_MS = 300;
 
 interface Asked {
     readonly system: string;
@@ -92,7 +92,7 @@ export class PropertyTests implements vscode.Disposable {
 
     private refreshSoon(): void {
         clearTimeout(this.timer);
-        this.timer = setTimeout(() => void this.refresh(), PAUSE);
+        this.timer = setTimeout(() => void this.refresh(), DELAY_MS);
     }
 
     private async refresh(): Promise<void> {

@@ -10,7 +10,7 @@
  */
 
 import * as path from "node:path";
-import type { Machine } from "./machine";
+import type { Host } from "./host";
 import { pythons, type Python } from "./python";
 import type { Failure, Server } from "./server";
 
@@ -39,7 +39,7 @@ export class PrivateEnvironment {
      * @param id identifies this wheel with these packages.
      */
     constructor(
-        private readonly machine: Machine,
+        private readonly host: Host,
         private readonly folder: string,
         private readonly wheel: string,
         private readonly requirements: string,
@@ -53,7 +53,7 @@ export class PrivateEnvironment {
 
     /** The server of an earlier version of the extension, which shows that the user has agreed to its installation. */
     async older(): Promise<Server | undefined> {
-        for (const name of await this.machine.list(this.folder)) {
+        for (const name of await this.host.list(this.folder)) {
             const found = name === this.id ? undefined : await this.serverIn(name);
             if (found !== undefined) return found;
         }
@@ -70,10 +70,10 @@ export class PrivateEnvironment {
         const limits = { ...(signal && { signal }), ...(onOutput && { onOutput }) };
         onStep?.("python");
         let failure: Failure = { kind: "no-python" };
-        for await (const python of pythons(this.machine, preferred, avoid)) {
+        for await (const python of pythons(this.host, preferred, avoid)) {
             onStep?.("venv");
-            await this.machine.remove(this.home);
-            const made = await this.machine.run(python.executable, ["-I", "-m", "venv", this.home], limits);
+            await this.host.remove(this.home);
+            const made = await this.host.run(python.executable, ["-I", "-m", "venv", this.home], limits);
             if (made.status !== 0) {
                 failure = { kind: "no-venv", python: python.version, detail: words(made.err, made.out) };
                 continue; // another Python may have the missing modules
@@ -81,9 +81,9 @@ export class PrivateEnvironment {
             onStep?.("packages");
             for (const what of this.installed()) {
                 const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", ...what];
-                const ended = await this.machine.run(this.python, pip, limits);
+                const ended = await this.host.run(this.python, pip, limits);
                 if (ended.status !== 0) {
-                    await this.machine.remove(this.home);
+                    await this.host.remove(this.home);
                     return { kind: "no-packages", python: python.version, detail: words(ended.err, ended.out) };
                 }
             }
@@ -98,10 +98,10 @@ export class PrivateEnvironment {
      */
     async compile(onOutput: (text: string) => void): Promise<void> {
         const mark = path.join(this.home, KERNEL_MARK);
-        if ((await this.server()) === undefined || (await this.machine.read(mark)) !== undefined) return;
-        const ended = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
+        if ((await this.server()) === undefined || (await this.host.read(mark)) !== undefined) return;
+        const ended = await this.host.run(this.python, ["-I", "-m", "as2fm_lsp.cli.build_kernel"], { onOutput });
         if (ended.status !== 0 && ended.status !== CANNOT_COMPILE) return; // interrupted: the next start tries again
-        await this.machine.write(mark, JSON.stringify({ compiled: ended.status === 0 }));
+        await this.host.write(mark, JSON.stringify({ compiled: ended.status === 0 }));
     }
 
     /** The arguments of the consecutive calls of `pip install`. */
@@ -111,21 +111,21 @@ export class PrivateEnvironment {
     }
 
     private async finish(python: Python): Promise<Server | Failure> {
-        const asked = await this.machine.run(this.python, ["-I", "-m", "as2fm_lsp", "--version"]);
+        const asked = await this.host.run(this.python, ["-I", "-m", "as2fm_lsp", "--version"]);
         const version = /^as2fm-lsp (\S+)/.exec(asked.out)?.[1];
         if (asked.status !== 0 || version === undefined) {
-            await this.machine.remove(this.home);
+            await this.host.remove(this.home);
             return { kind: "no-packages", python: python.version, detail: words(asked.err, asked.out) };
         }
-        await this.machine.write(path.join(this.home, MARK), JSON.stringify({ version, python: python.version }));
-        for (const name of await this.machine.list(this.folder)) {
-            if (name !== this.id) await this.machine.remove(path.join(this.folder, name));
+        await this.host.write(path.join(this.home, MARK), JSON.stringify({ version, python: python.version }));
+        for (const name of await this.host.list(this.folder)) {
+            if (name !== this.id) await this.host.remove(path.join(this.folder, name));
         }
         return this.asServer(this.id, version);
     }
 
     private async serverIn(name: string): Promise<Server | undefined> {
-        const mark = await this.machine.read(path.join(this.folder, name, MARK));
+        const mark = await this.host.read(path.join(this.folder, name, MARK));
         const version = mark === undefined ? undefined : versionIn(mark);
         return version === undefined ? undefined : this.asServer(name, version);
     }
@@ -143,7 +143,7 @@ export class PrivateEnvironment {
     }
 
     private pythonIn(name: string): string {
-        return path.join(this.folder, name, ...(this.machine.windows ? ["Scripts", "python.exe"] : ["bin", "python"]));
+        return path.join(this.folder, name, ...(this.host.windows ? ["Scripts", "python.exe"] : ["bin", "python"]));
     }
 }
 

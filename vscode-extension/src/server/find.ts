@@ -9,17 +9,17 @@
  */
 
 import * as path from "node:path";
-import type { Machine } from "./machine";
+import type { Host } from "./host";
 import { askPython } from "./python";
 import type { PrivateEnvironment } from "./environment";
 import type { Failure, Server } from "./server";
 
-const PATIENCE = 20_000;
+const TIMEOUT_MS = 20_000;
 
 /** The minimum version of the server that this client supports. */
 export const OLDEST_SERVER = "0.1.0";
 
-export interface Wishes {
+export interface ServerSettings {
     /** `as2fm.server.path`; empty if not set. */
     readonly server: string;
     /** `as2fm.interpreter`; empty if not set. */
@@ -30,18 +30,18 @@ export interface Wishes {
 }
 
 export async function findServer(
-    machine: Machine,
-    wishes: Wishes,
+    host: Host,
+    settings: ServerSettings,
     environment: PrivateEnvironment,
 ): Promise<Server | Failure> {
-    if (!wishes.trusted) return (await environment.server()) ?? { kind: "no-server" };
-    if (wishes.server !== "") return configured(machine, wishes.server);
-    const interpreters = wishes.interpreter !== "" ? [wishes.interpreter] : wishes.active;
+    if (!settings.trusted) return (await environment.server()) ?? { kind: "no-server" };
+    if (settings.server !== "") return configured(host, settings.server);
+    const interpreters = settings.interpreter !== "" ? [settings.interpreter] : settings.active;
     for (const interpreter of interpreters) {
-        const server = await inPython(machine, interpreter);
+        const server = await inPython(host, interpreter);
         if (server !== undefined) return server;
     }
-    return (await onPath(machine)) ?? (await environment.server()) ?? { kind: "no-server" };
+    return (await onPath(host)) ?? (await environment.server()) ?? { kind: "no-server" };
 }
 
 /** The path in a setting, with `~` and `${workspaceFolder}` replaced by folders. */
@@ -53,36 +53,36 @@ export function expanded(written: string, home: string, workspace: string | unde
 /** Whether `version` is at least `oldest`; false for versions of another form. */
 export function isRecent(version: string, oldest = OLDEST_SERVER): boolean {
     const numbers = (text: string) => text.split(/[^0-9]+/, 3).map(Number);
-    const [found, wanted] = [numbers(version), numbers(oldest)];
+    const [actual, required] = [numbers(version), numbers(oldest)];
     for (let i = 0; i < 3; i++) {
-        const difference = (found[i] ?? 0) - (wanted[i] ?? 0);
+        const difference = (actual[i] ?? 0) - (required[i] ?? 0);
         if (difference !== 0) return difference > 0;
     }
     return true;
 }
 
-async function configured(machine: Machine, file: string): Promise<Server | Failure> {
-    const [version, said] = await askServer(machine, file);
+async function configured(host: Host, file: string): Promise<Server | Failure> {
+    const [version, said] = await askServer(host, file);
     if (version === undefined) return { kind: "configured-server", path: file, detail: said };
     return { origin: "setting", command: file, args: [], version };
 }
 
-async function inPython(machine: Machine, interpreter: string): Promise<Server | undefined> {
-    const python = await askPython(machine, interpreter);
+async function inPython(host: Host, interpreter: string): Promise<Server | undefined> {
+    const python = await askPython(host, interpreter);
     if (!python?.recent || python.server === undefined || !isRecent(python.server)) return undefined;
     return { origin: "python", command: interpreter, args: ["-I", "-m", "as2fm_lsp"], version: python.server };
 }
 
-async function onPath(machine: Machine): Promise<Server | undefined> {
-    const file = await machine.which("as2fm-lsp");
+async function onPath(host: Host): Promise<Server | undefined> {
+    const file = await host.which("as2fm-lsp");
     if (file === undefined || !path.isAbsolute(file)) return undefined;
-    const [version] = await askServer(machine, file);
+    const [version] = await askServer(host, file);
     if (version === undefined || !isRecent(version)) return undefined;
     return { origin: "path", command: file, args: [], version };
 }
 
-async function askServer(machine: Machine, file: string): Promise<[version: string | undefined, said: string]> {
-    const ended = await machine.run(file, ["--version"], { timeout: PATIENCE });
+async function askServer(host: Host, file: string): Promise<[version: string | undefined, said: string]> {
+    const ended = await host.run(file, ["--version"], { timeout: TIMEOUT_MS });
     const version = ended.status === 0 ? /^as2fm-lsp (\S+)/.exec(ended.out)?.[1] : undefined;
     return [version, (ended.err || ended.out).trim()];
 }

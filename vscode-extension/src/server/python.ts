@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Machine } from "./machine";
+import type { Host } from "./host";
 import { isInside } from "./surroundings";
 
 /** The oldest Python that the server runs on. */
@@ -7,7 +7,7 @@ export const OLDEST: readonly [number, number] = [3, 10];
 
 const NAMES = ["python3", "python3.13", "python3.12", "python3.11", "python3.10", "python"];
 
-const ASK =
+const PRINT_PYTHON =
     "import sys\n" +
     "print(sys.executable, *sys.version_info[:2], sep='\\n')\n" +
     "try:\n" +
@@ -16,7 +16,7 @@ const ASK =
     "except Exception:\n" +
     "    pass\n";
 
-const PATIENCE = 20_000;
+const TIMEOUT_MS = 20_000;
 
 export interface Python {
     readonly executable: string;
@@ -27,9 +27,9 @@ export interface Python {
 }
 
 /** The properties of a Python interpreter, as it reports them; undefined if the program is not one. */
-export async function askPython(machine: Machine, executable: string): Promise<Python | undefined> {
+export async function askPython(host: Host, executable: string): Promise<Python | undefined> {
     // -I: imports depend neither on the working folder nor on environment variables.
-    const ended = await machine.run(executable, ["-I", "-c", ASK], { timeout: PATIENCE });
+    const ended = await host.run(executable, ["-I", "-c", PRINT_PYTHON], { timeout: TIMEOUT_MS });
     const [path, major, minor, server] = ended.out.split(/\r?\n/);
     if (ended.status !== 0 || !path || !major || !minor) return undefined;
     const recent = Number(major) > OLDEST[0] || (Number(major) === OLDEST[0] && Number(minor) >= OLDEST[1]);
@@ -37,22 +37,22 @@ export async function askPython(machine: Machine, executable: string): Promise<P
 }
 
 /**
- * The interpreters on this machine that are recent enough, without duplicates.
+ * The interpreters on this host that are recent enough, without duplicates.
  *
  * @param first the paths to try before the names on PATH.
  * @param avoid the folders from which no program is started.
  */
 export async function* pythons(
-    machine: Machine,
+    host: Host,
     first: readonly string[],
     avoid: readonly string[] = [],
 ): AsyncGenerator<Python> {
     const seen = new Set<string>();
-    const named = machine.windows ? [...NAMES, "py"] : NAMES;
+    const named = host.windows ? [...NAMES, "py"] : NAMES;
     for (const candidate of [...first, ...named]) {
-        const file = first.includes(candidate) ? candidate : await machine.which(candidate);
+        const file = first.includes(candidate) ? candidate : await host.which(candidate);
         if (file === undefined || isInside(file, avoid)) continue;
-        const python = await askPython(machine, file);
+        const python = await askPython(host, file);
         if (python?.recent && !seen.has(python.executable)) {
             seen.add(python.executable);
             yield python;

@@ -20,13 +20,13 @@ export class Recall {
     constructor(private readonly store: Store) {}
 
     /** The server that ran last, if it was found with the same settings. */
-    server(wishes: readonly unknown[]): Server | undefined {
+    server(settings: readonly unknown[]): Server | undefined {
         const kept = this.store.get(KEY);
-        if (typeof kept !== "object" || kept === null || !("wishes" in kept) || !("server" in kept)) return undefined;
-        return isDeepStrictEqual(kept.wishes, wishes) && isServer(kept.server) ? kept.server : undefined;
+        if (typeof kept !== "object" || kept === null || !("settings" in kept) || !("server" in kept)) return undefined;
+        return isDeepStrictEqual(kept.settings, settings) && isServer(kept.server) ? kept.server : undefined;
     }
 
-    async keep(wishes: readonly unknown[], server: Server): Promise<void> {
-        if (!isDeepStrictEqual(this.server(wishes), server)) await this.store.update(KEY, { wishes, server });
+    async keep(settings: readonly unknown[], server: Server): Promise<void> {
+        if (!isDeepStrictEqual(this.server(settings), server)) await this.store.update(KEY, { settings, server });
     }
 }

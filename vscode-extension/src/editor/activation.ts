@@ -13,22 +13,22 @@ const SYSTEM = /<(roaml|convince_mc_tc)\b/;
 const LANGUAGES = new Set(["ascxml", "scxml", "jani"]);
 
 /** Resolves as soon as a model exists or is opened; immediately if the extension was activated for another reason. */
-export async function wanted(subscriptions: { dispose(): unknown }[]): Promise<void> {
+export async function modelsExist(subscriptions: { dispose(): unknown }[]): Promise<void> {
     const { textDocuments, workspaceFolders = [] } = vscode.workspace;
-    const found = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));
-    const named = found.filter((text) => text !== undefined);
-    if (named.length === 0 || named.some((text) => SYSTEM.test(text)) || textDocuments.some(isOurs)) return;
+    const texts = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));
+    const named = texts.filter((text) => text !== undefined);
+    if (named.length === 0 || named.some((text) => SYSTEM.test(text)) || textDocuments.some(isModel)) return;
     const machines = await vscode.workspace.findFiles("**/*.{ascxml,scxml}", undefined, 1);
     if (machines.length > 0) return;
     await new Promise<void>((resolve) => {
         const opened = vscode.workspace.onDidOpenTextDocument((document) => {
-            if (isOurs(document)) resolve();
+            if (isModel(document)) resolve();
         });
         subscriptions.push(opened);
     });
 }
 
-function isOurs({ languageId }: vscode.TextDocument): boolean {
+function isModel({ languageId }: vscode.TextDocument): boolean {
     return LANGUAGES.has(languageId);
 }
 

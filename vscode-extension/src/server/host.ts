@@ -4,8 +4,8 @@ import * as fs from "node:fs/promises";
 import * as path from "node:path";
 import { run, type Ended, type RunOptions } from "./run";
 
-/** The functions of the machine that the search for a server needs. */
-export interface Machine {
+/** The functions of the host that the search for a server needs. */
+export interface Host {
     readonly windows: boolean;
     run(command: string, args: readonly string[], options?: RunOptions): Promise<Ended>;
     /** The absolute path of a program on PATH. */
@@ -18,7 +18,7 @@ export interface Machine {
     list(folder: string): Promise<readonly string[]>;
 }
 
-export const thisMachine: Machine = {
+export const thisHost: Host = {
     windows: process.platform === "win32",
     run,
     async which(name) {

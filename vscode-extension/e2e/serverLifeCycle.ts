@@ -4,10 +4,10 @@ import * as fs from "node:fs";
 import { sample, type Stage } from "./support/stage";
 import type { Window } from "./support/window";
 
-export function life(stage: Stage): void {
+export function serverLifeCycle(stage: Stage): void {
     stage.use();
 
-    stage.test("a server that is killed is restarted, and says so", sample, async (window) => {
+    stage.test("a killed server is restarted and reported", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         const [before] = servers(stage.workbench.home);
@@ -21,7 +21,7 @@ export function life(stage: Stage): void {
         await mend(window);
     });
 
-    stage.test("a server that keeps ending is left alone", sample, async (window) => {
+    stage.test("a server that crashes repeatedly is not restarted", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.running();
         const killed = new Set<number>();
@@ -36,7 +36,7 @@ export function life(stage: Stage): void {
         await window.squiggles.first().waitFor();
     });
 
-    stage.test("restart and versions", sample, async (window) => {
+    stage.test("the commands to restart the server and to show versions", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.running();
         await window.squiggles.first().waitFor();
@@ -49,7 +49,7 @@ export function life(stage: Stage): void {
     });
 }
 
-/** Correct the mistake by hand; a server that follows the text takes the squiggle away. */
+/** Corrects the error by hand; a running server then removes the squiggle. */
 async function mend(window: Window): Promise<void> {
     await window.goBehind("nodes/battery.ascxml", 'location="levle');
     await window.press("Backspace", "Backspace");

@@ -5,7 +5,7 @@ import * as path from "node:path";
 import { MEND, sample, type Stage } from "./support/stage";
 import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 
-/** Stands in for the XML extension: the part of its interface that is used, and what it says of ill-formed files. */
+/** Replaces the XML extension: the used part of its interface, and its diagnostics for ill-formed files. */
 const XML_EXTENSION = `
 const vscode = require("vscode");
 exports.activate = () => {
@@ -24,8 +24,8 @@ exports.activate = () => {
 `;
 
 /**
- * Stands in for the extension for Python: the active interpreter is what the folder's `.python` names. It says so when
- * there is no `.python-starts`.
+ * Replaces the Python extension: the active interpreter is the one that the folder's `.python` names. It is reported
+ * when there is no `.python-starts`.
  */
 const PYTHON_EXTENSION = `
 const vscode = require("vscode");
@@ -47,7 +47,7 @@ exports.activate = async () => {
 };
 `;
 
-export function harmony(stage: Stage): void {
+export function compatibility(stage: Stage): void {
     const xml = fakeExtension("redhat", "vscode-xml", XML_EXTENSION, ["onLanguage:xml"]);
     const python = fakeExtension("ms-python", "python", PYTHON_EXTENSION, []);
     stage.use({ extensions: [xml, python] });
@@ -58,7 +58,7 @@ export function harmony(stage: Stage): void {
     };
     const illFormed = () => sample({ ...MEND, "tree.xml": (text) => text.replace("<Charge />", "<ill") });
 
-    stage.test("another project that has a main.xml is left alone", other, async (window) => {
+    stage.test("the server is not started for other projects with a main.xml", other, async (window) => {
         await window.openFile("main.xml");
         await window.run("View: Focus Problems");
         await window.page.locator(".markers-panel", { hasText: "No problems" }).waitFor();
@@ -70,18 +70,22 @@ export function harmony(stage: Stage): void {
         await window.running();
     });
 
-    stage.test("nothing is said twice, and the schemas are offered", illFormed, async (window) => {
-        await window.openFile("tree.xml");
-        await window.running();
-        await window.notification(path.join("dist", "schemas", "catalog.xml")).waitFor();
-        await window.run("View: Focus Problems");
-        const rows = window.page.locator(".markers-panel .monaco-list-row");
-        await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
-        // What the model lacks is still said, by us alone.
-        await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
-        await window.screenshot("harmony");
-        assert.equal(await rows.filter({ hasText: "xml-syntax" }).count(), 0);
-    });
+    stage.test(
+        "no diagnostic is duplicated, and the schemas are offered to the XML extension",
+        illFormed,
+        async (window) => {
+            await window.openFile("tree.xml");
+            await window.running();
+            await window.notification(path.join("dist", "schemas", "catalog.xml")).waitFor();
+            await window.run("View: Focus Problems");
+            const rows = window.page.locator(".markers-panel .monaco-list-row");
+            await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
+            // What the model lacks is still said, by us alone.
+            await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
+            await window.screenshot("harmony");
+            assert.equal(await rows.filter({ hasText: "xml-syntax" }).count(), 0);
+        },
+    );
 
     const withPython = () => {
         const folder = sample();
@@ -95,7 +99,7 @@ export function harmony(stage: Stage): void {
         await window.notification("from the Python environment").waitFor();
     });
 
-    stage.test("the server that ran last is not waited for", withPython, async (window) => {
+    stage.test("the last server is started before the search ends", withPython, async (window) => {
         await window.openFile("battery.ascxml");
         await window.running();
         const starts = path.join(window.folder, ".python-starts");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Machine } from "../../src/server/machine";
+import type { Host } from "../../src/server/host";
 import type { Ended, RunOptions } from "../../src/server/run";
 
 type Program = (args: readonly string[]) => Partial<Ended>;
 
-/** A machine with these programs, by their paths; what lies in /bin is on PATH. Remembers what was run. */
-export class FakeMachine implements Machine {
+/** A host with these programs, by their paths; those in /bin are on PATH. Records the executed programs. */
+export class FakeHost implements Host {
     readonly windows = false;
     readonly ran: string[] = [];
     readonly files = new Map<string, string>();
