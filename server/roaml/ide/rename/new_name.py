@@ -68,8 +68,8 @@ def _in_property_files(analysis: Analysis, found: SymbolGroup, symbol: Symbol, n
     """Why property files do not allow a name: another property has it, or it would lead a port to another node."""
     if symbol.kind is SymbolKind.PROPERTY:
         listed = (each for each in analysis.listed(symbol.path) if each.wanted is FileKind.PROPERTIES and each.usable)
-        names = (declared.name for each in listed for declared in analysis.properties(each.path)[0])
-        return f"a property `{new}` already exists" if new in names else ""
+        properties = {declared.name for each in listed for declared in analysis.properties(each.path)[0]}
+        return f"a property `{new}` already exists" if new in properties else ""
     if symbol.kind not in _OF_NODES:
         return ""
     files = {use.path for use in found.uses if analysis.kind(use.path) is FileKind.XML_PROPERTIES}
