@@ -68,7 +68,7 @@ def _in_property_files(analysis: Analysis, found: SymbolGroup, symbol: Symbol, n
     """Why property files do not allow a name: another property has it, or it would lead a port to another node."""
     if symbol.kind is SymbolKind.PROPERTY:
         listed = (each for each in analysis.listed(symbol.path) if each.wanted is FileKind.PROPERTIES and each.usable)
-        properties = {declared.name for each in listed for declared in analysis.properties(each.path)[0]}
+        properties = (declared.name for each in listed for declared in analysis.properties(each.path)[0])
         return f"a property `{new}` already exists" if new in properties else ""
     if symbol.kind not in _OF_NODES:
         return ""
