@@ -18,7 +18,7 @@ import { connect, type Connection, type Listener } from "./client";
 import { activeInterpreters } from "./pythonExtensions";
 import { tellStep } from "./wording";
 
-/** The time limit for stopping the server. */
+/** The time limit for the answers of other extensions. */
 const TIMEOUT_MS = 5000;
 
 export class LanguageServer implements vscode.Disposable {
