@@ -46,7 +46,7 @@ async def test_an_omitted_property_is_reported(tmp_path: Path) -> None:
         await translate(client, (tmp_path / "main.xml").as_uri())
         (kind, text), _ = told(client)
     assert kind is types.MessageType.Warning
-    assert text.startswith(f"the property `{name}` is left out of the JANI file: bounds on the time ")
+    assert text.startswith(f"the property `{name}` is left out of the JANI file: bounds on time ")
     assert text.endswith(" [ignored-bounds]")
     assert json.loads((tmp_path / "main.jani").read_text())["properties"] == []
 

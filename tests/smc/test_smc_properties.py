@@ -204,7 +204,7 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
     ("expression", "message"),
     [
         (probability(op("X", op("G", A))), "inside another one"),
-        (probability({**op("F", A), "time-bounds": {"upper": 3}}), "bounds on the time"),
+        (probability({**op("F", A), "time-bounds": {"upper": 3}}), "bounds on time"),
         ({**probability(op("F", A)), "states": A}, "initial states"),
         ({**probability(op("F", A)), "fun": "argmax"}, "`argmax` is not supported"),
         (A, "neither a probability"),
