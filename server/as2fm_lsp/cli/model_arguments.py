@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import takes_color
 from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.output import takes_color
 from as2fm_lsp.cli.times import time_of
 from roaml import api
 from roaml.diagnostics import Diagnostic

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import FORMATS
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.model_arguments import (

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
-from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import FORMATS, CheckReport
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.model_arguments import (
@@ -30,7 +30,7 @@ from as2fm_lsp.cli.model_arguments import (
     settings_of,
 )
 from as2fm_lsp.cli.numbers import natural, positive
-from as2fm_lsp.cli.output import complain, flush, print_text
+from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.verification import stuck_report
