@@ -15,7 +15,7 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
 from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, FOUND, USAGE
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
 from as2fm_lsp.cli.output import complain, print_text, takes_color
@@ -130,7 +130,7 @@ def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
 
 
 def _write(options: argparse.Namespace, report: CheckReport) -> None:
-    text = _statistics(report.entries) if options.statistics else FORMATS[options.format](report)
+    text = _statistics(report.entries) if options.statistics else render(report, options.format)
     if options.output is not None:
         write_file(options.output, text)
     else:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
@@ -198,9 +198,9 @@ def _reported(
 def _report(options: argparse.Namespace, report: CheckReport) -> None:
     """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
     if options.format == "json":
-        print_text(FORMATS["json"](report), "utf-8")
+        print_text(render(report, "json"), "utf-8")
     elif report.entries:
-        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print_text(render(report, "text"), stream=sys.stderr)
 
 
 def _not_written(options: argparse.Namespace, output: str) -> int:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -277,7 +277,7 @@ class _Verification:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
-                print_text(FORMATS["text"](report), stream=sys.stderr)
+                print_text(render(report, "text"), stream=sys.stderr)
 
     def _tell(self) -> None:
         """Write traces and stories."""
@@ -500,9 +500,9 @@ def _errors(options: argparse.Namespace, report: CheckReport) -> int:
     if options.format == "json":
         print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
     elif options.format == "junit":
-        print_text(FORMATS["junit"](report), "utf-8")
+        print_text(render(report, "junit"), "utf-8")
     else:
-        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print_text(render(report, "text"), stream=sys.stderr)
     return FOUND
 
 

@@ -7,7 +7,8 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from roaml.api.checking import CheckResult, PathError, check
+from roaml.api.checking import CheckResult, check
+from roaml.api.jani_files import PathError
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.selection import select

@@ -19,7 +19,8 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.forest.forest import NEWEST, Forest, TreeSettings
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
-from roaml.forest.forest import NEWEST, TreeSettings
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
 from roaml.model.kinds import CONFIG_FILE
 from roaml.model.size import DEFAULT_LIMITS, Limits
