@@ -17,7 +17,7 @@ from as2fm_lsp.cli.times import time_of
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.node import Origin
-from roaml.model.system_file import Overrides
+from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.smc.fault import FaultError

@@ -23,13 +23,16 @@ from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
-from roaml.model.system_file import Overrides
+from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.scxml.model import Network
 from roaml.scxml.writer import write as scxml_texts
 from roaml.text import SourceFile
-from roaml.views import NOTATIONS, Notation, machine_graph, network_graph, tree_graph
+from roaml.views.machine import machine_graph
+from roaml.views.network import network_graph
+from roaml.views.notations import NOTATIONS, Notation
+from roaml.views.tree import tree_graph
 
 STANDARD_OUTPUT = "-"
 

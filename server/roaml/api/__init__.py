@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from roaml.jani.properties import Property
     from roaml.jani.selection import PropertyError
     from roaml.jani.writer import write as write_jani
-    from roaml.model.system_file import NO_OVERRIDES, Overrides
+    from roaml.model.parameters import NO_OVERRIDES, Overrides
     from roaml.project.analysis import Analysis
     from roaml.project.migrate import Migration
     from roaml.project.settings import Settings
@@ -82,7 +82,7 @@ else:
         "roaml.jani.node": ("Origin",),
         "roaml.jani.properties": ("Property",),
         "roaml.jani.selection": ("PropertyError",),
-        "roaml.model.system_file": ("NO_OVERRIDES", "Overrides"),
+        "roaml.model.parameters": ("NO_OVERRIDES", "Overrides"),
         "roaml.project.analysis": ("Analysis",),
         "roaml.project.migrate": ("Migration",),
         "roaml.project.settings": ("Settings",),

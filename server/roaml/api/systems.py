@@ -14,7 +14,7 @@ from roaml.jani.properties import Property
 from roaml.jani.selection import select
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
-from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes

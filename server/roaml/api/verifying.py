@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
 from roaml.jani.model import Model
-from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 
 if TYPE_CHECKING:

@@ -48,6 +48,7 @@ from roaml.model.machine import (
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.xml_syntax import Element
 
 
@@ -365,10 +366,6 @@ class _Typer:
         known = bindings(handler, "body", self.machine, self.environment)
         for target in handler.targets:
             _Body(self, variables, known, ValuePlace(chart, state, handler, "body", late)).run(target.body)
-
-
-STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
-"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 
 
 def port_type(machine: Machine, read: PortRead) -> Type:

@@ -17,8 +17,8 @@ from roaml.diagnostics import Severity
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
 from roaml.model.kinds import CONFIG_FILE
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.size import DEFAULT_LIMITS, Limits
-from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project import exclude
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.paths import full
