@@ -368,6 +368,10 @@ class _Typer:
             _Body(self, variables, known, ValuePlace(chart, state, handler, "body", late)).run(target.body)
 
 
+GOAL_STATUSES = {4: "STATUS_SUCCEEDED", 5: "STATUS_CANCELED", 6: "STATUS_ABORTED"}
+"""`action_msgs/GoalStatus` of ROS 2: the codes that results can have."""
+
+
 def port_type(machine: Machine, read: PortRead) -> Type:
     for port in machine.ports:
         if port.key and read.key and port.key.value == read.key.value and port.type and port.type.name:
