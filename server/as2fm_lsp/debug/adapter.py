@@ -11,8 +11,8 @@ from __future__ import annotations
 import functools
 import os
 import urllib.parse
-import urllib.request
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, BinaryIO
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
@@ -573,13 +573,14 @@ class Adapter:
     def _path(self, source: Arguments) -> str:
         path = source.text("path", None)
         if path.startswith("file:"):
-            path = urllib.request.url2pathname(urllib.parse.urlsplit(path).path)
+            path = urllib.parse.unquote(urllib.parse.urlsplit(path).path)
+            path = path[1:] if os.name == "nt" else path
         if "\0" in path:
             raise RequestError("`path` is not a path")
         return os.path.abspath(path)
 
     def _source(self, path: str) -> dict[str, Any]:
-        shown_path = "file://" + urllib.request.pathname2url(path) if self._uses_uris else path
+        shown_path = Path(path).as_uri() if self._uses_uris else path
         return {"name": os.path.basename(path), "path": shown_path}
 
     def _where(self, origin: Origin | None) -> dict[str, Any]:
