@@ -39,6 +39,7 @@ from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
 from roaml.model.property_file import PropertyFile, build_property_file
 from roaml.model.property_links import LinkedFile, link
+from roaml.model.property_ports import observed_names
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
@@ -584,14 +585,18 @@ class Analysis:
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
-        instances = expand(trees).instances
-        return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
+        expansion = expand(trees)
+        instances, uses = expansion.instances, expansion.uses
+        return System(path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
         paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
         properties = [declared for path in paths for declared in self.properties(path)[0]]
-        return frozenset(name for declared in properties for name, _ in identifiers(declared.expression))
+        names = {name for declared in properties for name, _ in identifiers(declared.expression)}
+        xml_paths = [f.path for f in listed if f.wanted is FileKind.XML_PROPERTIES and f.usable]
+        files = [file for path in xml_paths if (file := self.property_file(path)) is not None]
+        return frozenset(names.union(*(observed_names(file) for file in files)))
 
     def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
         """The facts that a system file, its trees and the unreadable files may contain: file, gap and place."""
