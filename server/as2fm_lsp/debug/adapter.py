@@ -61,6 +61,42 @@ class Adapter:
         self._functions: list[tuple[int, Arguments]] = []
         self._filters: list[tuple[str, str]] = []
         self._after: list[Callable[[], None]] = []
+        self._handlers: dict[str, Callable[[Arguments], Body]] = {
+            "initialize": self._initialize,
+            "launch": self._launch_request,
+            "attach": self._attach,
+            "configurationDone": self._configuration_done,
+            "restart": self._restart,
+            "disconnect": self._end,
+            "terminate": self._terminate,
+            "cancel": self._cancel,
+            "threads": self._threads,
+            "stackTrace": self._stack_trace,
+            "scopes": self._scopes,
+            "variables": self._variables,
+            "evaluate": self._evaluate,
+            "exceptionInfo": self._exception_info,
+            "loadedSources": self._loaded_sources,
+            "source": self._source_request,
+            "continue": self._continue,
+            "next": self._next,
+            "stepIn": self._step_in,
+            "stepOut": self._step_out,
+            "stepBack": self._step_back,
+            "reverseContinue": self._reverse_continue,
+            "pause": self._pause,
+            "restartFrame": self._restart_frame,
+            "goToStep": self._go_to_step,
+            "choices": self._choices,
+            "choose": self._choose,
+            "saveSession": self._save_session,
+            "setBreakpoints": self._set_breakpoints,
+            "setFunctionBreakpoints": self._set_function_breakpoints,
+            "setExceptionBreakpoints": self._set_exception_breakpoints,
+            "dataBreakpointInfo": self._data_breakpoint_info,
+            "setDataBreakpoints": self._set_data_breakpoints,
+            "breakpointLocations": self._breakpoint_locations,
+        }
 
     def run(self) -> None:
         """Handle requests until the session or the stream ends."""
@@ -97,10 +133,10 @@ class Adapter:
         response: dict[str, Any] = {"type": "response", "request_seq": number, "command": command}
         self._after = []
         try:
-            handler = _HANDLERS.get(command)
+            handler = self._handlers.get(command)
             if handler is None:
                 raise RequestError(f"unknown request `{command}`")
-            body = handler(self, Arguments(message.get("arguments")))
+            body = handler(Arguments(message.get("arguments")))
         except (RequestError, EvaluationError) as error:
             text = str(error)
             details = {"id": 1, "format": _escaped(text), "showUser": command in ("launch", "restart")}
@@ -614,41 +650,3 @@ def _is_choice(debugger: Debugger, choice: Choice) -> bool:
     step = debugger.upcoming()
     taken = [] if step is None else [part.automaton for part in step.parts]
     return step is not None and set(taken) == set(choice.automata)
-
-
-_HANDLERS: dict[str, Callable[[Adapter, Arguments], Body]] = {
-    "initialize": Adapter._initialize,
-    "launch": Adapter._launch_request,
-    "attach": Adapter._attach,
-    "configurationDone": Adapter._configuration_done,
-    "restart": Adapter._restart,
-    "disconnect": Adapter._end,
-    "terminate": Adapter._terminate,
-    "cancel": Adapter._cancel,
-    "threads": Adapter._threads,
-    "stackTrace": Adapter._stack_trace,
-    "scopes": Adapter._scopes,
-    "variables": Adapter._variables,
-    "evaluate": Adapter._evaluate,
-    "exceptionInfo": Adapter._exception_info,
-    "loadedSources": Adapter._loaded_sources,
-    "source": Adapter._source_request,
-    "continue": Adapter._continue,
-    "next": Adapter._next,
-    "stepIn": Adapter._step_in,
-    "stepOut": Adapter._step_out,
-    "stepBack": Adapter._step_back,
-    "reverseContinue": Adapter._reverse_continue,
-    "pause": Adapter._pause,
-    "restartFrame": Adapter._restart_frame,
-    "goToStep": Adapter._go_to_step,
-    "choices": Adapter._choices,
-    "choose": Adapter._choose,
-    "saveSession": Adapter._save_session,
-    "setBreakpoints": Adapter._set_breakpoints,
-    "setFunctionBreakpoints": Adapter._set_function_breakpoints,
-    "setExceptionBreakpoints": Adapter._set_exception_breakpoints,
-    "dataBreakpointInfo": Adapter._data_breakpoint_info,
-    "setDataBreakpoints": Adapter._set_data_breakpoints,
-    "breakpointLocations": Adapter._breakpoint_locations,
-}
