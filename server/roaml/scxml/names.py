@@ -48,6 +48,10 @@ BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
 """The pattern of events between nodes of a tree: the number of the child, and the kind of the event."""
+STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
+"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+FIELD_PREFIX = "ros_fields__"
+"""Begins the parameters of an event that are fields of its message."""
 
 
 def role_of(event: str) -> EventRole:
@@ -122,9 +126,31 @@ def open_variable(property_: str) -> str:
     return f"{property_}__open"
 
 
+def asked_variable(property_: str) -> str:
+    """The variable that says whether what a property is about has occurred, such as the request of a response
+    (docs/spec/jani.md#observers)."""
+    return f"{property_}__asked"
+
+
+def opened_variable(property_: str) -> str:
+    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
+    return f"{property_}__opened"
+
+
+def pending_variable(property_: str) -> str:
+    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
+    return f"{property_}__pending"
+
+
 def is_length(variable: str) -> bool:
     """Whether a variable is the length of an array (docs/spec/jani.md#array-storage)."""
     return _LENGTH.search(variable) is not None
 
 
 _LENGTH = re.compile(r"\.d[0-9]+_len\Z")
+
+
+def safe_name(automaton: str) -> str:
+    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
+    `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from roaml.smc.choices import Choices
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording, TraceStep
@@ -85,7 +86,7 @@ class Result:
         stuck: the traces that got stuck, if any.
         choices: the knowledge about schedulers other than the uniform one; `None` if only uniform choices are
             considered.
-        refusal: why there is no answer.
+        refusal: why there is no answer; `fault` is its cause.
         traces: the traces of `answer`, which can be simulated again.
     """
 
@@ -100,6 +101,7 @@ class Result:
     exact: Exact | None = None
     choices: Choices | None = None
     refusal: Refusal | None = None
+    fault: FaultError | None = field(default=None, repr=False, compare=False)
     traces: Traces | None = field(default=None, repr=False, compare=False)
 
     @property
