@@ -7,6 +7,7 @@ import random
 from pathlib import Path
 
 import pytest
+
 from roaml import api
 from roaml.simulation import Session
 from roaml.simulation.run import SNAPSHOT_INTERVAL
