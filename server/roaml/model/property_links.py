@@ -36,6 +36,7 @@ from roaml.model.property_file import (
 )
 from roaml.model.property_ports import FindInterface, LinkedPort, LinkedVariable, PortLinker
 from roaml.model.property_problems import Problem, ProblemKind
+from roaml.model.property_sentences import sentence
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
@@ -68,6 +69,7 @@ class LinkedProperty:
         conditions: input of its observer -> expression.
         ports: the ports whose variables it reads; their events are its letters.
         path: the path of its file.
+        sentence: what it requires.
     """
 
     name: str
@@ -77,6 +79,7 @@ class LinkedProperty:
     ports: tuple[LinkedPort, ...]
     written: WrittenProperty
     path: str
+    sentence: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -215,7 +218,16 @@ class _Linker:
         names = {node.name for c in conditions.values() for node in walk(c.tree) if isinstance(node, Name)}
         ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
         is_assumption = written.section == ASSUMES
-        return LinkedProperty(written.id.value, is_assumption, property_, conditions, ports, written, self.path)
+        return LinkedProperty(
+            written.id.value,
+            is_assumption,
+            property_,
+            conditions,
+            ports,
+            written,
+            self.path,
+            sentence(self.file, written),
+        )
 
     def _check_condition(self, condition: Expression) -> None:
         if condition.broken:

@@ -50,11 +50,15 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """A property for which an observer is built. `conditions` are the inputs of the observer, as expressions over the
-    ids of the variables."""
+    """
+    Attributes:
+        conditions: what the inputs of its observer are, as expressions over the ids of the variables.
+        comment: what the property requires, as a sentence.
+    """
 
     name: str
     property: Property
     conditions: Mapping[str, Expr]
     ports: tuple[ObservedPort, ...]
     origin: Location
+    comment: str = ""
