@@ -70,7 +70,9 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
     from roaml.verification.target import target_of  # noqa: PLC0415
 
     if isinstance(subject, LoadedSystem):
-        return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
+        conditional = [property_.name for property_ in subject.observed if property_.assumptions]
+        model = to_jani(subject, has_activity=True)
+        return target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
     return target_of(subject) if isinstance(subject, Model) else subject
 
 

@@ -50,10 +50,14 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """`conditions`: what the inputs of its observer are, as expressions over the ids of the variables."""
+    """Attributes:
+    conditions: what the inputs of its observer are, as expressions over the ids of the variables.
+    assumptions: the properties that are assumed for it.
+    """
 
     name: str
     property: Property
     conditions: Mapping[str, Expr]
     ports: tuple[ObservedPort, ...]
     origin: Location
+    assumptions: tuple[ObservedProperty, ...] = ()
