@@ -19,7 +19,8 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.forest.forest import NEWEST, Forest, TreeSettings
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
@@ -31,12 +32,13 @@ from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
 from roaml.model.gaps import ANYTHING, NODE, RECEIVES, REMAP, SENDS, Gap, PlacedGap, machine_gaps
-from roaml.model.globals import GlobalVariable, global_variables
+from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.property_file import PropertyFile, build_property_file
 from roaml.model.property_links import LinkedFile, link
 from roaml.model.property_ports import observed_names
@@ -44,15 +46,7 @@ from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_ty
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
-from roaml.model.system_file import (
-    NO_OVERRIDES,
-    ListedFile,
-    Overrides,
-    SystemFile,
-    SystemInput,
-    build_system_file,
-    wanted_kind,
-)
+from roaml.model.system_file import ListedFile, SystemFile, SystemInput, build_system_file, wanted_kind
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
@@ -809,6 +803,12 @@ class Analysis:
             return {}
         environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
         return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
+
+    def event_parameters(self, system: str) -> Mapping[str, Mapping[str, Type]]:
+        """The parameters of each event of the translated system, with the types of the models."""
+        linked = self.system(system)
+        environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
+        return {} if linked is None else event_parameters(linked, environment.interface)
 
 
 _ROUNDS = 4

@@ -302,6 +302,32 @@ class Kernel:
             for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
                 self._set_ready(self.group_slot[group], self._count(group))
 
+    def save(self) -> tuple[Any, ...]:
+        """Everything that determines how the trace continues, for `load`."""
+        arrays = [list(array) for array in self._changing()]
+        counts = (self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved)
+        goal = (self.must_look, self.steps, self.still, self.reward)
+        draws = (self.key, self.drawn, self.scheduler)
+        loop = (self.loop_state, self.loop_drawn, self.loop_span, self.loop_left)
+        return arrays, counts, goal, draws, loop
+
+    def load(self, saved: tuple[Any, ...]) -> None:
+        """Go back to a state of the same model and goal that `save` has returned."""
+        arrays, counts, goal, draws, loop = saved
+        self._reset()
+        for array, values in zip(self._changing(), arrays, strict=True):
+            for i, value in enumerate(values):
+                array[i] = value
+        self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved = counts
+        self.must_look, self.steps, self.still, self.reward = goal
+        self.key, self.drawn, self.scheduler = draws
+        self.loop_state, self.loop_drawn, self.loop_span, self.loop_left = loop
+
+    def _changing(self) -> list[Any]:
+        """The arrays that steps change, except for those that contain something only within a step."""
+        state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
+        return [*state, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
+
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for
         each slot that does something the probabilities of the ways of each enabled edge."""
