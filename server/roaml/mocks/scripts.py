@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scripts of BehaviorTree.CPP -> assignments and conditions (docs/spec/mocks.md#scripts).
+
+All entries that a script reads are read at once before it; all that it assigns are written after it. Nothing else is
+executed in between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NoReturn
+
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Boolean as BooleanExpr
+from roaml.expr.tree import Call, Expr, Member
+from roaml.expr.tree import Conditional as ConditionalExpr
+from roaml.expr.tree import Unary as UnaryExpr
+from roaml.lower.build import binary, both, equal, integer, name
+from roaml.lower.program import NOWHERE
+from roaml.mocks.entries import Entry, Kind, constant, read_literal
+from roaml.script import tree as script
+from roaml.text import Span
+
+
+class ScriptRefusal(Exception):  # noqa: N818 - a reason, not a mistake
+    """Why a script cannot be translated, and where."""
+
+    def __init__(self, span: Span, reason: str) -> None:
+        super().__init__(reason)
+        self.span = span
+        self.reason = reason
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CompiledScript:
+    """Attributes:
+    reads, writes: entries.
+    assignments: variables of the automaton with their new values, in order.
+    conditions: what must hold before; otherwise the library throws an exception.
+    truth: whether the value of the script is true; `None` if it is a text.
+    """
+
+    reads: tuple[Entry, ...]
+    assignments: tuple[tuple[str, Expr], ...]
+    writes: tuple[Entry, ...]
+    conditions: tuple[Expr, ...]
+    truth: Expr | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """An expression; `kind` is `None` for a condition."""
+
+    expr: Expr
+    kind: Kind | None
+
+
+def compiled(parsed: script.Script, entry: Callable[[str], Entry | None], *, is_condition: bool) -> CompiledScript:
+    """A script as assignments.
+
+    Args:
+        entry: name -> the entry; `None` if nothing sets it.
+        is_condition: whether its value is used.
+
+    Raises:
+        ScriptRefusal: the script cannot be translated.
+    """
+    return _Compiler(entry).script(parsed, is_condition=is_condition)
+
+
+@dataclass
+class _Compiler:
+    entry: Callable[[str], Entry | None]
+    reads: dict[str, Entry] = field(default_factory=dict)
+    writes: dict[str, Entry] = field(default_factory=dict)
+    assignments: list[tuple[str, Expr]] = field(default_factory=list)
+    conditions: list[Expr] = field(default_factory=list)
+
+    def script(self, parsed: script.Script, *, is_condition: bool) -> CompiledScript:
+        value: _Value | None = None
+        for statement in parsed.statements:
+            value = self.value(statement)
+        truth: Expr | None = None
+        if is_condition and value is not None:
+            truth = self.truth(value, parsed.statements[-1].span)
+        return CompiledScript(
+            tuple(self.reads.values()),
+            tuple(self.assignments),
+            tuple(self.writes.values()),
+            tuple(self.conditions),
+            truth,
+        )
+
+    def refuse(self, expr: script.Expr, reason: str) -> NoReturn:
+        raise ScriptRefusal(expr.span, reason)
+
+    def find(self, expr: script.Name) -> Entry:
+        entry = self.entry(expr.name)
+        if entry is None:
+            self.refuse(expr, f"nothing sets the entry `{expr.name}`; give it a value with --entry {expr.name}=VALUE")
+        return entry
+
+    def value(self, expr: script.Expr) -> _Value:
+        match expr:
+            case script.Number(value=number):
+                kind = Kind.INTEGER if isinstance(number, int) else Kind.REAL
+                return _Value(constant(kind, number), kind)
+            case script.Boolean(value=truth):
+                return _Value(BooleanExpr(NOWHERE, truth), None)
+            case script.String(value=text):
+                return _Value(constant(Kind.TEXT, text), Kind.TEXT)
+            case script.Name():
+                entry = self.find(expr)
+                if entry.variable not in self.writes:
+                    self.reads[entry.variable] = entry
+                return _Value(name(entry.local), entry.kind)
+            case script.Unary():
+                return self.unary(expr)
+            case script.Binary():
+                return self.binary(expr)
+            case script.Comparison():
+                return self.comparison(expr)
+            case script.Conditional():
+                return self.conditional(expr)
+            case script.Assignment():
+                return self.assignment(expr)
+            case script.ErrorExpr():
+                self.refuse(expr, "the script is not valid")
+
+    def unary(self, expr: script.Unary) -> _Value:
+        operand = self.value(expr.operand)
+        match expr.operator:
+            case "!":
+                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NOT, self.truth(operand, expr.operand.span)), None)
+            case "-":
+                number = self.number(operand, expr.operand)
+                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NEGATE, number.expr), number.kind)
+        self.refuse(expr, f"`{expr.operator}` works on bits, which a model does not have")
+
+    def binary(self, expr: script.Binary) -> _Value:
+        left, right = self.value(expr.left), self.value(expr.right)
+        match expr.operator:
+            case "&&" | "||" as operator:
+                symbol = Operator.AND if operator == "&&" else Operator.OR
+                first, second = self.truth(left, expr.left.span), self.truth(right, expr.right.span)
+                return _Value(binary(first, symbol, second), None)
+            case "&" | "|" | "^" as operator:
+                self.refuse(expr, f"`{operator}` works on bits, which a model does not have")
+            case "..":
+                self.refuse(expr, "texts cannot be joined in a model")
+        if Kind.TEXT in (left.kind, right.kind):
+            self.refuse(expr, "texts cannot be joined in a model")
+        first, second = self.number(left, expr.left), self.number(right, expr.right)
+        symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[expr.operator]
+        kind = Kind.REAL if expr.operator == "/" or Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
+        return _Value(binary(first.expr, symbol, second.expr), kind)
+
+    def comparison(self, expr: script.Comparison) -> _Value:
+        values = [self.value(operand) for operand in expr.operands]
+        result: Expr | None = None
+        for position, operator in enumerate(expr.operators):
+            left, right = self.comparable(expr, values[position], values[position + 1])
+            if left.kind is Kind.TEXT and operator not in ("==", "!="):
+                self.refuse(expr, f"texts cannot be compared by `{operator}` in a model")
+            symbol = next(known for known in Operator if known.symbol == operator)
+            result = both(result, binary(left.expr, symbol, right.expr))
+        assert result is not None
+        return _Value(result, None)
+
+    def comparable(self, expr: script.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+        if left.kind is Kind.TEXT and right.kind is Kind.TEXT:
+            return left, right
+        if Kind.TEXT in (left.kind, right.kind):
+            return self.with_text(expr, left, right)
+        return self.number(left, expr), self.number(right, expr)
+
+    def with_text(self, expr: script.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+        """A text that is compared with a number is read as a number."""
+        sides = []
+        for side in (left, right):
+            text = getattr(side.expr, "value", None)
+            if side.kind is Kind.TEXT:
+                kind, literal = read_literal(text) if isinstance(text, str) else (Kind.TEXT, "")
+                if kind is Kind.TEXT:
+                    self.refuse(expr, "a text is compared with a number")
+                sides.append(_Value(constant(kind, literal), kind))
+            else:
+                sides.append(self.number(side, expr))
+        return sides[0], sides[1]
+
+    def conditional(self, expr: script.Conditional) -> _Value:
+        test = self.value(expr.test)
+        before = len(self.assignments)
+        yes, no = self.value(expr.yes), self.value(expr.no)
+        if len(self.assignments) > before:
+            self.refuse(expr, "an assignment inside `? :` cannot be translated; use a condition of the node instead")
+        condition = (
+            UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(test.expr, constant(Kind.TEXT, "")))
+            if test.kind is Kind.TEXT
+            else self.truth(test, expr.test.span)
+        )
+        if Kind.TEXT in (yes.kind, no.kind):
+            if yes.kind is not no.kind:
+                self.refuse(expr, "the value is a text or a number")
+            return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), Kind.TEXT)
+        first, second = self.number(yes, expr.yes), self.number(no, expr.no)
+        kind = Kind.REAL if Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
+        return _Value(ConditionalExpr(NOWHERE, condition, first.expr, second.expr), kind)
+
+    def assignment(self, expr: script.Assignment) -> _Value:
+        value = self.value(expr.value)
+        entry = self.find(expr.target)
+        current = _Value(name(entry.local), entry.kind)
+        if expr.operator not in (":=", "="):
+            if entry.variable not in self.writes:
+                self.reads[entry.variable] = entry
+            operation = script.Binary(expr.span, expr.operator[0], expr.operator_span, expr.target, expr.value)
+            value = self.binary(operation)
+        converted = self.converted(expr, value, entry)
+        self.assignments.append((entry.local, converted))
+        self.writes[entry.variable] = entry
+        return current
+
+    def converted(self, expr: script.Assignment, value: _Value, entry: Entry) -> Expr:
+        """A value as one of the type of an entry, which keeps its type."""
+        if entry.kind is Kind.TEXT or value.kind is Kind.TEXT:
+            if entry.kind is value.kind:
+                return value.expr
+            text = getattr(value.expr, "value", None)
+            if value.kind is Kind.TEXT and isinstance(text, str) and read_literal(text)[0] is not Kind.TEXT:
+                return constant(entry.kind, read_literal(text)[1])
+            self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}")
+        number = self.number(value, expr.value)
+        if entry.kind is Kind.INTEGER and number.kind is Kind.REAL:
+            floor = Call(NOWHERE, Member(NOWHERE, name("Math"), "floor", NOWHERE), (number.expr,))
+            if self.assignments:
+                self.refuse(expr, f"`{expr.target.name}` is an integer and gets a real number after another assignment")
+            self.conditions.append(equal(floor, number.expr))
+            return floor
+        return number.expr
+
+    def number(self, value: _Value, expr: script.Expr) -> _Value:
+        if value.kind is None:
+            as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
+            return _Value(as_number, Kind.INTEGER)
+        if value.kind is Kind.TEXT:
+            self.refuse(expr, "a number is needed here, and this is a text")
+        return value
+
+    def truth(self, value: _Value, span: Span) -> Expr:
+        if value.kind is None:
+            return value.expr
+        if value.kind is Kind.TEXT:
+            raise ScriptRefusal(span, "a text is neither true nor false")
+        return UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(value.expr, integer(0)))
