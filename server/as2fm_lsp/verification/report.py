@@ -151,12 +151,18 @@ def _number(value: float) -> str:
 
 
 def as_json(
-    results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
+    results: Sequence[Result],
+    errors: Sequence[dict[str, Any]] = (),
+    stuck: dict[str, Any] | None = None,
+    tree: dict[str, Any] | None = None,
 ) -> str:
-    """For programs; `stuck` is the result of the check for stuck systems."""
+    """For programs; `stuck` is the result of the check for stuck systems, `tree` what was measured of a tree without a
+    system."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
+    if tree is not None:
+        value["tree"] = tree
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"

@@ -43,9 +43,16 @@ from roaml.scxml.model import (
 from roaml.text import Location
 
 IDLE, SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = range(6)
-"""The codes of statuses and answers. SKIPPED: the node was skipped and is IDLE; HELD: it was skipped and has kept another
+"""The codes of statuses and answers. SKIPPED: the node was skipped and is IDLE; HELD: it was skipped and has another
 status. For its parent, this makes a difference (docs/spec/mocks.md#skipped)."""
-STATUS_CODES = {"IDLE": IDLE, "SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED, "HELD": HELD}
+STATUS_CODES = {
+    "IDLE": IDLE,
+    "SUCCESS": SUCCESS,
+    "FAILURE": FAILURE,
+    "RUNNING": RUNNING,
+    "SKIPPED": SKIPPED,
+    "HELD": HELD,
+}
 
 MAX_STATES = 20_000
 """The maximum number of states of one node."""
@@ -142,6 +149,51 @@ _RESULT = "*result"
 _SKIPS = "*skips"
 
 
+class _Rest(NamedTuple):
+    """The node waits for its parent."""
+
+    fixed: Fixed
+
+
+class _Ticking(NamedTuple):
+    """The node waits for the answer of a child to a tick."""
+
+    place: Place
+    fixed: Fixed
+    child: int
+    target: str
+
+
+class _Halting(NamedTuple):
+    """The node waits for the answer of a child to a halt."""
+
+    place: Place
+    fixed: Fixed
+    child: int
+
+
+class _Asking(NamedTuple):
+    """The node waits for the blackboard."""
+
+    place: Place
+    fixed: Fixed
+    entries: tuple[Entry, ...]
+
+
+class _Deciding(NamedTuple):
+    """What follows depends on the values of variables."""
+
+    place: Place
+    fixed: Fixed
+
+
+class _Exception(NamedTuple):
+    """The library has thrown an exception."""
+
+
+_Key: TypeAlias = _Rest | _Ticking | _Halting | _Asking | _Deciding | _Exception
+
+
 @dataclass(slots=True)
 class _Way:
     """One way through the code up to the next state: the statements on it, and what is known."""
@@ -154,10 +206,10 @@ class _Way:
 @dataclass(eq=False)
 class _Explorer:
     code: NodeCode
-    states: dict[object, str] = field(default_factory=dict)
+    states: dict[_Key, str] = field(default_factory=dict)
     built: dict[str, State] = field(default_factory=dict)
     names: dict[str, int] = field(default_factory=dict)
-    pending: list[tuple[str, object]] = field(default_factory=list)
+    pending: list[tuple[str, _Key]] = field(default_factory=list)
     data: dict[str, Data] = field(default_factory=dict)
     answers: set[int] = field(default_factory=set)
 
@@ -172,7 +224,7 @@ class _Explorer:
             "halted": assembly.halted(given),
         }
         self.kept = {"status", *program.fixed}
-        self.declared = {name: value for name, value in program.variables.items()}
+        self.declared = dict(program.variables)
         for flag in program.flags:
             self.declared |= {f"{flag}_{i}": False for i in range(len(self.code.children))}
 
@@ -187,9 +239,7 @@ class _Explorer:
             if len(self.states) > MAX_STATES:
                 raise TooManyStatesError
         states = tuple(self.built[state] for state in self.states.values())
-        return Automaton(
-            self.code.name, Role.MACHINE, initial, tuple(self.data.values()), states, self.code.origin
-        )
+        return Automaton(self.code.name, Role.MACHINE, initial, tuple(self.data.values()), states, self.code.origin)
 
     def declare(self, variable: str, type_: Type, initial: Expr) -> None:
         if variable not in self.data:
@@ -197,7 +247,7 @@ class _Explorer:
 
     # ------------------------------------------------------------------ states
 
-    def state(self, word: str, key: object) -> str:
+    def state(self, word: str, key: _Key) -> str:
         """The state for a key; a new one is built later."""
         if key not in self.states:
             count = self.names[word] = self.names.get(word, 0) + 1
@@ -209,40 +259,37 @@ class _Explorer:
         """The state in which the node waits for its parent."""
         kept = {k: v for k, v in fixed.items() if k in self.kept or k == _TOUCHED}
         word = next(word for word, number in STATUS_CODES.items() if number == kept["status"]).lower()
-        return self.state(word, ("rest", _frozen(kept)))
+        return self.state(word, _Rest(_frozen(kept)))
 
-    def build(self, state: str, key: object) -> State:
-        origin = self.code.origin
+    def build(self, state: str, key: _Key) -> State:
+        transitions: list[Transition] = []
         match key:
-            case ("rest", fixed):
-                transitions = [*self.on(self.event("tick"), ("before", 0), dict(fixed))]
-                if not self.code.program.is_stateless or dict(fixed)["status"] == RUNNING or self.has_conditions:
+            case _Rest(fixed):
+                transitions += self.on(self.event("tick"), ("before", 0), dict(fixed))
+                if not self.code.program.is_stateless or self.has_conditions:
                     transitions += self.on_halt(dict(fixed))
-            case ("ticking", place, fixed, number, target):
+            case _Ticking(place, fixed, number, target):
                 child = self.code.children[number]
                 answer = tree_event(child.number, "response")
-                transitions = []
                 for status in sorted(child.answers):
                     after = {**dict(fixed), target: status}
                     touched = int(after[_TOUCHED])
                     after[_TOUCHED] = touched & ~(1 << number) if status == SKIPPED else touched | (1 << number)
-                    cond = equal(event_data("status"), integer(status))
-                    transitions += self.on(answer, place, after, cond)
-            case ("halting", place, fixed, number):
+                    transitions += self.on(answer, place, after, equal(event_data("status"), integer(status)))
+            case _Halting(place, fixed, number):
                 event = tree_event(self.code.children[number].number, "halt_response")
-                transitions = [*self.on(event, place, dict(fixed))]
-            case ("asking", place, fixed, entries):
-                transitions = []
-                body: list[Statement] = []
+                transitions += self.on(event, place, dict(fixed))
+            case _Asking(place, fixed, entries):
+                body = []
                 for entry in entries:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
-                    body.append(Assign(name(entry.local), event_data(entry.variable), origin))
+                    body.append(Assign(name(entry.local), event_data(entry.variable), self.code.origin))
                 transitions += self.on(ANSWER, place, dict(fixed), body=body)
-            case ("deciding", place, fixed):
-                transitions = [*self.on(None, place, dict(fixed))]
-            case _:
-                transitions = []
-        return State(state, (), (), tuple(transitions), origin)
+            case _Deciding(place, fixed):
+                transitions += self.on(None, place, dict(fixed))
+            case _Exception():
+                pass
+        return State(state, (), (), tuple(transitions), self.code.origin)
 
     @property
     def has_conditions(self) -> bool:
@@ -256,7 +303,9 @@ class _Explorer:
             return self.on(self.event("halt"), ("halt", 0), fixed)
         target = self.rest({**fixed, "status": IDLE})
         answer = Send(self.event("halt_response"), (), self.code.origin)
-        return [Transition(self.event("halt"), None, (Target(target, 1.0, (answer,), self.code.origin),), self.code.origin)]
+        return [
+            Transition(self.event("halt"), None, (Target(target, 1.0, (answer,), self.code.origin),), self.code.origin)
+        ]
 
     # --------------------------------------------------------------- execution
 
@@ -297,14 +346,13 @@ class _Explorer:
     def single(self, way: _Way, share: float) -> Target:
         return self.target(way, self.run(way), share)
 
-    def target(self, way: _Way, stop: object, share: float) -> Target:
-        if isinstance(stop, str):
-            state = stop
-        else:  # what depends on values is decided in a state of its own
-            state = self.state("deciding", ("deciding", way.place, _frozen(way.fixed)))
+    def target(self, way: _Way, stop: _Stop, share: float) -> Target:
+        # What depends on values is decided in a state of its own.
+        later = _Deciding(way.place, _frozen(way.fixed))
+        state = stop if isinstance(stop, str) else self.state("deciding", later)
         return Target(state, share, tuple(way.body), self.code.origin)
 
-    def run(self, way: _Way) -> object:
+    def run(self, way: _Way) -> _Stop:
         """Execute until an event has to arrive, or something depends on values. `way.place` is the instruction at which
         it stops.
 
@@ -314,7 +362,7 @@ class _Explorer:
         while True:
             segment, index = way.place
             if way.place == _EXCEPTION:
-                return self.state("exception", ("exception",))
+                return self.state("exception", _Exception())
             code = self.segments[segment]
             if index >= len(code):
                 state = self.end(segment, way)
@@ -361,7 +409,7 @@ class _Explorer:
         way.body.append(Send(self.event("response"), (status,), self.code.origin))
         return self.rest(way.fixed)
 
-    def execute(self, instruction: Instruction, following: Place, way: _Way) -> object:
+    def execute(self, instruction: Instruction, following: Place, way: _Way) -> _Stop | None:
         """Execute one instruction; return where to stop, or `None` to go on at `way.place`."""
         segment = following[0]
 
@@ -399,8 +447,8 @@ class _Explorer:
             case assembly.Write(port, expression):
                 if port in self.code.bound:
                     self.write(self.code.bound[port], _expr(self.value(expression, way.fixed)), way)
-            case assembly.Evaluate(script, otherwise_or_none):
-                no = None if otherwise_or_none is None else at(otherwise_or_none)
+            case assembly.Evaluate(script, label):
+                no = None if label is None else at(label)
                 following = self.evaluate(self.code.scripts[script], script, following, no)
             case assembly.Updated(otherwise):
                 if self.code.updated is None:
@@ -436,7 +484,7 @@ class _Explorer:
     def tick(self, number: int, target: str, following: Place, way: _Way) -> str:
         child = self.code.children[number]
         way.body.append(Send(tree_event(child.number, "tick"), (), self.code.origin))
-        return self.state("ticking", ("ticking", following, _frozen(way.fixed), number, target))
+        return self.state("ticking", _Ticking(following, _frozen(way.fixed), number, target))
 
     def reset(self, number: int, following: Place, way: _Way) -> str | None:
         child = self.code.children[number]
@@ -445,13 +493,13 @@ class _Explorer:
         if child.is_stateless or not touched & (1 << number):
             return None
         way.body.append(Send(tree_event(child.number, "halt"), (), self.code.origin))
-        return self.state("halting", ("halting", following, _frozen(way.fixed), number))
+        return self.state("halting", _Halting(following, _frozen(way.fixed), number))
 
     # -------------------------------------------------------------- blackboard
 
     def ask(self, entries: tuple[Entry, ...], following: Place, way: _Way) -> str:
         way.body.append(Send(REQUEST, (), self.code.origin))
-        return self.state("asking", ("asking", following, _frozen(way.fixed), entries))
+        return self.state("asking", _Asking(following, _frozen(way.fixed), entries))
 
     def write(self, entry: Entry, value: Expr, way: _Way) -> None:
         origin = self.code.origin
@@ -508,7 +556,7 @@ class _Explorer:
             self.segments[segment] = tuple(steps)
         return (segment, 0)
 
-    def step(self, step: _Step, way: _Way) -> object:
+    def step(self, step: _Step, way: _Way) -> _Stop | None:
         """Execute an added step; return where to stop, or `None` to go on at `way.place`."""
         segment, index = way.place
         match step:
@@ -653,7 +701,9 @@ class _Draw(NamedTuple):
     no: Place
 
 
-_Step: TypeAlias = "_Ask | _Run | _Branch | _Draw"
+_Step: TypeAlias = _Ask | _Run | _Branch | _Draw
+_Stop: TypeAlias = str | _Decision | _Draw
+"""Where the execution stops: in a state, or at something that depends on values or on chance."""
 
 
 def ticks_of(milliseconds: Fraction, rate: Fraction) -> int:

@@ -208,9 +208,9 @@ class _Reader:
         for entry, texts in self.texts.items():
             for text in texts:
                 kind = read_literal(text)[0]
-                if entry not in self.kinds or (kind is Kind.REAL and self.kinds[entry] is Kind.INTEGER):
-                    self.kinds[entry] = kind
-                elif kind is Kind.TEXT and not self.mentioned.get(entry):
+                known = self.kinds.get(entry)
+                widens = kind is Kind.REAL and known is Kind.INTEGER
+                if known is None or widens or (kind is Kind.TEXT and not self.mentioned.get(entry)):
                     self.kinds[entry] = kind
 
     def result(self) -> Board:
@@ -250,5 +250,3 @@ def _ports_of(program: Program) -> tuple[set[str], set[str]]:
         elif isinstance(instruction, assembly.Write):
             written.add(instruction.port)
     return read, written
-
-

@@ -6,8 +6,8 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from roaml.expr.tree import Expr, Number, String, Unary
 from roaml.expr.operators import UnaryOperator
+from roaml.expr.tree import Expr, Number, String, Unary
 from roaml.lower.program import NOWHERE
 
 

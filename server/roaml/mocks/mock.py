@@ -51,7 +51,9 @@ def read_mock(text: str) -> Mock:
         return Mock(match["name"], probability)
     duration = _DURATION.match(match["duration"].strip())
     if duration is None:
-        raise MockError(f"`{match['duration']}` in `{text.strip()}` is not a duration such as `2 s`, `250 ms` or `1 min`")
+        raise MockError(
+            f"`{match['duration']}` in `{text.strip()}` is not a duration such as `2 s`, `250 ms` or `1 min`"
+        )
     return Mock(match["name"], probability, Fraction(duration[1]) * _MILLISECONDS[duration[2]])
 
 
@@ -65,14 +67,23 @@ def read_mocks(text: str) -> tuple[Mock, ...]:
     return tuple(read_mock(line) for line in lines if line)
 
 
-def mock_for(mocks: Sequence[Mock], name: str, type_: str) -> Mock | None:
-    """The mock for a node: that of its name, else of its type, else of the first pattern that fits, `*` last."""
+def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
+    """The mock for a node: that of its name, else of its type, else of the first pattern that fits, `*` last.
+
+    Args:
+        succeeds: whether the node is known to succeed always: then `*` does not concern it.
+    """
     for exact in (name, type_):
         for mock in mocks:
             if mock.pattern == exact:
                 return mock
-    ordered = sorted(mocks, key=lambda mock: mock.pattern == ALL)
-    return next((m for m in ordered if any(fnmatchcase(n, m.pattern) for n in (name, type_))), None)
+    patterns = [mock for mock in mocks if mock.pattern != ALL]
+    for mock in patterns:
+        if any(fnmatchcase(word, mock.pattern) for word in (name, type_)):
+            return mock
+    if succeeds:
+        return Mock(type_, 1.0)
+    return next((mock for mock in mocks if mock.pattern == ALL), None)
 
 
 def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:

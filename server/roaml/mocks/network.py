@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from roaml.expr.operators import Operator
+from roaml.expr.types import BASE_TYPES
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, Forest, port_type
 from roaml.libraries import NodeKind
@@ -47,6 +48,7 @@ from roaml.scxml.model import (
     ScxmlEvent,
     Send,
     State,
+    Statement,
     Target,
     Transition,
 )
@@ -59,6 +61,8 @@ DEFAULT_MAX_TIME = 600 * 10**9
 """In ns."""
 EVENT_PROBABILITY = 0.1
 """The probability that something happens in the world at a tick, for nodes without a mock."""
+TICKS = "ticks"
+"""The variable of the root with the number of ticks."""
 MAX_TEXT_LENGTH = 100
 """The maximum length of a text in the blackboard."""
 
@@ -84,11 +88,17 @@ class MockOptions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MockedLeaf:
-    """A leaf with its mock. `duration` is in ticks; `None` for conditions and synchronous actions."""
+    """A leaf with its mock.
+
+    Attributes:
+        duration: in ticks; `None` for conditions and synchronous actions.
+        is_known: whether its library says that it succeeds; no mock is for it.
+    """
 
     node: ExecutedNode
     probability: float
     duration: int | None
+    is_known: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,7 +149,7 @@ class _Builder:
         for node in self.tree.nodes:
             program = self.program(node)
             self.programs[node.number] = program
-            if program is None and mock_for(self.options.mocks, node.name, node.type) is None:
+            if program is None and self.find_mock(node) is None:
                 missing.append(node)
         if missing:
             raise MissingMocksError(missing)
@@ -155,7 +165,7 @@ class _Builder:
             automata[node.number], children[node.number] = built.automaton, built.child
         origin = self.tree.nodes[0].origin
         tick = ScxmlEvent(f"{TIMER_PREFIX}{self.tree.name}_tick", EventRole.TIMER_TICK)
-        root = _root(self.tree, tick, children[ROOT_NUMBER].answers, origin)
+        root = _root(self.tree, tick, children[ROOT_NUMBER].answers, origin, self.options.counts)
         timer = Timer(root.name, f"{self.tree.name}_tick", tick, period(self.options.rate), origin)
         members = [root, *(automata[node.number] for node in self.tree.nodes)]
         blackboard = _blackboard(board, origin)
@@ -225,8 +235,12 @@ class _Builder:
             node.origin,
         )
 
+    def find_mock(self, node: ExecutedNode) -> Mock | None:
+        succeeds = node.known is not None and node.known.succeeds
+        return mock_for(self.options.mocks, node.name, node.type, succeeds)
+
     def mock(self, node: ExecutedNode, known: dict[str, Known]) -> Program:
-        mock = mock_for(self.options.mocks, node.name, node.type)
+        mock = self.find_mock(node)
         assert mock is not None
         is_condition = node.node.element.name == "Condition" or (
             node.known is not None and (node.known.kind is NodeKind.CONDITION or node.known.running is False)
@@ -235,7 +249,7 @@ class _Builder:
         duration = None if is_condition else ticks_of(mock.duration, self.options.rate)
         if duration is not None:
             known["DURATION"] = duration
-        self.leaves.append(MockedLeaf(node, mock.probability, duration))
+        self.leaves.append(MockedLeaf(node, mock.probability, duration, mock not in self.options.mocks))
         return programs()["synchronous" if duration is None else "asynchronous"]
 
     def event(self, node: ExecutedNode) -> float:
@@ -341,7 +355,7 @@ class _Builder:
                 if entry is not None:
                     reason = (
                         f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
-                        f"the tree runs; write `{port}=\"{entry}\"` for the entry itself"
+                        f'the tree runs; write `{port}="{entry}"` for the entry itself'
                     )
                     raise Refusal(Location(node.origin.path, span), reason)
                 target = node.frame.entry(text.strip())
@@ -406,11 +420,12 @@ def _case(text: str, kinds: set[Kind]) -> Known:
 # ----------------------------------------------------------------- other automata
 
 
-def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location) -> Automaton:
-    """The automaton that ticks the tree until it answers something else than RUNNING."""
+def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location, counts: bool) -> Automaton:
+    """The automaton that ticks the tree until it answers something else than RUNNING; with `counts`, it counts the
+    ticks."""
     response = tree_event(ROOT_NUMBER, "response")
 
-    def to(state: str, *body: Send) -> tuple[Target, ...]:
+    def to(state: str, *body: Statement) -> tuple[Target, ...]:
         return (Target(state, 1.0, body, origin),)
 
     waiting = [
@@ -422,13 +437,16 @@ def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin:
         )
         for code in sorted(answers)
     ]
-    idle = Transition(tick, None, to("wait_tick_res", Send(tree_event(ROOT_NUMBER, "tick"), (), origin)), origin)
+    data = (Data(TICKS, BASE_TYPES["int64"], integer(0), origin),) if counts else ()
+    counted = [Assign(name(TICKS), binary(name(TICKS), Operator.ADD, integer(1)), origin)] if counts else []
+    call = Send(tree_event(ROOT_NUMBER, "tick"), (), origin)
+    idle = Transition(tick, None, to("wait_tick_res", *counted, call), origin)
     states = (
         State("idle", (), (), (idle,), origin),
         State("wait_tick_res", (), (), tuple(waiting), origin),
         State(TREE_HAS_FINISHED, (), (), (), origin),
     )
-    return Automaton(f"{TREE_ROOT_PREFIX}{tree.name}", Role.TREE_ROOT, "idle", (), states, origin)
+    return Automaton(f"{TREE_ROOT_PREFIX}{tree.name}", Role.TREE_ROOT, "idle", data, states, origin)
 
 
 def _blackboard(board: Board, origin: Location) -> Automaton | None:

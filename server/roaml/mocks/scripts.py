@@ -19,7 +19,7 @@ from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, integer, name
 from roaml.lower.program import NOWHERE
 from roaml.mocks.entries import Entry, Kind, constant, read_literal
-from roaml.script import tree as script
+from roaml.script import tree as syntax
 from roaml.text import Span
 
 
@@ -56,7 +56,7 @@ class _Value:
     kind: Kind | None
 
 
-def compiled(parsed: script.Script, entry: Callable[[str], Entry | None], *, is_condition: bool) -> CompiledScript:
+def compiled(parsed: syntax.Script, entry: Callable[[str], Entry | None], *, is_condition: bool) -> CompiledScript:
     """A script as assignments.
 
     Args:
@@ -77,7 +77,7 @@ class _Compiler:
     assignments: list[tuple[str, Expr]] = field(default_factory=list)
     conditions: list[Expr] = field(default_factory=list)
 
-    def script(self, parsed: script.Script, *, is_condition: bool) -> CompiledScript:
+    def script(self, parsed: syntax.Script, *, is_condition: bool) -> CompiledScript:
         value: _Value | None = None
         for statement in parsed.statements:
             value = self.value(statement)
@@ -92,43 +92,43 @@ class _Compiler:
             truth,
         )
 
-    def refuse(self, expr: script.Expr, reason: str) -> NoReturn:
+    def refuse(self, expr: syntax.Expr, reason: str) -> NoReturn:
         raise ScriptRefusal(expr.span, reason)
 
-    def find(self, expr: script.Name) -> Entry:
+    def find(self, expr: syntax.Name) -> Entry:
         entry = self.entry(expr.name)
         if entry is None:
             self.refuse(expr, f"nothing sets the entry `{expr.name}`; give it a value with --entry {expr.name}=VALUE")
         return entry
 
-    def value(self, expr: script.Expr) -> _Value:
+    def value(self, expr: syntax.Expr) -> _Value:
         match expr:
-            case script.Number(value=number):
+            case syntax.Number(value=number):
                 kind = Kind.INTEGER if isinstance(number, int) else Kind.REAL
                 return _Value(constant(kind, number), kind)
-            case script.Boolean(value=truth):
+            case syntax.Boolean(value=truth):
                 return _Value(BooleanExpr(NOWHERE, truth), None)
-            case script.String(value=text):
+            case syntax.String(value=text):
                 return _Value(constant(Kind.TEXT, text), Kind.TEXT)
-            case script.Name():
+            case syntax.Name():
                 entry = self.find(expr)
                 if entry.variable not in self.writes:
                     self.reads[entry.variable] = entry
                 return _Value(name(entry.local), entry.kind)
-            case script.Unary():
+            case syntax.Unary():
                 return self.unary(expr)
-            case script.Binary():
+            case syntax.Binary():
                 return self.binary(expr)
-            case script.Comparison():
+            case syntax.Comparison():
                 return self.comparison(expr)
-            case script.Conditional():
+            case syntax.Conditional():
                 return self.conditional(expr)
-            case script.Assignment():
+            case syntax.Assignment():
                 return self.assignment(expr)
-            case script.ErrorExpr():
-                self.refuse(expr, "the script is not valid")
+            case syntax.ErrorExpr():
+                raise ScriptRefusal(expr.span, "the script is not valid")
 
-    def unary(self, expr: script.Unary) -> _Value:
+    def unary(self, expr: syntax.Unary) -> _Value:
         operand = self.value(expr.operand)
         match expr.operator:
             case "!":
@@ -136,15 +136,15 @@ class _Compiler:
             case "-":
                 number = self.number(operand, expr.operand)
                 return _Value(UnaryExpr(NOWHERE, UnaryOperator.NEGATE, number.expr), number.kind)
-        self.refuse(expr, f"`{expr.operator}` works on bits, which a model does not have")
+        raise ScriptRefusal(expr.span, f"`{expr.operator}` works on bits, which a model does not have")
 
-    def binary(self, expr: script.Binary) -> _Value:
+    def binary(self, expr: syntax.Binary) -> _Value:
         left, right = self.value(expr.left), self.value(expr.right)
         match expr.operator:
             case "&&" | "||" as operator:
                 symbol = Operator.AND if operator == "&&" else Operator.OR
-                first, second = self.truth(left, expr.left.span), self.truth(right, expr.right.span)
-                return _Value(binary(first, symbol, second), None)
+                sides = self.truth(left, expr.left.span), self.truth(right, expr.right.span)
+                return _Value(binary(sides[0], symbol, sides[1]), None)
             case "&" | "|" | "^" as operator:
                 self.refuse(expr, f"`{operator}` works on bits, which a model does not have")
             case "..":
@@ -152,11 +152,13 @@ class _Compiler:
         if Kind.TEXT in (left.kind, right.kind):
             self.refuse(expr, "texts cannot be joined in a model")
         first, second = self.number(left, expr.left), self.number(right, expr.right)
-        symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[expr.operator]
+        symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[
+            expr.operator
+        ]
         kind = Kind.REAL if expr.operator == "/" or Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
         return _Value(binary(first.expr, symbol, second.expr), kind)
 
-    def comparison(self, expr: script.Comparison) -> _Value:
+    def comparison(self, expr: syntax.Comparison) -> _Value:
         values = [self.value(operand) for operand in expr.operands]
         result: Expr | None = None
         for position, operator in enumerate(expr.operators):
@@ -168,14 +170,14 @@ class _Compiler:
         assert result is not None
         return _Value(result, None)
 
-    def comparable(self, expr: script.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+    def comparable(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
         if left.kind is Kind.TEXT and right.kind is Kind.TEXT:
             return left, right
         if Kind.TEXT in (left.kind, right.kind):
             return self.with_text(expr, left, right)
         return self.number(left, expr), self.number(right, expr)
 
-    def with_text(self, expr: script.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+    def with_text(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
         """A text that is compared with a number is read as a number."""
         sides = []
         for side in (left, right):
@@ -189,7 +191,7 @@ class _Compiler:
                 sides.append(self.number(side, expr))
         return sides[0], sides[1]
 
-    def conditional(self, expr: script.Conditional) -> _Value:
+    def conditional(self, expr: syntax.Conditional) -> _Value:
         test = self.value(expr.test)
         before = len(self.assignments)
         yes, no = self.value(expr.yes), self.value(expr.no)
@@ -208,21 +210,21 @@ class _Compiler:
         kind = Kind.REAL if Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
         return _Value(ConditionalExpr(NOWHERE, condition, first.expr, second.expr), kind)
 
-    def assignment(self, expr: script.Assignment) -> _Value:
+    def assignment(self, expr: syntax.Assignment) -> _Value:
         value = self.value(expr.value)
         entry = self.find(expr.target)
         current = _Value(name(entry.local), entry.kind)
         if expr.operator not in (":=", "="):
             if entry.variable not in self.writes:
                 self.reads[entry.variable] = entry
-            operation = script.Binary(expr.span, expr.operator[0], expr.operator_span, expr.target, expr.value)
+            operation = syntax.Binary(expr.span, expr.operator[0], expr.operator_span, expr.target, expr.value)
             value = self.binary(operation)
         converted = self.converted(expr, value, entry)
         self.assignments.append((entry.local, converted))
         self.writes[entry.variable] = entry
         return current
 
-    def converted(self, expr: script.Assignment, value: _Value, entry: Entry) -> Expr:
+    def converted(self, expr: syntax.Assignment, value: _Value, entry: Entry) -> Expr:
         """A value as one of the type of an entry, which keeps its type."""
         if entry.kind is Kind.TEXT or value.kind is Kind.TEXT:
             if entry.kind is value.kind:
@@ -240,7 +242,7 @@ class _Compiler:
             return floor
         return number.expr
 
-    def number(self, value: _Value, expr: script.Expr) -> _Value:
+    def number(self, value: _Value, expr: syntax.Expr) -> _Value:
         if value.kind is None:
             as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
             return _Value(as_number, Kind.INTEGER)
