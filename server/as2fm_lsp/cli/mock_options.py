@@ -30,6 +30,8 @@ def has_mock_options(options: argparse.Namespace) -> bool:
 
 def names_tree(path: str) -> bool:
     """Whether a path names a file with behavior trees."""
+    if path.endswith(".jani"):
+        return False
     try:
         text = Path(path).read_text(encoding="utf-8", errors="replace")
     except OSError:

@@ -8,25 +8,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import CheckResult, PathError, check
+from roaml.api.checking import PathError, check
 from roaml.api.systems import ModelError
-from roaml.diagnostics import Severity
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.kinds import FileKind
 from roaml.project.settings import Settings
-from roaml.text import Location
 
 if TYPE_CHECKING:
     from roaml.mocks.network import MockedTree, MockOptions
     from roaml.verification.target import VerificationTarget
 
 
-class TreeError(ValueError):
-    """A tree cannot be translated. `result` is the check of its files, `origin` the place of the reason."""
-
-    def __init__(self, message: str, origin: Location, result: CheckResult) -> None:
-        super().__init__(message)
-        self.origin = origin
-        self.result = result
+UNTRANSLATABLE = "untranslatable-tree"
+"""The code of the reason why a tree without errors cannot be translated."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +46,7 @@ def load_tree(
 
     Raises:
         PathError: the path cannot be read, or is not a file of trees.
-        ModelError: the trees have errors.
-        TreeError: the tree cannot be translated.
+        ModelError: the trees have errors, or the executed tree cannot be translated.
         MissingMocksError: leaves have no mock.
     """
     from roaml.mocks.network import mocked  # noqa: PLC0415 - a check starts faster without these
@@ -74,7 +67,9 @@ def load_tree(
     try:
         tree = mocked(forest, options)
     except Refusal as refusal:
-        raise TreeError(refusal.reason, refusal.origin, result) from None
+        origin = refusal.origin
+        reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason)
+        raise ModelError(replace(result, diagnostics=(reason,))) from None
     model = translate(tree.network)
     model = replace(model, properties=tree_properties(model))
     files = tuple(file for file, _ in forest.files)

@@ -76,7 +76,8 @@ class _ChartLowering:
         states = tuple(plain for state in chart.states for plain in self.state(state))
         data = (*self.data(), *self.statements.drawn)
         origin = context.origin(chart.element.name_span)
-        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin)
+        thread_of = "" if context.thread is None else context.automaton.name
+        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin, thread_of)
 
     # -------------------------------------------------------------------- data
 

@@ -18,7 +18,7 @@ from typing import TypeAlias
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
-from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference
+from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import (
     ANYTHING,
     NAME,
@@ -173,6 +173,7 @@ class System:
         older: the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: listed nodes, in order; plugins: listed plugins, in order.
         instances: the nodes of the executed tree, in pre-order.
+        tree_uses: the trees that they are in; `Instance.use` is an index.
         tree_paths: the tree file and what it includes; empty without a tree.
         structs: by name.
         gaps: what may be said where the system file, the trees and the listed files cannot be read at all. What cannot
@@ -187,6 +188,7 @@ class System:
     nodes: tuple[tuple[str, MachineOutline], ...]
     plugins: tuple[tuple[str, MachineOutline], ...]
     instances: tuple[Instance, ...]
+    tree_uses: tuple[TreeUse, ...]
     tree_paths: tuple[str, ...]
     structs: Mapping[str, Type]
     gaps: frozenset[Gap]

@@ -36,6 +36,9 @@ WAITING, RECEIVED = "waiting", "received"
 
 _GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
 
+NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
+"""The automaton of a tree node: its number and its type."""
+
 # ------------------------------------------------------------------------ events
 
 CLOCK_STEP = "global_timer_tick_event"
@@ -43,6 +46,8 @@ TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
+TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
+"""What the nodes of a tree send to each other: the number of the child, and what is sent."""
 
 
 def role_of(event: str) -> EventRole:
@@ -112,9 +117,25 @@ _ON_RECEIVE = "_on_receive"
 
 
 def open_variable(property_: str) -> str:
-    """Whether what a property says of a trace is still open when the time of the model ends
+    """The variable that says whether a property is still open when the time of the model ends
     (docs/spec/jani.md#observers)."""
     return f"{property_}__open"
+
+
+def asked_variable(property_: str) -> str:
+    """The variable that says whether what a property is about has occurred, such as the request of a response
+    (docs/spec/jani.md#observers)."""
+    return f"{property_}__asked"
+
+
+def opened_variable(property_: str) -> str:
+    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
+    return f"{property_}__opened"
+
+
+def pending_variable(property_: str) -> str:
+    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
+    return f"{property_}__pending"
 
 
 def is_length(variable: str) -> bool:
