@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import PathError, check
+from roaml.api.checking import check
+from roaml.api.jani_files import PathError
 from roaml.api.systems import ModelError
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.kinds import FileKind

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from roaml.jani.model import Automaton
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, TREE_EVENT, TREE_ROOT_PREFIX, received_by
+from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, STATUSES, TREE_EVENT, TREE_ROOT_PREFIX, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 

@@ -6,13 +6,13 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
-from roaml.model.system import safe_name
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     TIMER_PREFIX,
     is_timer,
+    safe_name,
 )
 
 _FORMS = (

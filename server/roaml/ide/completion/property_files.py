@@ -18,9 +18,10 @@ from roaml.model.property_file import NODE, PLAIN, STATE, TOPIC, Port
 from roaml.model.property_ports import EVENTS, LinkedVariable, names_of, part_of
 from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
-from roaml.model.value_types import GOAL_STATUSES, STATUSES
+from roaml.model.value_types import GOAL_STATUSES
 from roaml.observers.properties import Pattern
 from roaml.roles import SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 from roaml.xml_syntax import Element
 

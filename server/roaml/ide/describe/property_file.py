@@ -13,7 +13,8 @@ from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
 from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
-from roaml.model.value_types import GOAL_STATUSES, STATUSES
+from roaml.model.value_types import GOAL_STATUSES
+from roaml.scxml.names import STATUSES
 
 _DEPTH = 12
 _LENGTH = 400
