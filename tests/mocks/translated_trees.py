@@ -7,7 +7,8 @@ import re
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from roaml.forest.forest import NEWEST, Forest
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST
 from roaml.mocks.mock import Mock
 from roaml.mocks.network import MockedTree, MockOptions, mocked
 from roaml.model.tree import build_tree_file

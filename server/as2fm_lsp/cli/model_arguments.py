@@ -18,6 +18,7 @@ from as2fm_lsp.cli.times import time_of
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.node import Origin
+from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
@@ -76,7 +77,10 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
     if names_tree(options.main):
         from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without it
 
-        return load_subject(options, settings, counts=False).target
+        try:
+            return load_subject(options, settings, counts=False).target
+        except MockError as error:
+            raise UsageError(str(error)) from None
     overrides = Overrides(options.max_time, None)
     return api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
 

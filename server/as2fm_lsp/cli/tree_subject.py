@@ -7,7 +7,6 @@ import argparse
 from pathlib import Path
 
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.model_arguments import UsageError
 from as2fm_lsp.cli.output import complain
 from roaml.api.trees import LoadedTree, load_tree
 from roaml.mocks.mock import MockError, read_mock, read_mocks, unused
@@ -21,23 +20,21 @@ def load_subject(options: argparse.Namespace, settings: Settings, *, counts: boo
     """The tree that the arguments name, with their mocks.
 
     Raises:
-        UsageError: the arguments are wrong, or leaves have no mock.
+        MockError: the arguments are wrong, or leaves have no mock.
         PathError, ModelError: as `load_tree`.
     """
     entries = {}
     for text in options.entry:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
-            raise UsageError(f"`{text}` does not set an entry; write it as NAME=VALUE")
+            raise MockError(f"`{text}` does not set an entry; write it as NAME=VALUE")
         entries[name.strip()] = value.strip()
     try:
         mocks = tuple(read_mock(text) for text in options.mock)
         if options.mocks is not None:
             mocks += read_mocks(Path(options.mocks).read_text(encoding="utf-8"))
-    except MockError as error:
-        raise UsageError(str(error)) from None
     except UnicodeDecodeError:
-        raise UsageError(f"{options.mocks}: not valid UTF-8") from None
+        raise MockError(f"{options.mocks}: not valid UTF-8") from None
     rate, max_time = options.tick_rate or DEFAULT_RATE, options.max_time or DEFAULT_MAX_TIME
     chosen = MockOptions(mocks, entries, rate, max_time, counts)
     try:
@@ -45,7 +42,7 @@ def load_subject(options: argparse.Namespace, settings: Settings, *, counts: boo
     except MissingMocksError as missing:
         names = list(dict.fromkeys(leaf.type for leaf in missing.leaves))
         listed = ", ".join(names[:MAX_NAMES]) + (", …" if len(names) > MAX_NAMES else "")
-        raise UsageError(
+        raise MockError(
             f'{shown_path(options.main)}: these leaves need mocks: {listed}; for example --mock "*: 0.9 in 1 s"'
         ) from None
     nodes = [(node.name, node.type) for node in tree.mocked.tree.nodes]

@@ -40,6 +40,7 @@ from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
@@ -144,6 +145,8 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
             verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)
             status.stage("making traces")
             outcome = None if options.exact else measure(tree.mocked, tree.target, limits)
+    except MockError as error:
+        raise UsageError(str(error)) from None
     except api.ModelError as error:
         return _errors(options, error_report(error))
     return _Verification(options, verifier, (tree.mocked, outcome)).run()

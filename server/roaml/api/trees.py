@@ -51,7 +51,7 @@ def load_tree(
         MissingMocksError: leaves have no mock.
     """
     from roaml.mocks.network import mocked  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.refusal import Refusal  # noqa: PLC0415
+    from roaml.mocks.refusal import TreeRefusal  # noqa: PLC0415
     from roaml.to_jani import translate  # noqa: PLC0415
     from roaml.verification.target import target_of  # noqa: PLC0415
     from roaml.verification.tree_outcome import tree_properties  # noqa: PLC0415
@@ -67,7 +67,7 @@ def load_tree(
         raise ModelError(replace(result, diagnostics=errors))
     try:
         tree = mocked(forest, options)
-    except Refusal as refusal:
+    except TreeRefusal as refusal:
         origin = refusal.origin
         reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason)
         raise ModelError(replace(result, diagnostics=(reason,))) from None

@@ -41,7 +41,7 @@ if result == SUCCESS or result == FAILURE:
 """
 
 
-class Label:
+class CodeLabel:
     """A place in a list of instructions; `index` is set when it is placed."""
 
     index = -1
@@ -56,24 +56,24 @@ class SetVariable(NamedTuple):
 
 
 class Jump(NamedTuple):
-    label: Label
+    label: CodeLabel
 
 
 class Test(NamedTuple):
     """Jumps to `otherwise` unless the condition holds."""
 
     condition: ast.expr
-    otherwise: Label
+    otherwise: CodeLabel
 
 
 class Choose(NamedTuple):
     """Continues with the probability, and jumps to `otherwise` with the remaining one."""
 
     probability: ast.expr
-    otherwise: Label
+    otherwise: CodeLabel
 
 
-class Tick(NamedTuple):
+class TickChild(NamedTuple):
     """Ticks a child; `target` gets the code of its answer."""
 
     child: ast.expr
@@ -94,16 +94,16 @@ class Evaluate(NamedTuple):
     """Executes a script of the node, and jumps to `otherwise` if its value is false."""
 
     script: str
-    otherwise: Label | None
+    otherwise: CodeLabel | None
 
 
 class Updated(NamedTuple):
     """Jumps to `otherwise` unless the observed entry was written since this was asked last."""
 
-    otherwise: Label
+    otherwise: CodeLabel
 
 
-class Outputs(NamedTuple):
+class WriteOutputs(NamedTuple):
     """Writes the outputs of a mock."""
 
 
@@ -141,12 +141,12 @@ Instruction: TypeAlias = (
     | Jump
     | Test
     | Choose
-    | Tick
+    | TickChild
     | Reset
     | Return
     | Evaluate
     | Updated
-    | Outputs
+    | WriteOutputs
     | HaltSelf
     | Read
     | Write
@@ -156,7 +156,7 @@ Instruction: TypeAlias = (
 
 
 @dataclass(frozen=True)
-class Program:
+class NodeProgram:
     """The program of a node.
 
     Attributes:
@@ -178,9 +178,9 @@ class Program:
 
 
 @functools.cache
-def programs() -> Mapping[str, Program]:
+def programs() -> Mapping[str, NodeProgram]:
     """The programs of all nodes, by name."""
-    result: dict[str, Program] = {}
+    result: dict[str, NodeProgram] = {}
     for file in FILES:
         text = (importlib.resources.files(__package__) / "programs" / file).read_text(encoding="utf-8")
         for statement in ast.parse(text).body:
@@ -208,7 +208,7 @@ def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
     return _Assembler(given).function(ast.parse('script("_onHalted")').body)
 
 
-def _program(definition: ast.ClassDef, known: Mapping[str, Program]) -> Program:
+def _program(definition: ast.ClassDef, known: Mapping[str, NodeProgram]) -> NodeProgram:
     """The program of a class. A class with a base is a program with the same statements and other fixed values."""
     base = known[definition.bases[0].id] if definition.bases and isinstance(definition.bases[0], ast.Name) else None
     fixed = dict(base.fixed) if base else {}
@@ -233,7 +233,7 @@ def _program(definition: ast.ClassDef, known: Mapping[str, Program]) -> Program:
             case _:
                 raise AssertionError(ast.dump(statement))
     halt = bodies.get("halt", _Assembler().function(ast.parse("reset_all()").body))
-    return Program(definition.name, fixed, variables, tuple(flags), bodies["tick"], halt, is_stateless)
+    return NodeProgram(definition.name, fixed, variables, tuple(flags), bodies["tick"], halt, is_stateless)
 
 
 def _constant(value: ast.expr) -> int | bool:
@@ -248,13 +248,13 @@ class _Assembler:
 
     given: frozenset[str] | None = None
     instructions: list[Instruction] = field(default_factory=list)
-    loops: list[Label] = field(default_factory=list)
+    loops: list[CodeLabel] = field(default_factory=list)
 
     def function(self, body: list[ast.stmt]) -> tuple[Instruction, ...]:
         self.block(body)
         return tuple(self.instructions)
 
-    def place(self, label: Label) -> None:
+    def place(self, label: CodeLabel) -> None:
         label.index = len(self.instructions)
 
     def block(self, body: list[ast.stmt]) -> None:
@@ -265,7 +265,7 @@ class _Assembler:
         emit = self.instructions.append
         match statement:
             case ast.Assign(targets=[ast.Name(id=target)], value=ast.Call(func=ast.Name(id="tick"), args=[child])):
-                emit(Tick(child, target))
+                emit(TickChild(child, target))
             case ast.Assign(targets=[ast.Name(id=target)], value=value):
                 emit(SetVariable(target, None, value))
             case ast.Assign(targets=[ast.Subscript(value=ast.Name(id=target), slice=element)], value=value):
@@ -288,7 +288,7 @@ class _Assembler:
                 raise AssertionError(ast.dump(statement))
 
     def choice(self, test: ast.expr, body: list[ast.stmt], otherwise: list[ast.stmt]) -> None:
-        skip, end = Label(), Label()
+        skip, end = CodeLabel(), CodeLabel()
         match test:
             case ast.UnaryOp(op=ast.Not(), operand=ast.Call() as call):
                 self.choice(call, otherwise or [ast.Pass()], body)
@@ -313,7 +313,7 @@ class _Assembler:
         self.place(end)
 
     def loop(self, test: ast.expr, body: list[ast.stmt]) -> None:
-        again, end = Label(), Label()
+        again, end = CodeLabel(), CodeLabel()
         self.place(again)
         self.instructions.append(Test(test, end))
         self.loops.append(end)
@@ -340,7 +340,7 @@ class _Assembler:
                 if self.given is None or names[0] in self.given:
                     emit(Evaluate(str(names[0]), None))
             case "outputs":
-                emit(Outputs())
+                emit(WriteOutputs())
             case "halt_self":
                 emit(HaltSelf())
             case "throw":
@@ -356,7 +356,7 @@ class _Assembler:
         self.block(ast.parse(text).body)
 
 
-def walk(program: Program) -> Iterator[Instruction]:
+def walk(program: NodeProgram) -> Iterator[Instruction]:
     """All instructions of a program."""
     yield from program.tick
     yield from program.halt

@@ -24,8 +24,8 @@ from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.program import NOWHERE
 from roaml.mocks import assembly
-from roaml.mocks.assembly import Instruction, Label, Program
-from roaml.mocks.entries import Entry, Kind
+from roaml.mocks.assembly import CodeLabel, Instruction, NodeProgram
+from roaml.mocks.entries import BoardEntry, EntryKind
 from roaml.mocks.scripts import CompiledScript
 from roaml.scxml.model import (
     Assign,
@@ -60,14 +60,14 @@ MAX_STATES = 20_000
 Known: TypeAlias = "int | bool | float | str"
 Value: TypeAlias = "Known | Expr"
 
-TYPES: Mapping[Kind, Type] = {
-    Kind.INTEGER: BASE_TYPES["int64"],
-    Kind.REAL: BASE_TYPES["float64"],
-    Kind.TEXT: BASE_TYPES["string"],
+TYPES: Mapping[EntryKind, Type] = {
+    EntryKind.INTEGER: BASE_TYPES["int64"],
+    EntryKind.REAL: BASE_TYPES["float64"],
+    EntryKind.TEXT: BASE_TYPES["string"],
 }
 
 
-class TooManyStatesError(Exception):
+class NodeTooLargeError(Exception):
     """The program of a node has more states than `MAX_STATES`."""
 
 
@@ -103,15 +103,15 @@ class NodeCode:
 
     number: int
     name: str
-    program: Program
+    program: NodeProgram
     children: tuple[Child, ...]
     known: Mapping[str, Known]
-    bound: Mapping[str, Entry]
+    bound: Mapping[str, BoardEntry]
     scripts: Mapping[str, CompiledScript]
-    updated: Entry | None
-    outputs: tuple[tuple[Entry, tuple[Known, ...]], ...]
+    updated: BoardEntry | None
+    outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...]
     elements: tuple[Known, ...]
-    flags_of: Mapping[str, tuple[Entry, ...]]
+    flags_of: Mapping[str, tuple[BoardEntry, ...]]
     rate: Fraction
     counts: bool
     origin: Location
@@ -129,7 +129,7 @@ def node_automaton(code: NodeCode) -> NodeAutomaton:
     """The automaton of a node.
 
     Raises:
-        TooManyStatesError: the node has too many states.
+        NodeTooLargeError: the node has too many states.
     """
     explorer = _Explorer(code)
     automaton = explorer.automaton()
@@ -177,7 +177,7 @@ class _Asking(NamedTuple):
 
     place: Place
     fixed: Fixed
-    entries: tuple[Entry, ...]
+    entries: tuple[BoardEntry, ...]
 
 
 class _Deciding(NamedTuple):
@@ -237,7 +237,7 @@ class _Explorer:
             state, key = self.pending.pop()
             self.built[state] = self.build(state, key)
             if len(self.states) > MAX_STATES:
-                raise TooManyStatesError
+                raise NodeTooLargeError
         states = tuple(self.built[state] for state in self.states.values())
         return Automaton(self.code.name, Role.MACHINE, initial, tuple(self.data.values()), states, self.code.origin)
 
@@ -413,7 +413,7 @@ class _Explorer:
         """Execute one instruction; return where to stop, or `None` to go on at `way.place`."""
         segment = following[0]
 
-        def at(label: Label) -> Place:
+        def at(label: CodeLabel) -> Place:
             return (segment, label.index)
 
         match instruction:
@@ -431,7 +431,7 @@ class _Explorer:
                 if 0 < probability < 1:
                     return _Draw(probability, following, at(otherwise))
                 following = following if probability >= 1 else at(otherwise)
-            case assembly.Tick(child, target):
+            case assembly.TickChild(child, target):
                 return self.tick(int(self.number(child, way.fixed)), target, following, way)
             case assembly.Reset(child):
                 state = self.reset(int(self.number(child, way.fixed)), following, way)
@@ -455,7 +455,7 @@ class _Explorer:
                     following = at(otherwise)
                 else:
                     following = self.ask_update(self.code.updated, following, at(otherwise))
-            case assembly.Outputs():
+            case assembly.WriteOutputs():
                 following = self.write_outputs(following)
             case assembly.HaltSelf():
                 way.fixed[_SKIPS] = True
@@ -497,18 +497,18 @@ class _Explorer:
 
     # -------------------------------------------------------------- blackboard
 
-    def ask(self, entries: tuple[Entry, ...], following: Place, way: _Way) -> str:
+    def ask(self, entries: tuple[BoardEntry, ...], following: Place, way: _Way) -> str:
         way.body.append(Send(REQUEST, (), self.code.origin))
         return self.state("asking", _Asking(following, _frozen(way.fixed), entries))
 
-    def write(self, entry: Entry, value: Expr, way: _Way) -> None:
+    def write(self, entry: BoardEntry, value: Expr, way: _Way) -> None:
         origin = self.code.origin
         way.body.append(Send(blackboard_write(entry.variable), (Param("value", value, origin),), origin))
         for flag in self.code.flags_of.get(entry.variable, ()):
             written = Param("value", integer(1), origin)
             way.body.append(Send(blackboard_write(flag.variable), (written,), origin))
 
-    def ask_update(self, flag: Entry, following: Place, otherwise: Place) -> Place:
+    def ask_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
         """Whether the observed entry was written; if so, it counts as seen."""
         segment = f"*updated*{following}"
         seen = _Run(((flag.local, integer(0)),), (flag,))
@@ -675,12 +675,12 @@ _EXCEPTION: Place = ("exception", 0)
 
 
 class _Ask(NamedTuple):
-    entries: tuple[Entry, ...]
+    entries: tuple[BoardEntry, ...]
 
 
 class _Run(NamedTuple):
     assignments: tuple[tuple[str, Expr], ...]
-    writes: tuple[Entry, ...]
+    writes: tuple[BoardEntry, ...]
 
 
 class _Branch(NamedTuple):

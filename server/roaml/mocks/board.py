@@ -13,8 +13,8 @@ from roaml.forest.forest import port_type
 from roaml.forest.scripts import parsed
 from roaml.libraries import Direction
 from roaml.mocks import assembly
-from roaml.mocks.assembly import Program
-from roaml.mocks.entries import Entry, Kind, kind_of_cpp, read_literal
+from roaml.mocks.assembly import NodeProgram
+from roaml.mocks.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.mocks.unfolding import ExecutedNode, ExecutedTree
 from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
@@ -27,7 +27,7 @@ OBSERVING = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
 MAX_VALUES = 6
 """The maximum number of values that a mock writes to an entry."""
 
-_KIND = {Type.INTEGER: Kind.INTEGER, Type.REAL: Kind.REAL, Type.TEXT: Kind.TEXT}
+_KIND = {Type.INTEGER: EntryKind.INTEGER, Type.REAL: EntryKind.REAL, Type.TEXT: EntryKind.TEXT}
 _TYPE = {kind: type_ for type_, kind in _KIND.items()}
 
 
@@ -40,9 +40,9 @@ class Board:
     values: what mocks write to an entry.
     """
 
-    entries: Mapping[str, Entry]
-    flags: Mapping[str, tuple[Entry, ...]]
-    flag_of: Mapping[int, Entry]
+    entries: Mapping[str, BoardEntry]
+    flags: Mapping[str, tuple[BoardEntry, ...]]
+    flag_of: Mapping[int, BoardEntry]
     values: Mapping[str, tuple[int | float | str, ...]]
 
 
@@ -65,7 +65,7 @@ def _text(attribute: Attribute) -> Decoded:
 _CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 
 
-def build_board(tree: ExecutedTree, given: Mapping[str, str], used: Mapping[int, Program | None]) -> Board:
+def build_board(tree: ExecutedTree, given: Mapping[str, str], used: Mapping[int, NodeProgram | None]) -> Board:
     """
     Args:
         given: entry of the root blackboard -> the text that the host sets.
@@ -78,8 +78,8 @@ def build_board(tree: ExecutedTree, given: Mapping[str, str], used: Mapping[int,
 class _Reader:
     tree: ExecutedTree
     given: Mapping[str, str]
-    used: Mapping[int, Program | None]
-    kinds: dict[str, Kind] = field(default_factory=dict)
+    used: Mapping[int, NodeProgram | None]
+    kinds: dict[str, EntryKind] = field(default_factory=dict)
     readers: set[str] = field(default_factory=set)
     writers: set[str] = field(default_factory=set)
     texts: dict[str, list[str]] = field(default_factory=dict)
@@ -103,12 +103,12 @@ class _Reader:
         self.from_texts()
         return self.result()
 
-    def add(self, entry: str, kind: Kind | None) -> None:
+    def add(self, entry: str, kind: EntryKind | None) -> None:
         """A use of an entry with values of a kind."""
         if kind is None:
             return
         known = self.kinds.get(entry)
-        self.kinds[entry] = Kind.REAL if {known, kind} == {Kind.INTEGER, Kind.REAL} else known or kind
+        self.kinds[entry] = EntryKind.REAL if {known, kind} == {EntryKind.INTEGER, EntryKind.REAL} else known or kind
 
     def ports(self, node: ExecutedNode) -> None:
         program = self.used[node.number]
@@ -153,11 +153,17 @@ class _Reader:
         if bound is None:
             return
         kinds = {read_literal(text)[0] for text in cases}
-        kind = Kind.TEXT if Kind.TEXT in kinds else Kind.REAL if Kind.REAL in kinds else Kind.INTEGER
+        kind = (
+            EntryKind.TEXT
+            if EntryKind.TEXT in kinds
+            else EntryKind.REAL
+            if EntryKind.REAL in kinds
+            else EntryKind.INTEGER
+        )
         if bound not in self.kinds:
             self.texts.setdefault(bound, [])
             self.add(bound, kind)
-        values = [text if kind is Kind.TEXT else read_literal(text)[1] for text in cases]
+        values = [text if kind is EntryKind.TEXT else read_literal(text)[1] for text in cases]
         self.mentioned.setdefault(bound, []).extend(values)
 
     def copied(self) -> None:
@@ -196,9 +202,9 @@ class _Reader:
         for operand in names:
             full = node.frame.entry(operand.name)
             for constant in constants:
-                kind = Kind.TEXT if isinstance(constant, str) else None
-                kind = kind or (Kind.INTEGER if isinstance(constant, int) else Kind.REAL)
-                if full not in self.kinds or kind is not Kind.TEXT:
+                kind = EntryKind.TEXT if isinstance(constant, str) else None
+                kind = kind or (EntryKind.INTEGER if isinstance(constant, int) else EntryKind.REAL)
+                if full not in self.kinds or kind is not EntryKind.TEXT:
                     self.add(full, kind)
                 if constant not in self.mentioned.setdefault(full, []):
                     self.mentioned[full].append(constant)
@@ -209,38 +215,38 @@ class _Reader:
             for text in texts:
                 kind = read_literal(text)[0]
                 known = self.kinds.get(entry)
-                widens = kind is Kind.REAL and known is Kind.INTEGER
-                if known is None or widens or (kind is Kind.TEXT and not self.mentioned.get(entry)):
+                widens = kind is EntryKind.REAL and known is EntryKind.INTEGER
+                if known is None or widens or (kind is EntryKind.TEXT and not self.mentioned.get(entry)):
                     self.kinds[entry] = kind
 
     def result(self) -> Board:
-        entries: dict[str, Entry] = {}
+        entries: dict[str, BoardEntry] = {}
         for name in sorted(self.readers):
             initial = self.given.get(name, self.tree.initial.get(name))
             if name not in self.writers and initial is None:
                 continue
-            kind = self.kinds.get(name, Kind.INTEGER)
-            literal = None if initial is None else read_literal(initial)[1] if kind is not Kind.TEXT else initial
-            entries[name] = Entry(name, kind, literal)
-        flags: dict[str, list[Entry]] = {}
-        flag_of: dict[int, Entry] = {}
+            kind = self.kinds.get(name, EntryKind.INTEGER)
+            literal = None if initial is None else read_literal(initial)[1] if kind is not EntryKind.TEXT else initial
+            entries[name] = BoardEntry(name, kind, literal)
+        flags: dict[str, list[BoardEntry]] = {}
+        flag_of: dict[int, BoardEntry] = {}
         for number, name in self.observed.items():
             if name in self.writers or name in self.given or name in self.tree.initial:
                 is_set = name in self.given or name in self.tree.initial
-                flag_of[number] = Entry(f"{name}__updated_{number}", Kind.INTEGER, int(is_set))
+                flag_of[number] = BoardEntry(f"{name}__updated_{number}", EntryKind.INTEGER, int(is_set))
                 flags.setdefault(name, []).append(flag_of[number])
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         return Board(entries, {name: tuple(known) for name, known in flags.items()}, flag_of, values)
 
-    def values(self, name: str, kind: Kind) -> tuple[int | float | str, ...]:
+    def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
         """What a mock writes to an entry: the values with which the tree compares it, and one other."""
-        other: list[int | float | str] = [""] if kind is Kind.TEXT else [0, 1]
+        other: list[int | float | str] = [""] if kind is EntryKind.TEXT else [0, 1]
         mentioned = self.mentioned.get(name, [])
-        fitting = [value for value in mentioned if isinstance(value, str) is (kind is Kind.TEXT)]
+        fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
         return tuple(dict.fromkeys((*fitting, *other)))[:MAX_VALUES]
 
 
-def _ports_of(program: Program) -> tuple[set[str], set[str]]:
+def _ports_of(program: NodeProgram) -> tuple[set[str], set[str]]:
     """The ports that a program reads, and those that it writes."""
     read: set[str] = set()
     written: set[str] = set()

@@ -11,14 +11,14 @@ from roaml.expr.tree import Expr, Number, String, Unary
 from roaml.lower.program import NOWHERE
 
 
-class Kind(enum.Enum):
+class EntryKind(enum.Enum):
     INTEGER = "an integer"
     REAL = "a real number"
     TEXT = "a text"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class BoardEntry:
     """An entry that scripts or nodes of the libraries read.
 
     Attributes:
@@ -27,7 +27,7 @@ class Entry:
     """
 
     variable: str
-    kind: Kind
+    kind: EntryKind
     initial: int | float | str | None = None
 
     @property
@@ -38,41 +38,41 @@ class Entry:
     @property
     def zero(self) -> Expr:
         """A value of its type."""
-        return constant(self.kind, "" if self.kind is Kind.TEXT else 0)
+        return constant(self.kind, "" if self.kind is EntryKind.TEXT else 0)
 
     @property
     def start(self) -> Expr:
         return self.zero if self.initial is None else constant(self.kind, self.initial)
 
 
-def constant(kind: Kind, value: int | float | str) -> Expr:
+def constant(kind: EntryKind, value: int | float | str) -> Expr:
     """A value as an expression of a type."""
-    if kind is Kind.TEXT:
+    if kind is EntryKind.TEXT:
         return String(NOWHERE, str(value))
-    number = float(value) if kind is Kind.REAL else int(value)
-    literal = Number(NOWHERE, abs(number), kind is Kind.REAL)
+    number = float(value) if kind is EntryKind.REAL else int(value)
+    literal = Number(NOWHERE, abs(number), kind is EntryKind.REAL)
     return literal if number >= 0 else Unary(NOWHERE, UnaryOperator.NEGATE, literal)
 
 
-def kind_of_cpp(type_: str) -> Kind | None:
+def kind_of_cpp(type_: str) -> EntryKind | None:
     """The kind of values of a C++ type by its normal name; `None` if it is none or not known."""
     if type_ in ("double", "float"):
-        return Kind.REAL
+        return EntryKind.REAL
     if type_ == "string":
-        return Kind.TEXT
+        return EntryKind.TEXT
     if type_ in ("bool", "int", "unsigned") or type_.removeprefix("u").startswith("int"):
-        return Kind.INTEGER
+        return EntryKind.INTEGER
     return None
 
 
-def read_literal(text: str) -> tuple[Kind, int | float | str]:
+def read_literal(text: str) -> tuple[EntryKind, int | float | str]:
     """The value of a text that is written where an entry may be, with its kind."""
     stripped = text.strip()
     if stripped in ("true", "false", "True", "False", "TRUE", "FALSE"):
-        return Kind.INTEGER, int(stripped.lower() == "true")
-    for kind, read in ((Kind.INTEGER, int), (Kind.REAL, float)):
+        return EntryKind.INTEGER, int(stripped.lower() == "true")
+    for kind, read in ((EntryKind.INTEGER, int), (EntryKind.REAL, float)):
         try:
             return kind, read(stripped)
         except ValueError:
             continue
-    return Kind.TEXT, text
+    return EntryKind.TEXT, text

@@ -17,7 +17,7 @@ from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.timers import Timer, clock
 from roaml.mocks import assembly
-from roaml.mocks.assembly import Program, programs
+from roaml.mocks.assembly import NodeProgram, programs
 from roaml.mocks.automaton import (
     RUNNING,
     STATUS_CODES,
@@ -25,14 +25,14 @@ from roaml.mocks.automaton import (
     Child,
     Known,
     NodeCode,
-    TooManyStatesError,
+    NodeTooLargeError,
     node_automaton,
     ticks_of,
 )
 from roaml.mocks.board import Board, build_board, node_scripts
-from roaml.mocks.entries import Entry, Kind, kind_of_cpp, read_literal
+from roaml.mocks.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.mocks.mock import Mock, mock_for
-from roaml.mocks.refusal import Refusal
+from roaml.mocks.refusal import TreeRefusal
 from roaml.mocks.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.mocks.unfolding import ExecutedNode, ExecutedTree, unfold
 from roaml.model.expand import ROOT_NUMBER
@@ -130,7 +130,7 @@ def mocked(forest: Forest, options: MockOptions) -> MockedTree:
     """The executed tree of the analysed file, with mocks instead of leaves that no library describes.
 
     Raises:
-        Refusal: the tree cannot be translated.
+        TreeRefusal: the tree cannot be translated.
         MissingMocksError: leaves have no mock.
     """
     return _Builder(unfold(forest), options).build()
@@ -142,7 +142,7 @@ class _Builder:
         self.options = options
         self.leaves: list[MockedLeaf] = []
         self.assumed: list[ExecutedNode] = []
-        self.programs: dict[int, Program | None] = {}
+        self.programs: dict[int, NodeProgram | None] = {}
 
     def build(self) -> MockedTree:
         missing = []
@@ -160,8 +160,8 @@ class _Builder:
             code = self.code(node, board, tuple(children[number] for number in node.children))
             try:
                 built = node_automaton(code)
-            except TooManyStatesError:
-                raise Refusal(node.origin, f"`{node.name}` has too many states") from None
+            except NodeTooLargeError:
+                raise TreeRefusal(node.origin, f"`{node.name}` has too many states") from None
             automata[node.number], children[node.number] = built.automaton, built.child
         origin = self.tree.nodes[0].origin
         tick = ScxmlEvent(f"{TIMER_PREFIX}{self.tree.name}_tick", EventRole.TIMER_TICK)
@@ -177,7 +177,7 @@ class _Builder:
         self.assumed.reverse()
         return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.options)
 
-    def program(self, node: ExecutedNode) -> Program | None:
+    def program(self, node: ExecutedNode) -> NodeProgram | None:
         """The program of a node of the libraries; `None` for a leaf that needs a mock."""
         if node.type == "SubTree" and node.children:
             return programs()["SubTree"]
@@ -187,27 +187,29 @@ class _Builder:
             return programs()[node.type]
         if node.children:
             reason = f"`{node.type}` has children, and it is not known what it does with them"
-            raise Refusal(node.origin, reason)
+            raise TreeRefusal(node.origin, reason)
         if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
-            raise Refusal(node.origin, f"`{node.type}` needs children")
+            raise TreeRefusal(node.origin, f"`{node.type}` needs children")
         absent = CPP.absent.get(node.type)
         if node.known is None and absent is not None:
-            raise Refusal(node.origin, f"`{node.type}` is not a node: {absent.reason}")
+            raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}")
         return None
 
     def check_children(self, node: ExecutedNode) -> None:
         assert node.known is not None
         least, most = node.known.children
         if not least <= len(node.children) <= most:
-            raise Refusal(node.origin, f"`{node.type}` has {len(node.children)} children, which the library rejects")
+            raise TreeRefusal(
+                node.origin, f"`{node.type}` has {len(node.children)} children, which the library rejects"
+            )
 
     # ------------------------------------------------------------------- nodes
 
     def code(self, node: ExecutedNode, board: Board, children: tuple[Child, ...]) -> NodeCode:
         program = self.programs[node.number]
         known: dict[str, Known] = {}
-        bound: dict[str, Entry] = {}
-        outputs: tuple[tuple[Entry, tuple[Known, ...]], ...] = ()
+        bound: dict[str, BoardEntry] = {}
+        outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...] = ()
         elements: tuple[Known, ...] = ()
         if program is None:
             program = self.mock(node, known)
@@ -239,7 +241,7 @@ class _Builder:
         succeeds = node.known is not None and node.known.succeeds
         return mock_for(self.options.mocks, node.name, node.type, succeeds)
 
-    def mock(self, node: ExecutedNode, known: dict[str, Known]) -> Program:
+    def mock(self, node: ExecutedNode, known: dict[str, Known]) -> NodeProgram:
         mock = self.find_mock(node)
         assert mock is not None
         is_condition = node.node.element.name == "Condition" or (
@@ -260,7 +262,7 @@ class _Builder:
         self.assumed.append(node)
         return EVENT_PROBABILITY
 
-    def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[Entry, tuple[Known, ...]]]:
+    def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[BoardEntry, tuple[Known, ...]]]:
         """What a mock writes: ports that may be outputs, if the tree reads their entries."""
         written = []
         for port, entry, _, _ in node.ports():
@@ -282,13 +284,18 @@ class _Builder:
                     script, lambda entry: board.entries.get(node.frame.entry(entry)), is_condition=is_condition
                 )
             except ScriptRefusal as refusal:
-                raise Refusal(Location(node.origin.path, refusal.span), refusal.reason) from None
+                raise TreeRefusal(Location(node.origin.path, refusal.span), refusal.reason) from None
         return result
 
     # ------------------------------------------------------------------- ports
 
     def set_ports(
-        self, node: ExecutedNode, program: Program, board: Board, known: dict[str, Known], bound: dict[str, Entry]
+        self,
+        node: ExecutedNode,
+        program: NodeProgram,
+        board: Board,
+        known: dict[str, Known],
+        bound: dict[str, BoardEntry],
     ) -> None:
         """The values of the ports that a program uses: constants, or entries."""
         if program.name in ("SetBlackboard", "UnsetBlackboard"):
@@ -310,7 +317,7 @@ class _Builder:
                     bound[port.name] = board.entries[entry]
                 elif port.name in _needed(program):
                     reason = f"nothing sets the entry `{entry}`; give it a value with --entry {entry}=VALUE"
-                    raise Refusal(Location(node.origin.path, span), reason)
+                    raise TreeRefusal(Location(node.origin.path, span), reason)
                 continue
             if text is None:
                 continue
@@ -323,18 +330,18 @@ class _Builder:
                 known[port.name] = self.literal(node, type_, text)
         missing = [port for port in _needed(program) if port not in known and port not in bound]
         if missing and not program.name.startswith("Switch"):
-            raise Refusal(node.origin, f"`{node.type}` needs the port `{missing[0]}`")
-        if any(isinstance(value, Entry) and value.kind is Kind.TEXT for value in bound.values()) and not (
+            raise TreeRefusal(node.origin, f"`{node.type}` needs the port `{missing[0]}`")
+        if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
             program.name.startswith("Switch")
         ):
-            raise Refusal(node.origin, f"a port of `{node.type}` is bound to a text")
+            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to a text")
         for port_name in ("else", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
             if port_name in bound:
-                raise Refusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
+                raise TreeRefusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
 
     def switch_entries(
-        self, program: Program, given: Mapping[str, tuple[str | None, str, object]], board: Board
-    ) -> list[Entry]:
+        self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
+    ) -> list[BoardEntry]:
         if not program.name.startswith("Switch"):
             return []
         return [board.entries[entry] for entry, _, _ in given.values() if entry is not None and entry in board.entries]
@@ -342,12 +349,12 @@ class _Builder:
     def literal(self, node: ExecutedNode, type_: str, text: str) -> Known:
         wrong = mismatch(type_, text)
         value = read_literal(wrong.instead if wrong is not None and wrong.ignored else text)[1]
-        if isinstance(value, str) and kind_of_cpp(type_) not in (Kind.TEXT, None):
-            raise Refusal(node.origin, f"`{text}` is not a value for a port of the type {type_}")
+        if isinstance(value, str) and kind_of_cpp(type_) not in (EntryKind.TEXT, None):
+            raise TreeRefusal(node.origin, f"`{text}` is not a value for a port of the type {type_}")
         return value
 
     def set_blackboard(
-        self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, Entry]
+        self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, BoardEntry]
     ) -> None:
         target: str | None = None
         for port, entry, text, span in node.ports():
@@ -357,25 +364,25 @@ class _Builder:
                         f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
                         f'the tree runs; write `{port}="{entry}"` for the entry itself'
                     )
-                    raise Refusal(Location(node.origin.path, span), reason)
+                    raise TreeRefusal(Location(node.origin.path, span), reason)
                 target = node.frame.entry(text.strip())
         if target is None or target not in board.entries:
             known["value"] = 0
             return
         if node.type == "UnsetBlackboard":
-            raise Refusal(node.origin, f"`{target}` is read by the tree; a model cannot remove it")
+            raise TreeRefusal(node.origin, f"`{target}` is read by the tree; a model cannot remove it")
         bound["output_key"] = board.entries[target]
         kind = board.entries[target].kind
         for port, entry, text, span in node.ports():
             if port != "value":
                 continue
             if entry is None:
-                known["value"] = text if kind is Kind.TEXT else read_literal(text)[1]
-            elif entry in board.entries and (board.entries[entry].kind is Kind.TEXT) is (kind is Kind.TEXT):
+                known["value"] = text if kind is EntryKind.TEXT else read_literal(text)[1]
+            elif entry in board.entries and (board.entries[entry].kind is EntryKind.TEXT) is (kind is EntryKind.TEXT):
                 bound["value"] = board.entries[entry]
             else:
                 reason = f"the value of `{entry}` is not known, and the tree reads `{target}`"
-                raise Refusal(Location(node.origin.path, span), reason)
+                raise TreeRefusal(Location(node.origin.path, span), reason)
 
     def elements(self, node: ExecutedNode, known: dict[str, Known]) -> tuple[Known, ...]:
         """The elements of the queue of a loop."""
@@ -384,7 +391,7 @@ class _Builder:
             if port == "queue":
                 if entry is not None:
                     reason = "a queue in the blackboard cannot be translated; write its elements as `1;2;3`"
-                    raise Refusal(Location(node.origin.path, span), reason)
+                    raise TreeRefusal(Location(node.origin.path, span), reason)
                 items = [item.strip() for item in text.split(";")] if text.strip() else []
                 if node.type == "LoopString":
                     return tuple(items)
@@ -401,7 +408,7 @@ def instruction_uses_event(instruction: assembly.Instruction) -> bool:
     return False
 
 
-def _needed(program: Program) -> set[str]:
+def _needed(program: NodeProgram) -> set[str]:
     """The ports without which a program cannot work."""
     names: set[str] = set()
     for instruction in program.tick:
@@ -410,9 +417,9 @@ def _needed(program: Program) -> set[str]:
     return names
 
 
-def _case(text: str, kinds: set[Kind]) -> Known:
+def _case(text: str, kinds: set[EntryKind]) -> Known:
     """A constant of a switch: a number if the variable is one."""
-    if not kinds or Kind.TEXT in kinds:
+    if not kinds or EntryKind.TEXT in kinds:
         return text
     return read_literal(text)[1]
 

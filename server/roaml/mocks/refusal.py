@@ -6,7 +6,7 @@ from __future__ import annotations
 from roaml.text import Location
 
 
-class Refusal(Exception):  # noqa: N818 - the tree may be correct
+class TreeRefusal(Exception):  # noqa: N818 - the tree may be correct
     """A tree cannot be translated; `origin` is the place of the reason."""
 
     def __init__(self, origin: Location, reason: str) -> None:

@@ -18,7 +18,7 @@ from roaml.expr.tree import Conditional as ConditionalExpr
 from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, integer, name
 from roaml.lower.program import NOWHERE
-from roaml.mocks.entries import Entry, Kind, constant, read_literal
+from roaml.mocks.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.script import tree as syntax
 from roaml.text import Span
 
@@ -41,9 +41,9 @@ class CompiledScript:
     truth: whether the value of the script is true; `None` if it is a text.
     """
 
-    reads: tuple[Entry, ...]
+    reads: tuple[BoardEntry, ...]
     assignments: tuple[tuple[str, Expr], ...]
-    writes: tuple[Entry, ...]
+    writes: tuple[BoardEntry, ...]
     conditions: tuple[Expr, ...]
     truth: Expr | None
 
@@ -53,10 +53,10 @@ class _Value:
     """An expression; `kind` is `None` for a condition."""
 
     expr: Expr
-    kind: Kind | None
+    kind: EntryKind | None
 
 
-def compiled(parsed: syntax.Script, entry: Callable[[str], Entry | None], *, is_condition: bool) -> CompiledScript:
+def compiled(parsed: syntax.Script, entry: Callable[[str], BoardEntry | None], *, is_condition: bool) -> CompiledScript:
     """A script as assignments.
 
     Args:
@@ -71,9 +71,9 @@ def compiled(parsed: syntax.Script, entry: Callable[[str], Entry | None], *, is_
 
 @dataclass
 class _Compiler:
-    entry: Callable[[str], Entry | None]
-    reads: dict[str, Entry] = field(default_factory=dict)
-    writes: dict[str, Entry] = field(default_factory=dict)
+    entry: Callable[[str], BoardEntry | None]
+    reads: dict[str, BoardEntry] = field(default_factory=dict)
+    writes: dict[str, BoardEntry] = field(default_factory=dict)
     assignments: list[tuple[str, Expr]] = field(default_factory=list)
     conditions: list[Expr] = field(default_factory=list)
 
@@ -95,7 +95,7 @@ class _Compiler:
     def refuse(self, expr: syntax.Expr, reason: str) -> NoReturn:
         raise ScriptRefusal(expr.span, reason)
 
-    def find(self, expr: syntax.Name) -> Entry:
+    def find(self, expr: syntax.Name) -> BoardEntry:
         entry = self.entry(expr.name)
         if entry is None:
             self.refuse(expr, f"nothing sets the entry `{expr.name}`; give it a value with --entry {expr.name}=VALUE")
@@ -104,12 +104,12 @@ class _Compiler:
     def value(self, expr: syntax.Expr) -> _Value:
         match expr:
             case syntax.Number(value=number):
-                kind = Kind.INTEGER if isinstance(number, int) else Kind.REAL
+                kind = EntryKind.INTEGER if isinstance(number, int) else EntryKind.REAL
                 return _Value(constant(kind, number), kind)
             case syntax.Boolean(value=truth):
                 return _Value(BooleanExpr(NOWHERE, truth), None)
             case syntax.String(value=text):
-                return _Value(constant(Kind.TEXT, text), Kind.TEXT)
+                return _Value(constant(EntryKind.TEXT, text), EntryKind.TEXT)
             case syntax.Name():
                 entry = self.find(expr)
                 if entry.variable not in self.writes:
@@ -149,13 +149,15 @@ class _Compiler:
                 self.refuse(expr, f"`{operator}` works on bits, which a model does not have")
             case "..":
                 self.refuse(expr, "texts cannot be joined in a model")
-        if Kind.TEXT in (left.kind, right.kind):
+        if EntryKind.TEXT in (left.kind, right.kind):
             self.refuse(expr, "texts cannot be joined in a model")
         first, second = self.number(left, expr.left), self.number(right, expr.right)
         symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[
             expr.operator
         ]
-        kind = Kind.REAL if expr.operator == "/" or Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
+        kind = (
+            EntryKind.REAL if expr.operator == "/" or EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
+        )
         return _Value(binary(first.expr, symbol, second.expr), kind)
 
     def comparison(self, expr: syntax.Comparison) -> _Value:
@@ -163,7 +165,7 @@ class _Compiler:
         result: Expr | None = None
         for position, operator in enumerate(expr.operators):
             left, right = self.comparable(expr, values[position], values[position + 1])
-            if left.kind is Kind.TEXT and operator not in ("==", "!="):
+            if left.kind is EntryKind.TEXT and operator not in ("==", "!="):
                 self.refuse(expr, f"texts cannot be compared by `{operator}` in a model")
             symbol = next(known for known in Operator if known.symbol == operator)
             result = both(result, binary(left.expr, symbol, right.expr))
@@ -171,9 +173,9 @@ class _Compiler:
         return _Value(result, None)
 
     def comparable(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
-        if left.kind is Kind.TEXT and right.kind is Kind.TEXT:
+        if left.kind is EntryKind.TEXT and right.kind is EntryKind.TEXT:
             return left, right
-        if Kind.TEXT in (left.kind, right.kind):
+        if EntryKind.TEXT in (left.kind, right.kind):
             return self.with_text(expr, left, right)
         return self.number(left, expr), self.number(right, expr)
 
@@ -182,9 +184,9 @@ class _Compiler:
         sides = []
         for side in (left, right):
             text = getattr(side.expr, "value", None)
-            if side.kind is Kind.TEXT:
-                kind, literal = read_literal(text) if isinstance(text, str) else (Kind.TEXT, "")
-                if kind is Kind.TEXT:
+            if side.kind is EntryKind.TEXT:
+                kind, literal = read_literal(text) if isinstance(text, str) else (EntryKind.TEXT, "")
+                if kind is EntryKind.TEXT:
                     self.refuse(expr, "a text is compared with a number")
                 sides.append(_Value(constant(kind, literal), kind))
             else:
@@ -198,16 +200,16 @@ class _Compiler:
         if len(self.assignments) > before:
             self.refuse(expr, "an assignment inside `? :` cannot be translated; use a condition of the node instead")
         condition = (
-            UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(test.expr, constant(Kind.TEXT, "")))
-            if test.kind is Kind.TEXT
+            UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(test.expr, constant(EntryKind.TEXT, "")))
+            if test.kind is EntryKind.TEXT
             else self.truth(test, expr.test.span)
         )
-        if Kind.TEXT in (yes.kind, no.kind):
+        if EntryKind.TEXT in (yes.kind, no.kind):
             if yes.kind is not no.kind:
                 self.refuse(expr, "the value is a text or a number")
-            return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), Kind.TEXT)
+            return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), EntryKind.TEXT)
         first, second = self.number(yes, expr.yes), self.number(no, expr.no)
-        kind = Kind.REAL if Kind.REAL in (first.kind, second.kind) else Kind.INTEGER
+        kind = EntryKind.REAL if EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
         return _Value(ConditionalExpr(NOWHERE, condition, first.expr, second.expr), kind)
 
     def assignment(self, expr: syntax.Assignment) -> _Value:
@@ -224,17 +226,17 @@ class _Compiler:
         self.writes[entry.variable] = entry
         return current
 
-    def converted(self, expr: syntax.Assignment, value: _Value, entry: Entry) -> Expr:
+    def converted(self, expr: syntax.Assignment, value: _Value, entry: BoardEntry) -> Expr:
         """A value as one of the type of an entry, which keeps its type."""
-        if entry.kind is Kind.TEXT or value.kind is Kind.TEXT:
+        if entry.kind is EntryKind.TEXT or value.kind is EntryKind.TEXT:
             if entry.kind is value.kind:
                 return value.expr
             text = getattr(value.expr, "value", None)
-            if value.kind is Kind.TEXT and isinstance(text, str) and read_literal(text)[0] is not Kind.TEXT:
+            if value.kind is EntryKind.TEXT and isinstance(text, str) and read_literal(text)[0] is not EntryKind.TEXT:
                 return constant(entry.kind, read_literal(text)[1])
             self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}")
         number = self.number(value, expr.value)
-        if entry.kind is Kind.INTEGER and number.kind is Kind.REAL:
+        if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
             floor = Call(NOWHERE, Member(NOWHERE, name("Math"), "floor", NOWHERE), (number.expr,))
             if self.assignments:
                 self.refuse(expr, f"`{expr.target.name}` is an integer and gets a real number after another assignment")
@@ -245,14 +247,14 @@ class _Compiler:
     def number(self, value: _Value, expr: syntax.Expr) -> _Value:
         if value.kind is None:
             as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
-            return _Value(as_number, Kind.INTEGER)
-        if value.kind is Kind.TEXT:
+            return _Value(as_number, EntryKind.INTEGER)
+        if value.kind is EntryKind.TEXT:
             self.refuse(expr, "a number is needed here, and this is a text")
         return value
 
     def truth(self, value: _Value, span: Span) -> Expr:
         if value.kind is None:
             return value.expr
-        if value.kind is Kind.TEXT:
+        if value.kind is EntryKind.TEXT:
             raise ScriptRefusal(span, "a text is neither true nor false")
         return UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(value.expr, integer(0)))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.forest import Forest, ports_of
 from roaml.libraries import Node
-from roaml.mocks.refusal import Refusal
+from roaml.mocks.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
 from roaml.text import Location, Span
@@ -21,7 +21,7 @@ MAX_DEPTH = 200
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Frame:
+class TreeFrame:
     """One use of a tree: the meaning of its names.
 
     Attributes:
@@ -33,7 +33,7 @@ class Frame:
     prefix: str
     remapped: Mapping[str, str]
     autoremap: bool
-    outer: Frame | None
+    outer: TreeFrame | None
     trees: frozenset[str]
 
     def entry(self, name: str) -> str:
@@ -62,7 +62,7 @@ class ExecutedNode:
     name: str
     node: TreeNode
     known: Node | None
-    frame: Frame
+    frame: TreeFrame
     children: tuple[int, ...]
     origin: Location
 
@@ -99,12 +99,12 @@ def unfold(forest: Forest) -> ExecutedTree:
     """The executed tree of the analysed file.
 
     Raises:
-        Refusal: there is none, or it cannot be told which one it is.
+        TreeRefusal: there is none, or it cannot be told which one it is.
     """
     tree = _main_tree(forest)
     unfolder = _Unfolder(forest)
     assert tree.id is not None
-    unfolder.tree(forest.path, tree, Frame("", {}, False, None, frozenset((tree.id.value,))), 0)
+    unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((tree.id.value,))), 0)
     return ExecutedTree(tree.id.value, tuple(unfolder.nodes[n] for n in sorted(unfolder.nodes)), unfolder.initial)
 
 
@@ -114,7 +114,7 @@ def _main_tree(forest: Forest) -> Tree:
     if file.main is not None:
         if file.main.value in forest.trees:
             return forest.trees[file.main.value][1]
-        raise Refusal(Location(forest.path, file.main.span), f"there is no tree `{file.main.value}`")
+        raise TreeRefusal(Location(forest.path, file.main.span), f"there is no tree `{file.main.value}`")
     used = {
         node.plugin.value
         for _, _, node in forest.all_nodes()
@@ -125,8 +125,8 @@ def _main_tree(forest: Forest) -> Tree:
         return candidates[0]
     place = Location(forest.path, file.element.name_span)
     if not named:
-        raise Refusal(place, "the file has no tree with an `ID`")
-    raise Refusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
+        raise TreeRefusal(place, "the file has no tree with an `ID`")
+    raise TreeRefusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
 
 
 @dataclass
@@ -137,22 +137,24 @@ class _Unfolder:
     count: int = 0
     prefixes: dict[str, int] = field(default_factory=dict)
 
-    def tree(self, path: str, tree: Tree, frame: Frame, depth: int) -> int:
+    def tree(self, path: str, tree: Tree, frame: TreeFrame, depth: int) -> int:
         if len(tree.roots) != 1:
-            raise Refusal(Location(path, tree.element.name_span), "a tree has exactly one node at its top")
+            raise TreeRefusal(Location(path, tree.element.name_span), "a tree has exactly one node at its top")
         return self.node(path, tree.roots[0], frame, depth)
 
-    def node(self, path: str, node: TreeNode, frame: Frame, depth: int) -> int:
+    def node(self, path: str, node: TreeNode, frame: TreeFrame, depth: int) -> int:
         origin = Location(path, node.element.name_span)
         if self.count >= MAX_NODES or depth > MAX_DEPTH:
-            raise Refusal(origin, f"the tree is too large: at most {MAX_NODES} nodes, {MAX_DEPTH} inside each other")
+            raise TreeRefusal(
+                origin, f"the tree is too large: at most {MAX_NODES} nodes, {MAX_DEPTH} inside each other"
+            )
         number = ROOT_NUMBER + self.count
         self.count += 1
         type_ = node.plugin.value if node.plugin else ""
         name = node.name.value if node.name else type_
         if node.is_subtree or self.forest.names_tree(node):
             if type_ not in self.forest.trees:
-                raise Refusal(origin, f"there is no tree `{type_}`")
+                raise TreeRefusal(origin, f"there is no tree `{type_}`")
             inner_path, inner = self.forest.trees[type_]
             child = self.tree(inner_path, inner, self.enter(node, name, type_, frame, origin), depth + 1)
             self.nodes[number] = ExecutedNode(number, "SubTree", name, node, None, frame, (child,), origin)
@@ -162,9 +164,9 @@ class _Unfolder:
         self.nodes[number] = ExecutedNode(number, type_, name, node, known, frame, children, origin)
         return number
 
-    def enter(self, node: TreeNode, name: str, type_: str, frame: Frame, origin: Location) -> Frame:
+    def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
         if type_ in frame.trees:
-            raise Refusal(origin, f"the tree `{type_}` contains itself")
+            raise TreeRefusal(origin, f"the tree `{type_}` contains itself")
         word = f"{frame.prefix}{_identifier(name)}"
         count = self.prefixes[word] = self.prefixes.get(word, 0) + 1
         prefix = f"{word}__" if count == 1 else f"{word}_{count}__"
@@ -181,7 +183,7 @@ class _Unfolder:
                 remapped[key] = _identifier(prefix + key)
             else:
                 remapped[key] = frame.entry(bound)
-        return Frame(prefix, remapped, is_autoremapped(node), frame, frame.trees | {type_})
+        return TreeFrame(prefix, remapped, is_autoremapped(node), frame, frame.trees | {type_})
 
 
 def _identifier(name: str) -> str:

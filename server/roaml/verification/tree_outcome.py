@@ -67,7 +67,7 @@ def _eventually(name: str, condition: Expression) -> Property:
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class OutcomeShare:
     """How many of all traces have a property, with the interval for its probability."""
 
     count: int
@@ -113,8 +113,8 @@ class TreeOutcome:
 
     traces: int
     confidence: float
-    success: Share
-    failure: Share
+    success: OutcomeShare
+    failure: OutcomeShare
     unfinished: int
     exceptions: int
     time: Mean | None
@@ -217,8 +217,8 @@ class _Measuring:
         seconds, nanoseconds = map(self.integer, self.clock)
         return seconds + nanoseconds / 1e9
 
-    def share(self, count: int, traces: int, undecided: int) -> Share:
-        return Share(count, traces, clopper_pearson(count, traces, self.options.confidence, undecided))
+    def share(self, count: int, traces: int, undecided: int) -> OutcomeShare:
+        return OutcomeShare(count, traces, clopper_pearson(count, traces, self.options.confidence, undecided))
 
     def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
         """The derivative of the logarithm of the probability of the trace by the probability of a mock."""
