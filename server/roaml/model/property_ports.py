@@ -33,7 +33,7 @@ from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
-from roaml.model.tree_paths import nodes_called, path_of, short_path
+from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
@@ -45,12 +45,13 @@ INT32 = BASE_TYPES["int32"]
 INTERFACE_KINDS: Mapping[str, Kind] = {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}
 """Kind of port -> the kind of its ROS type."""
 _WORDS = {TOPIC: "topic", SERVICE: "service", ACTION: "action", NODE: "node of the behavior tree", PLAIN: "event"}
-_EVENTS = {
+EVENTS = {
     TOPIC: ("publish",),
     SERVICE: ("request", "response"),
     ACTION: ("goal_request", "goal_response", "feedback", "result"),
     NODE: ("tick", "response", "halt"),
 }
+"""Kind of port -> the values of its attribute `event`."""
 _PARTS = {
     "publish": "message",
     "request": "request",
@@ -59,7 +60,7 @@ _PARTS = {
     "feedback": "feedback",
     "result": "result",
 }
-_GIVEN_BY = {GOAL_ID: _EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
+_GIVEN_BY = {GOAL_ID: EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
 """Kind of variable -> the events of an action that carry its value."""
 
 
@@ -115,7 +116,7 @@ class PortLinker:
         """The value of the attribute `event`; `None` if it is not one of its values, which the schema reports."""
         if port.kind == PLAIN:
             return ""
-        return port.event.value if port.event and port.event.value in _EVENTS[port.kind] else None
+        return port.event.value if port.event and port.event.value in EVENTS[port.kind] else None
 
     def _unlinked(self, port: Port) -> Iterator[LinkedVariable]:
         for variable in port.variables:
@@ -236,9 +237,9 @@ class PortLinker:
     ) -> list[ChannelEndpoint]:
         if name is None:
             return endpoints
-        chosen = [endpoint for endpoint in endpoints if name.value in _names_of(endpoint.automaton)]
+        chosen = [endpoint for endpoint in endpoints if name.value in names_of(endpoint.automaton)]
         if not chosen and self._is_complete():
-            known = [each for endpoint in endpoints for each in _names_of(endpoint.automaton)]
+            known = [each for endpoint in endpoints for each in names_of(endpoint.automaton)]
             close = close_names(name.value, known) or tuple(known[:1])
             hint = f"; did you mean `{close[0]}`?" if close else ""
             message = f"no machine `{name.value}` {does} `{channel.name}`{hint}"
@@ -256,12 +257,13 @@ class PortLinker:
     # ------------------------------------------------------------- the tree
 
     def _node(self, port: Port, name: Name, event: str) -> LinkedPort:
-        matches = list(nodes_called(self.system, name.value))
+        matches = nodes_called(self.system, name.value)
         if len(matches) != 1:
             if matches:
                 paths = ", ".join(f"`{path}`" for path in dict.fromkeys(path_of(self.system, node) for node in matches))
                 message = f"{len(matches)} nodes of the tree are called `{name.value}`: {paths}; use the path of one"
-                close = tuple(dict.fromkeys(short_path(self.system, node) for node in matches))
+                shorter = short_paths(self.system)
+                close = tuple(dict.fromkeys(shorter[node.number] for node in matches))
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             elif self._is_complete():
                 known = dict.fromkeys(text for node in self.system.instances for text in (node.name, node.plugin))
@@ -387,7 +389,7 @@ def _leaf_paths(data: Struct) -> Iterator[str]:
             yield name
 
 
-def _names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
+def names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
     """The names by which a port may choose an automaton: that of its machine or node, and its own."""
     names = [automaton.name]
     if automaton.instance is not None:

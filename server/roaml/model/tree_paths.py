@@ -4,14 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TypeAlias
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from roaml.model.expand import Instance
 from roaml.model.system import System
 
-Part: TypeAlias = tuple[str, ...]
-"""A part of a path, by each of its names; the first one is preferred."""
+
+class Part(NamedTuple):
+    """A part of a path: a node, or the use of a tree. The first of its names is preferred."""
+
+    names: tuple[str, ...]
+    is_tree: bool
 
 
 def parts_above(system: System, instance: Instance) -> tuple[Part, ...]:
@@ -25,17 +29,25 @@ def parts_above(system: System, instance: Instance) -> tuple[Part, ...]:
         index: int | None = use
         while index is not None and index != outermost:
             tree = system.tree_uses[index]
-            parts.append(tuple(dict.fromkeys(filter(None, (tree.name, tree.tree)))))
+            names = tuple(dict.fromkeys(filter(None, (tree.name, tree.tree))))
+            parts += [Part(names, is_tree=True)] if names else []
             index = tree.outer
         if around is None:
-            return tuple(part for part in reversed(parts) if part)
-        parts.append((around.name,))
+            return tuple(reversed(parts))
+        parts.append(Part((around.name,), is_tree=False))
         node, use = around, around.use
 
 
 def path_of(system: System, instance: Instance) -> str:
-    """The whole path of a node, which is unique except among siblings of one name."""
-    return "/".join((*(part[0] for part in parts_above(system, instance)), instance.name))
+    """The whole path of a node. Only siblings of one name have the same path."""
+    return "/".join((*(part.names[0] for part in parts_above(system, instance)), instance.name))
+
+
+def instance_of(system: System, number: int) -> Instance:
+    """The node with a number of `short_paths`."""
+    instance = system.by_instance[number].instance
+    assert instance is not None
+    return instance
 
 
 def label_of(system: System, instance: Instance) -> str:
@@ -45,28 +57,55 @@ def label_of(system: System, instance: Instance) -> str:
     return f"{tree}/{instance.plugin}{named}" if tree else f"{instance.plugin}{named}"
 
 
-def short_path(system: System, instance: Instance) -> str:
-    """The shortest text that names a node in a `<bt_node>`: its name, or as much of its path as it takes.
+def short_paths(system: System) -> Mapping[int, str]:
+    """The number of each node -> the shortest text that names it in a `<bt_node>`: its name, or as much of its path as
+    it takes, the uses of trees before the nodes.
 
-    The whole path if even that names several nodes.
+    It is the whole path if even that names several nodes.
     """
-    above = [part[0] for part in parts_above(system, instance)]
-    texts = [instance.name, *("/".join((*above[start:], instance.name)) for start in reversed(range(len(above))))]
-    return next((text for text in texts if len(list(nodes_called(system, text))) == 1), texts[-1])
+    by_name: dict[str, list[Instance]] = {}
+    for instance in _instances(system):
+        by_name.setdefault(instance.name, []).append(instance)
+    paths: dict[int, str] = {}
+    for name, instances in by_name.items():
+        above = {instance.number: parts_above(system, instance) for instance in instances} if instances[1:] else {}
+        for instance in instances:
+            path = _short_path(above[instance.number], above.values()) if above else ()
+            paths[instance.number] = "/".join((*path, name))
+    return paths
 
 
-def nodes_called(system: System, text: str) -> Iterator[Instance]:
+def _short_path(own: tuple[Part, ...], all_: Iterable[tuple[Part, ...]]) -> tuple[str, ...]:
+    trees = tuple(part.names[0] for part in own if part.is_tree)
+    names = tuple(part.names[0] for part in own)
+    paths = (*(part[start:] for part in (trees, names) for start in reversed(range(len(part)))),)
+    return next((path for path in paths if _matching(path, all_) == [own]), names)
+
+
+def nodes_called(system: System, text: str) -> tuple[Instance, ...]:
     """The nodes that `text` names: a name; an ID that is not the name of a node; one of these after names of nodes and
-    trees around it, joined by `/`."""
+    trees around it, joined by `/`. A whole path names only the node at its end."""
     *path, last = text.split("/")
-    instances = [automaton.instance for automaton in system.automata if automaton.instance is not None]
-    matches = [instance for instance in instances if instance.name == last]
-    for instance in matches or [instance for instance in instances if instance.plugin == last]:
-        if not path or _is_inside(path, parts_above(system, instance)):
-            yield instance
+    instances = _instances(system)
+    called = [instance for instance in instances if instance.name == last]
+    called = called or [instance for instance in instances if instance.plugin == last]
+    if not path:
+        return tuple(called)
+    above = [parts_above(system, instance) for instance in called]
+    matching = set(_matching(tuple(path), above))
+    return tuple(instance for instance, parts in zip(called, above, strict=True) if parts in matching)
 
 
-def _is_inside(path: list[str], above: tuple[Part, ...]) -> bool:
+def _instances(system: System) -> list[Instance]:
+    return [automaton.instance for automaton in system.automata if automaton.instance is not None]
+
+
+def _matching(path: tuple[str, ...], above: Iterable[tuple[Part, ...]]) -> list[tuple[Part, ...]]:
+    matching = [parts for parts in above if _is_inside(path, parts)]
+    return [parts for parts in matching if len(parts) == len(path)] or matching
+
+
+def _is_inside(path: tuple[str, ...], above: tuple[Part, ...]) -> bool:
     """Whether the names in `path` occur in `above` in this order."""
     parts = iter(above)
-    return all(any(name in part for part in parts) for name in path)
+    return all(any(name in part.names for part in parts) for name in path)

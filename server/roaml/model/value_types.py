@@ -370,6 +370,9 @@ class _Typer:
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
 """The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 
+GOAL_STATUSES = {4: "STATUS_SUCCEEDED", 5: "STATUS_CANCELED", 6: "STATUS_ABORTED"}
+"""`action_msgs/GoalStatus` of ROS 2: the codes that results can have."""
+
 
 def port_type(machine: Machine, read: PortRead) -> Type:
     for port in machine.ports:

@@ -121,12 +121,16 @@ class _PropertyFile:
 
     def node(self, name: Name) -> Iterator[Occurrence]:
         """The nodes and trees on a path."""
-        matches = list(nodes_called(self.system, name.value)) if self.system is not None else []
+        matches = nodes_called(self.system, name.value) if self.system is not None else ()
         if len(matches) != 1 or self.system is None:
             return
         *path, last = name.value.split("/")
         start = name.span.start
-        above = zip(parts_above(self.system, matches[0]), self.around(self.system, matches[0]), strict=True)
+        above = zip(
+            (part.names for part in parts_above(self.system, matches[0])),
+            self.around(self.system, matches[0]),
+            strict=True,
+        )
         for text in path:
             names, symbols = next((names, symbols) for names, symbols in above if text in names)
             yield Occurrence(Span(start, start + len(text)), symbols[names.index(text)])
