@@ -30,6 +30,7 @@ COMMANDS = {
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "estimate the probabilities of properties",
     "simulate": "run a system step by step",
+    "debug": "serve a debugger: the debug adapter",
     "init": "write a small working system",
 }
 """What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""

@@ -132,19 +132,17 @@ class _Verification:
 
     def run(self) -> int:
         checker = self.verifier.checker
-        interrupted = False
         with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar:
+            with Pool(workers or self.options.jobs, executor) as pool:
+                shared = self._answer_shared(pool, bar)
+            interrupted = any(result.is_interrupted for result in shared.values())
             for name in self.verifier.names:
-                try:
+                if name in shared:
+                    self.results.append(shared[name])
+                elif not interrupted:
                     with Pool(workers or self.options.jobs, executor) as pool:
-                        result = self._answer(self.verifier.question(name), pool, bar)
-                except FaultError as fault:
-                    self.faults.append(fault)
-                    result = self._refused(name, fault)
-                self.results.append(result)
-                if result.is_interrupted:
-                    interrupted = True
-                    break
+                        self.results.append(self._answer_alone(name, pool, bar))
+                    interrupted = self.results[-1].is_interrupted
             if not interrupted and not self.options.exact and stuck.can_be_stuck(checker):
                 asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
                 self.look = self._look(None if asks_stuck or self.faults else bar)
@@ -156,9 +154,50 @@ class _Verification:
             self._tell()
         return status
 
-    def _refused(self, name: str, fault: FaultError) -> Result:
-        """The result of a property that cannot be decided, with a readable path."""
-        result = self.verifier.refused(name, fault)
+    def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
+        """The results of the properties that share traces; none if there are fewer than two."""
+        options, verifier = self.options, self.verifier
+        if options.separate or options.exact or options.scheduler == "lss":
+            return {}
+        asked = verifier.sharing()
+        if not asked:
+            return {}
+        payloads = [verifier.checker.payload(each) for each in asked] if self.state is not None else []
+        tallies = [Tally() for _ in asked]
+        if self.state is not None:
+            tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
+        by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
+
+        def watch(each: CompiledProperty, so_far: Tally) -> None:
+            bar.together(each.question, so_far, len(asked))
+            if self.state is not None:
+                self.state.keep(each.question.name, by_name[each.question.name], so_far)
+
+        began = time.monotonic()
+        bar.begin(asked[0].question, self.limits, tallies[0])
+        try:
+            results = verifier.answer_together(asked, pool, tallies, watch, bar.pulse)
+        except NoThresholdError as error:
+            raise UsageError(f"{error}; use --expect") from None
+        except KeyboardInterrupt:
+            seconds = time.monotonic() - began
+            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
+        if self.state is not None:
+            for each, tally in zip(asked, tallies, strict=True):
+                self.state.keep(each.question.name, by_name[each.question.name], tally, now=True)
+        self.faults += [result.fault for result in results if result.fault is not None]
+        return {result.name: self._with_shown_path(result) for result in results}
+
+    def _answer_alone(self, name: str, pool: Pool, bar: ProgressBar) -> Result:
+        """The result of a property by traces of its own; a refusal if it cannot be decided."""
+        try:
+            return self._answer(self.verifier.question(name), pool, bar)
+        except FaultError as fault:
+            self.faults.append(fault)
+            return self._with_shown_path(self.verifier.refused(name, fault))
+
+    def _with_shown_path(self, result: Result) -> Result:
+        """A result whose refusal has a readable path."""
         why = result.refusal
         if why is None or why.place is None:
             return result
@@ -400,6 +439,8 @@ def parser() -> ArgumentParser:
     add_model_arguments(result)
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
+    add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
+        "traces, with the same results")  # fmt: skip
     add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
     add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")

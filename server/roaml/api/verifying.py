@@ -124,7 +124,7 @@ def verify(
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
 ) -> Iterator[Result]:
-    """Estimate how probable properties are, by random traces with uniform choices. Results come one by one.
+    """Estimate how probable properties are, by random traces with uniform choices. Properties share traces.
 
     Args:
         subject: a system, a JANI model, or what `target` gives.
@@ -146,5 +146,4 @@ def verify(
 
     ready = verifier(subject, properties, options, expectations, only_uniform=only_uniform)
     with Pool(jobs, executor) as pool:
-        for name in ready.names:
-            yield ready.verify(name, pool)
+        yield from ready.verify_all(pool)

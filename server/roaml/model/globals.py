@@ -51,6 +51,15 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     return table
 
 
+def event_parameters(system: System, interface: FindInterface) -> dict[str, dict[str, Type]]:
+    """The parameters of each event of the translated system, with the types of the models."""
+    parameters: dict[str, dict[str, Type]] = {}
+    for event, _, params in _events(system, interface):
+        for name, type_ in params:
+            parameters.setdefault(event, {}).setdefault(name, type_)
+    return parameters
+
+
 def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
     """The variables of a parameter: its leaves, and the lengths of arrays (docs/spec/types.md#leaves,
     docs/spec/jani.md#array-storage)."""

@@ -31,7 +31,7 @@ from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
 from roaml.model.gaps import Gap, GapAct, InterfaceAct, PlacedGap, machine_gaps
-from roaml.model.globals import GlobalVariable, global_variables
+from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
@@ -809,6 +809,12 @@ class Analysis:
             return {}
         environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
         return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
+
+    def event_parameters(self, system: str) -> Mapping[str, Mapping[str, Type]]:
+        """The parameters of each event of the translated system, with the types of the models."""
+        linked = self.system(system)
+        environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
+        return {} if linked is None else event_parameters(linked, environment.interface)
 
 
 _ROUNDS = 4

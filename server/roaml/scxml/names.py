@@ -135,6 +135,22 @@ def open_variable(property_: str) -> str:
     return f"{property_}__open"
 
 
+def asked_variable(property_: str) -> str:
+    """The variable that says whether what a property is about has occurred, such as the request of a response
+    (docs/spec/jani.md#observers)."""
+    return f"{property_}__asked"
+
+
+def opened_variable(property_: str) -> str:
+    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
+    return f"{property_}__opened"
+
+
+def pending_variable(property_: str) -> str:
+    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
+    return f"{property_}__pending"
+
+
 def is_length(variable: str) -> bool:
     """Whether a variable is the length of an array (docs/spec/jani.md#array-storage)."""
     return _LENGTH.search(variable) is not None

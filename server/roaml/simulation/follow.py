@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
@@ -55,8 +56,17 @@ class Follower:
         self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
         self._status: dict[int, NodeStatus] = {}
         self._origin: dict[int, Origin | None] = {}
-        self._state: dict[int, str] = {}
         self._handles: dict[int, str] = {}
+        self._handler: dict[int, Origin | None] = {}
+
+    def copied(self) -> Follower:
+        """A follower that has read the same steps and continues independently."""
+        other = copy.copy(self)
+        other.events = self.events.copied()
+        other._clock_values = dict(self._clock_values)
+        other._sent, other._status = dict(self._sent), dict(self._status)
+        other._origin, other._handles, other._handler = dict(self._origin), dict(self._handles), dict(self._handler)
+        return other
 
     def is_machine(self, instance: int) -> bool:
         """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
@@ -84,6 +94,7 @@ class Follower:
             self._origin[part.instance] = part.destination.origin or part.edge.origin
             if received:
                 self._handles[part.instance] = received
+                self._handler[part.instance] = part.edge.origin
         event = sent_by(step.action or "")
         if event:
             sender = actors[0].automaton if actors else ""
@@ -156,6 +167,8 @@ class Follower:
                 own.get(number, {}),
                 self.events.name(handled) if handled else "",
                 self._origin.get(number, automaton.origin),
+                handled,
+                self._handler.get(number) if handled else None,
             )
 
     def _nodes(self) -> Iterator[NodeState]:

@@ -2,14 +2,14 @@
 """A run of a model: a sequence of steps, each decided by the seed or by hand, that can be replayed up to any step.
 
 A step that the seed decides is the same as in the trace that `verify` generates for this seed and trace number. Going
-back replays the run from its start, which takes as long as generating a trace of that length.
+back restores the last snapshot before the position and replays the steps from there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
@@ -20,6 +20,9 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
 from roaml.smc.record import Plain, RecordedVariable, StepReader, TraceStep
 from roaml.smc.standstill import Standstill
+
+SNAPSHOT_INTERVAL = 512
+"""The number of steps between two snapshots of the kernel."""
 
 
 class RunError(ValueError):
@@ -100,6 +103,7 @@ class Run:
         self._reader = StepReader(self._kernel, self.legend)
         self.steps: list[TraceStep] = []
         self.decisions: list[Decision | None] = []
+        self._snapshots: dict[int, tuple[Any, ...]] = {}
         self._begin()
         shared = self.legend.layout.shared
         self.start = dict(zip((storage.name for storage in shared), self._reader.values(shared), strict=True))
@@ -148,10 +152,16 @@ class Run:
         if self.position <= len(self.steps) and self.decisions[self.position - 1] == decision:
             self._reader.start()
             return self.steps[self.position - 1]
-        del self.steps[self.position - 1 :], self.decisions[self.position - 1 :]
+        if self.position <= len(self.steps):
+            self._discard(self.position - 1)
         self.steps.append(self._reader.read(self.position))
         self.decisions.append(decision)
         return self.steps[-1]
+
+    def _discard(self, position: int) -> None:
+        """Discard the steps after `position`."""
+        del self.steps[position:], self.decisions[position:]
+        self._snapshots = {at: saved for at, saved in self._snapshots.items() if at <= position}
 
     def _return(self) -> None:
         """Restore the state at the position, after a step that failed."""
@@ -161,8 +171,9 @@ class Run:
 
     def go_to(self, position: int) -> None:
         """Go to the state after the first `position` of the steps taken."""
-        if position < self.position:
-            self._begin()
+        nearest = max((at for at in self._snapshots if at <= position), default=0)
+        if position < self.position or nearest > self.position:
+            self._restore(nearest)
         while self.position < position:
             decision = self.decisions[self.position]
             until = self.position + 1
@@ -170,6 +181,15 @@ class Run:
                 until += 1
             self._take(decision, until)
         self._reader.start()
+
+    def _restore(self, position: int) -> None:
+        """Go to a position with a snapshot, or to the start."""
+        if position not in self._snapshots:
+            self._begin()
+            return
+        self.status, self.has_ended, saved = self._snapshots[position]
+        self._kernel.load(saved)
+        self.position = position
 
     def _take(self, decision: Decision | None, until: int = 0) -> None:
         """Take one step by hand, or the steps that the seed decides up to position `until`; 0 means only the next
@@ -184,6 +204,8 @@ class Run:
             self._learn(self._kernel.look())
             self.position += 1
         self._look_for_end()
+        if self.position % SNAPSHOT_INTERVAL == 0 and self.position not in self._snapshots:
+            self._snapshots[self.position] = self.status, self.has_ended, self._kernel.save()
 
     def _check_possible(self, decision: Decision) -> None:
         for enabled in self.enabled():

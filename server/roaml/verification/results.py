@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from roaml.smc.choices import Choices
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording, TraceStep
@@ -83,7 +84,7 @@ class Result:
         tried: how many schedulers these were chosen from.
         stuck: its traces that got stuck, if any did.
         choices: what is known of other schedulers than the uniform one; None if only uniform choices are asked about.
-        refusal: why there is no answer.
+        refusal: why there is no answer; `fault` is its cause.
         traces: those of `answer`, to walk them again.
     """
 
@@ -98,6 +99,7 @@ class Result:
     exact: Exact | None = None
     choices: Choices | None = None
     refusal: Refusal | None = None
+    fault: FaultError | None = field(default=None, repr=False, compare=False)
     traces: Traces | None = field(default=None, repr=False, compare=False)
 
     @property

@@ -14,7 +14,7 @@ from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
 from roaml.scxml.names import open_variable
 from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
-from roaml.smc.goal import CompiledProperty, Question
+from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.results import Exact
@@ -65,7 +65,7 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
     extremes = []
     for operator in ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax"):
         extremes.append(_value(stormpy, document, {**_inner(property_["expression"]), "op": operator}))
-    if asked.property.name in checker.open_:
+    if checker.outputs.get(asked.property.name, NO_OUTPUTS).open is not None:
         stays = {"op": "F", "exp": {"op": "G", "exp": open_variable(asked.property.name)}}
         share = _value(stormpy, document, {"op": "Pmax", "exp": stays})
         if share > _SLACK:

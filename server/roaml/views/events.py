@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
@@ -32,6 +33,12 @@ class EventReader:
         self._values = dict(start)
         self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
         self._of_events = {name for name in self._values if self._is_of_event(name)}
+
+    def copied(self) -> EventReader:
+        """A reader that has read the same steps and continues independently."""
+        other = copy.copy(self)
+        other._values = dict(self._values)
+        return other
 
     def read(self, step: TraceStep) -> None:
         """Note what a step changes."""
