@@ -17,9 +17,10 @@ from roaml.ide.names.lookup import SymbolGroup, thing
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
-from roaml.model.system import safe_name, sanitise
+from roaml.model.system import sanitise
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot
+from roaml.scxml.names import safe_name
 from roaml.text import TextEdit, apply_edits
 
 FRESH = "zqfresh"
@@ -140,8 +141,11 @@ def _same(before: object, after: str | None, old: str) -> bool:
 
 
 def _canonical(jani: str) -> object:
-    """Actions that are called alike in several automata are listed once; a rename may tell them apart."""
+    """Actions that are called alike in several automata are listed once; a rename may tell them apart. Comments contain
+    names as the user writes them."""
     model = json.loads(jani)
+    for property_ in model["properties"]:
+        property_.pop("comment", None)
     model["actions"] = list({action["name"]: action for action in model["actions"]}.values())
     return _unordered(model)
 

@@ -9,7 +9,7 @@ from typing import TextIO
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
-from roaml.model.system_file import duration
+from roaml.model.parameters import duration
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
 from roaml.verification.target import VerificationTarget

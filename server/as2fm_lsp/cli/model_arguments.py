@@ -10,14 +10,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import takes_color
 from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.output import takes_color
 from as2fm_lsp.cli.times import time_of
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.node import Origin
-from roaml.model.system_file import Overrides
+from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.smc.fault import FaultError

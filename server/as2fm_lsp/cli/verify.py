@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -30,7 +30,7 @@ from as2fm_lsp.cli.model_arguments import (
     settings_of,
 )
 from as2fm_lsp.cli.numbers import natural, positive
-from as2fm_lsp.cli.output import complain, flush, print_text
+from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.verification import stuck_report
@@ -316,7 +316,7 @@ class _Verification:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
-                print_text(FORMATS["text"](report), stream=sys.stderr)
+                print_text(render(report, "text"), stream=sys.stderr)
 
     def _tell(self) -> None:
         """Write traces and stories."""
@@ -541,9 +541,9 @@ def _errors(options: argparse.Namespace, report: CheckReport) -> int:
     if options.format == "json":
         print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
     elif options.format == "junit":
-        print_text(FORMATS["junit"](report), "utf-8")
+        print_text(render(report, "junit"), "utf-8")
     else:
-        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print_text(render(report, "text"), stream=sys.stderr)
     return FOUND
 
 

@@ -14,7 +14,7 @@ from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, StartError, start
 from roaml.diagnostics import Diagnostic
 from roaml.disk import NotReadableError, required
-from roaml.model.system_file import Overrides, duration
+from roaml.model.parameters import Overrides, duration
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.simulation import RunError, SavedSession

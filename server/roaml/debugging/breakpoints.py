@@ -19,8 +19,7 @@ from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
 from roaml.jani.expressions import Integer, Name
 from roaml.jani.node import Origin
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import TREE_EVENT, received_by, sent_by
+from roaml.scxml.names import STATUSES, TREE_EVENT, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
 from roaml.smc.record import AutomatonStep, TraceStep

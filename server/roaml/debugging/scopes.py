@@ -12,8 +12,7 @@ from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.model.expand import PortConstant
-from roaml.model.globals import FIELD_PREFIX
-from roaml.scxml.names import BLACKBOARD, TREE_EVENT, is_length, is_timer, received_by
+from roaml.scxml.names import BLACKBOARD, FIELD_PREFIX, TREE_EVENT, is_length, is_timer, received_by
 from roaml.simulation.session import Session
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import STATUS_NAMES

@@ -23,11 +23,10 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton, sanitise
-from roaml.model.value_types import STATUSES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
-from roaml.scxml.names import named
+from roaml.scxml.names import STATUSES, named
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""

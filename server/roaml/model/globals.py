@@ -14,12 +14,10 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
-
-FIELD_PREFIX = "ros_fields__"
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX, FIELD_PREFIX, safe_name
 
 FindInterface = Callable[[str, str], InterfaceType | None]
 """(kind, name as written) -> the ROS type."""

@@ -25,6 +25,7 @@ from roaml.expr.tree import Binary, Name, walk
 from roaml.expr.types import UNKNOWN, Type, is_kind
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
+from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
     ASSUMES,
     EVENT,
@@ -35,10 +36,10 @@ from roaml.model.property_file import (
 )
 from roaml.model.property_ports import FindInterface, LinkedPort, LinkedVariable, PortLinker
 from roaml.model.property_problems import Problem, ProblemKind
+from roaml.model.property_sentences import sentence
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
-from roaml.model.system_file import NANOSECONDS
 from roaml.model.timing import periods
 from roaml.observers.properties import (
     CLOSE,
@@ -68,6 +69,7 @@ class LinkedProperty:
         conditions: input of its observer -> expression.
         ports: the ports whose variables it reads; their events are its letters.
         path: the path of its file.
+        sentence: what it requires.
     """
 
     name: str
@@ -77,6 +79,7 @@ class LinkedProperty:
     ports: tuple[LinkedPort, ...]
     written: WrittenProperty
     path: str
+    sentence: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -215,7 +218,16 @@ class _Linker:
         names = {each.name for c in conditions.values() for each in walk(c.tree) if isinstance(each, Name)}
         ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
         is_assumption = written.section == ASSUMES
-        return LinkedProperty(written.id.value, is_assumption, property_, conditions, ports, written, self.path)
+        return LinkedProperty(
+            written.id.value,
+            is_assumption,
+            property_,
+            conditions,
+            ports,
+            written,
+            self.path,
+            sentence(self.file, written),
+        )
 
     def _check_condition(self, condition: Expression) -> None:
         if condition.broken:

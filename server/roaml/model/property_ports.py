@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import Kind
-from roaml.model.globals import FIELD_PREFIX, GlobalVariable
+from roaml.model.globals import GlobalVariable
 from roaml.model.property_file import (
     ACCEPTED,
     ACTION,
@@ -32,9 +32,10 @@ from roaml.model.property_file import (
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
+from roaml.scxml.names import FIELD_PREFIX, safe_name
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
 from roaml.text import Span

@@ -29,7 +29,7 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.system_file import Parameters
+from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
 from roaml.suggest import close_names
@@ -48,12 +48,6 @@ Fact: TypeAlias = "tuple[Act, str | None]"
 def sanitise(name: str) -> str:
     """The form of a topic, service or action name in events (docs/spec/plain-scxml.md#interface-names)."""
     return name.removeprefix("/").replace("/", "__")
-
-
-def safe_name(automaton: str) -> str:
-    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
-    `_`."""
-    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
 
 
 @dataclass(frozen=True, slots=True)

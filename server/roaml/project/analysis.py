@@ -19,7 +19,8 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.forest.forest import NEWEST, Forest, TreeSettings
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
@@ -37,6 +38,7 @@ from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION,
 from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.property_file import PropertyFile, build_property_file
 from roaml.model.property_links import LinkedFile, link
 from roaml.model.property_ports import observed_names
@@ -44,15 +46,7 @@ from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_ty
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
-from roaml.model.system_file import (
-    NO_OVERRIDES,
-    ListedFile,
-    Overrides,
-    SystemFile,
-    SystemInput,
-    build_system_file,
-    wanted_kind,
-)
+from roaml.model.system_file import ListedFile, SystemFile, SystemInput, build_system_file, wanted_kind
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration

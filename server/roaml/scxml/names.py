@@ -61,6 +61,10 @@ BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
 """What the nodes of a tree send to each other: the number of the child, and what is sent."""
+STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
+"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+FIELD_PREFIX = "ros_fields__"
+"""Begins the parameters of an event that are fields of its message."""
 
 
 def role_of(event: str) -> EventRole:
@@ -157,3 +161,9 @@ def is_length(variable: str) -> bool:
 
 
 _LENGTH = re.compile(r"\.d[0-9]+_len\Z")
+
+
+def safe_name(automaton: str) -> str:
+    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
+    `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)

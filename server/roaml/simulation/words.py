@@ -7,9 +7,8 @@ from collections.abc import Iterable, Mapping
 
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
-from roaml.model.value_types import STATUSES
 from roaml.scxml.model import Role
-from roaml.scxml.names import CLOCK_ACTION, TREE_EVENT, automaton_role, received_by
+from roaml.scxml.names import CLOCK_ACTION, STATUSES, TREE_EVENT, automaton_role, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
-from roaml.model.system import safe_name
 from roaml.scxml.model import Role
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
@@ -14,6 +13,7 @@ from roaml.scxml.names import (
     BLACKBOARD_WRITE_PREFIX,
     TIMER_PREFIX,
     is_timer,
+    safe_name,
 )
 
 _FORMS = (

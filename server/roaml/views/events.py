@@ -7,8 +7,7 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.model.globals import FIELD_PREFIX
-from roaml.scxml.names import is_length, received_by, sent_by
+from roaml.scxml.names import FIELD_PREFIX, is_length, received_by, sent_by
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
 
 _VALID = ".valid"

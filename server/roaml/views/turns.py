@@ -14,9 +14,7 @@ from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.system import builtin_plugins
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import NODE_AUTOMATON, TREE_EVENT, is_generated, is_length, received_by, sent_by
+from roaml.scxml.names import NODE_AUTOMATON, STATUSES, TREE_EVENT, is_generated, is_length, received_by, sent_by
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
@@ -212,8 +210,14 @@ class _Reader:
 def is_inner(automaton: Automaton) -> bool:
     """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
     node = NODE_AUTOMATON.fullmatch(automaton.name)
-    comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
+    comes_along = _is_builtin(node[2]) if node else is_generated(automaton.name)
     return comes_along and any(_said(sent_by(edge.action or "")) in ("tick", "halt") for edge in automaton.edges)
+
+
+def _is_builtin(plugin: str) -> bool:
+    from roaml.model.system import builtin_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
+
+    return plugin in builtin_plugins()
 
 
 def _said(event: str) -> str:

@@ -21,8 +21,9 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
-from roaml.model.value_types import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
+from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
 from roaml.roles import SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
 

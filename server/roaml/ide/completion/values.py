@@ -20,8 +20,8 @@ from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import type_of
-from roaml.model.value_types import STATUSES
 from roaml.roles import SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 _EXPRESSIONS = ("expression", "location")

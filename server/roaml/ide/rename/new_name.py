@@ -21,11 +21,10 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.system import sanitise
-from roaml.model.value_types import STATUSES
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
-from roaml.scxml.names import is_synchronising
+from roaml.scxml.names import STATUSES, is_synchronising
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)

@@ -57,8 +57,9 @@ from roaml.model.machine import (
     statements,
 )
 from roaml.model.syntax import Expression
-from roaml.model.value_types import STATUSES, find_handle
+from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 MOST_CONFIGURATIONS = 4000
