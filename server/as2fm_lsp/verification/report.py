@@ -171,6 +171,8 @@ def as_json(
 def row(result: Result) -> dict[str, Any]:
     """A result as a value for JSON."""
     values: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+    if result.comment:
+        values["comment"] = result.comment
     if result.refusal is not None:
         values["error"] = _refusal_row(result.refusal)
     if result.answer is not None:
@@ -252,7 +254,8 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Loo
 
 
 def _case(result: Result, title: str, text: str) -> Case:
-    properties = [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
+    properties = [("requirement", result.comment)] if result.comment else []
+    properties += [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
     if about := warning(result):
         properties.append(("warning", about))
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))

@@ -339,6 +339,7 @@ class _ObserverWriter:
         return Property(
             self.property.name,
             Filter(FilterFunction.VALUES, probability, states, origin=self.origin),
+            comment=self.property.comment or None,
             origin=self.origin,
         )
 
