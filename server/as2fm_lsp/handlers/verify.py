@@ -30,6 +30,7 @@ from as2fm_lsp.verification.report import one_as_text, row
 from as2fm_lsp.verification.settings import VerificationSettings, verification_settings
 from roaml import api
 from roaml.diagnostics import Diagnostic
+from roaml.ide.describe import markdown
 from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
@@ -122,7 +123,7 @@ def register(context: Context) -> None:
         analysis = session.moment().snapshot(path).analysis
         return {
             "property": known.result.name,
-            "heading": why.heading,
+            "heading": " ".join(filter(None, (markdown.plain(known.result.comment), why.heading))),
             "verdict": why.verdict,
             "trace": why.trace,
             "expected": missed(known.result),

@@ -147,12 +147,18 @@ def _number(value: float) -> str:
 
 
 def as_json(
-    results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
+    results: Sequence[Result],
+    errors: Sequence[dict[str, Any]] = (),
+    stuck: dict[str, Any] | None = None,
+    tree: dict[str, Any] | None = None,
 ) -> str:
-    """For programs; `stuck` is the result of the check for stuck systems."""
+    """For programs; `stuck` is the result of the check for stuck systems, `tree` what was measured of a tree without a
+    system."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
+    if tree is not None:
+        value["tree"] = tree
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
@@ -161,6 +167,8 @@ def as_json(
 def row(result: Result) -> dict[str, Any]:
     """A result as a value for JSON."""
     values: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
+    if result.comment:
+        values["comment"] = result.comment
     if result.refusal is not None:
         values["error"] = _refusal_row(result.refusal)
     if result.answer is not None:
@@ -244,7 +252,8 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Loo
 
 
 def _case(result: Result, title: str, text: str) -> Case:
-    properties = [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
+    properties = [("requirement", result.comment)] if result.comment else []
+    properties += [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
     if about := warning(result):
         properties.append(("warning", about))
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))

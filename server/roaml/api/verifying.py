@@ -90,7 +90,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> ModelCheck
             which every translated system can be asked.
 
     Raises:
-        PropertyError: the model has no property of a name.
+        PropertyError: a property does not exist.
         FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
             are in `refused`.
     """
@@ -145,7 +145,7 @@ def verify(
             give other values, and verdicts say so.
 
     Raises:
-        PropertyError: there is no property of a name.
+        PropertyError: a property does not exist.
         FaultError: the model cannot be run. A property that cannot be answered has a result with a `refusal`.
         WorkersLostError: processes die again and again.
         ValueError: an option or expectation makes no sense.

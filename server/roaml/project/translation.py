@@ -47,7 +47,7 @@ def _observed(property_: LinkedProperty) -> ObservedProperty:
     ports = tuple(ObservedPort(p.events, tuple(map(_observed_variable, p.variables))) for p in property_.ports)
     conditions = {name: condition.tree for name, condition in property_.conditions.items()}
     origin = Location(property_.path, property_.written.element.name_span)
-    return ObservedProperty(property_.name, property_.property, conditions, ports, origin)
+    return ObservedProperty(property_.name, property_.property, conditions, ports, origin, property_.sentence)
 
 
 def _observed_variable(variable: LinkedVariable) -> ObservedVariable:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from roaml.scxml.model import EventRole, ScxmlEvent
+from roaml.scxml.model import EventRole, Role, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
 
@@ -35,6 +35,19 @@ WAITING, RECEIVED = "waiting", "received"
 """The buffer of an event: it has the name of its event, and has one of these locations."""
 
 _GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
+
+
+def automaton_role(automaton: str) -> Role:
+    """What the name of an automaton says about its role."""
+    if automaton == CLOCK:
+        return Role.CLOCK
+    if automaton == BLACKBOARD:
+        return Role.BLACKBOARD
+    if automaton.startswith(TREE_ROOT_PREFIX):
+        return Role.TREE_ROOT
+    is_handler = automaton.startswith((SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX))
+    return Role.HANDLER if is_handler else Role.MACHINE
+
 
 NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
 """The automaton of a tree node: its number and its type."""

@@ -50,9 +50,11 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """Attributes:
-    conditions: what the inputs of its observer are, as expressions over the ids of the variables.
-    assumptions: the properties that are assumed for it.
+    """
+    Attributes:
+        conditions: what the inputs of its observer are, as expressions over the ids of the variables.
+        comment: what the property requires, as a sentence.
+        assumptions: the properties that are assumed for it.
     """
 
     name: str
@@ -60,4 +62,5 @@ class ObservedProperty:
     conditions: Mapping[str, Expr]
     ports: tuple[ObservedPort, ...]
     origin: Location
+    comment: str = ""
     assumptions: tuple[ObservedProperty, ...] = ()

@@ -110,19 +110,20 @@ def _assumptions(properties: Iterable[ObservedProperty]) -> Iterable[ObservedPro
 def _formulas(properties: Iterable[ObservedProperty], paths: Mapping[str, Formula]) -> Iterator[Property]:
     for property_ in properties:
         assumed = [paths[assumption.name] for assumption in property_.assumptions]
-        yield _minimum(property_.name, [paths[property_.name], *assumed], property_.origin)
+        yield _minimum(property_.name, [paths[property_.name], *assumed], property_.origin, property_.comment or None)
         if assumed:
             yield _minimum(assumptions_of(property_.name), assumed, property_.origin)
 
 
-def _minimum(name: str, paths: Sequence[Formula], origin: Origin) -> Property:
+def _minimum(name: str, paths: Sequence[Formula], origin: Origin, comment: str | None = None) -> Property:
     """The minimum probability that all formulas hold."""
     path = paths[0]
     for another in paths[1:]:
         path = BinaryFormula(JaniBinary.AND, path, another)
     probability = Probability(ProbabilityOperator.PMIN, path, origin=origin)
     states = Predicate(StatePredicate.INITIAL)
-    return Property(name, Filter(FilterFunction.VALUES, probability, states, origin=origin), origin=origin)
+    values = Filter(FilterFunction.VALUES, probability, states, origin=origin)
+    return Property(name, values, comment=comment, origin=origin)
 
 
 def _assignments(model: Model) -> Iterator[Assignment]:

@@ -80,7 +80,7 @@ def verifier_of(
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
 
     Raises:
-        PropertyError: there is no property with one of the names, or with that of an expectation.
+        PropertyError: a property, or the property of an expectation, does not exist.
         RangeError: the expectation of a probability has a number that is not between 0 and 1.
         FaultError: the model cannot be run.
     """
@@ -92,7 +92,7 @@ def verifier_of(
         names = [*known, STUCK_PROPERTY]
     for name in expected:
         if name not in (*known, STUCK_PROPERTY):
-            raise PropertyError(f"there is no property {name}, which has an expectation")
+            raise PropertyError(f"there is no property `{name}`, for which a result is expected")
     checker = checker_of(target, names)
     for asked in checker.asked:
         for expectation in expectations:
