@@ -96,6 +96,7 @@ class Outputs:
         due: whether an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline
             is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
+        opened: whether the scope was judged, if `exercised` says more than that.
     """
 
     violated: Register
@@ -103,6 +104,7 @@ class Outputs:
     pending: Expression = FALSE
     due: Expression = FALSE
     exercised: Register | None = None
+    opened: Register | None = None
 
 
 @dataclass(frozen=True, slots=True)
