@@ -64,7 +64,6 @@ if TYPE_CHECKING:
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.refusal import Refusal
     from roaml.verification.results import Exact, Result, SampledResult, Traces
-    from roaml.verification.storm import ExactError
     from roaml.verification.stuck import Look, Stuck
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
@@ -91,7 +90,6 @@ else:
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": ("Exact", "Result", "SampledResult", "Traces"),
-        "roaml.verification.storm": ("ExactError",),
         "roaml.verification.stuck": ("Look", "Stuck"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
@@ -125,7 +123,6 @@ __all__ = [
     "End",
     "EventState",
     "Exact",
-    "ExactError",
     "Expectation",
     "Extreme",
     "FaultError",
