@@ -23,10 +23,9 @@ from roaml.expr.types import BASE_TYPES
 from roaml.jani.writer import write
 from roaml.language import BEHAVIOR_TREE, HL_SCXML
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event
+from roaml.model.parameters import Parameters
 from roaml.model.system import SystemAutomaton
-from roaml.model.system_file import Parameters
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import is_synchronising
+from roaml.scxml.names import STATUSES, is_synchronising
 
 ROOT = Path(__file__).resolve().parents[1]
 SPEC = ROOT / "docs" / "spec"

@@ -7,18 +7,11 @@ Each value that a schema uses is a member here; `tests/language/test_roles.py` c
 
 from __future__ import annotations
 
-import enum
+from roaml.exhaustive import Vocabulary
 
 
-class RoleValue(enum.Enum):
+class RoleValue(Vocabulary):
     """A value of a role, as written in the schemas."""
-
-    # Members are compared by identity. `Enum` hashes the name in Python, which is slow for keys of dictionaries.
-    __hash__ = object.__hash__
-
-    def __lt__(self, other: RoleValue) -> bool:
-        """The order of the values as strings, so that tuples that contain members can be sorted."""
-        return str(self.value) < str(other.value)
 
 
 class SymbolKind(RoleValue):
@@ -35,6 +28,8 @@ class SymbolKind(RoleValue):
     PARAMETER = "parameter"
     PLUGIN = "plugin"
     PORT = "port"
+    PORT_VARIABLE = "port-variable"
+    PROPERTY = "property"
     PUBLISHER = "publisher"
     SERVICE = "service"
     SERVICE_CLIENT = "service-client"

@@ -32,6 +32,12 @@ def did_you_mean(names: tuple[str, ...], most: int = 1) -> str:
     return f"; did you mean {' or '.join(f'`{name}`' for name in names[:most])}?" if names else ""
 
 
+def listing(names: Iterable[str]) -> str:
+    """`a`, `b` and `c`."""
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"
+
+
 def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[str, ...]:
     """The candidates that are similar to `name`, the most similar first.
 

@@ -149,7 +149,7 @@ import json, resource, sys, time
 from as2fm_lsp.__main__ import spare_the_collector
 from roaml import api
 from roaml.jani.writer import write
-from roaml.model.system_file import Overrides
+from roaml.model.parameters import Overrides
 spare_the_collector()
 capacity = int(sys.argv[2])
 system = api.load(sys.argv[1], overrides=Overrides(max_array_size=capacity) if capacity else Overrides())

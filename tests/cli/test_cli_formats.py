@@ -17,7 +17,8 @@ import pytest
 from command import Command
 
 import clock
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.formats import CheckReport
+from as2fm_lsp.cli.formats import render as render_report
 from as2fm_lsp.cli.formats.report import entry
 from roaml import __version__
 from roaml.diagnostics import Diagnostic, RelatedPlace, Severity
@@ -47,7 +48,7 @@ def render(name: str, found: list[Diagnostic] | None = None, limit: Severity = S
     entries = [
         entry(d, lambda path: SourceFile(path, TEXT), lambda path: path.removeprefix(f"{FOLDER}/")) for d in found
     ]
-    return FORMATS[name](CheckReport(entries, 2, limit))
+    return render_report(CheckReport(entries, 2, limit), name)
 
 
 # ------------------------------------------------------------------------ JSON

@@ -48,6 +48,39 @@ def test_until_a_message_is_sent(command: Command) -> None:
     assert out.splitlines()[-2].strip() == "sends topic_arm__command_msg(data: 1)"
 
 
+def test_until_a_property_is_decided(command: Command) -> None:
+    """The property is that one, not the first one of the system."""
+    out = command("simulate", str(ROBOT), "--until", "never_placed_empty", "--trace", "0").out
+    assert out.startswith("never_placed_empty ")
+    done = command("simulate", str(ROBOT), "--until", "never_placed_empty", "--property", "block_placed")
+    assert done.status == 2
+    assert "--until never_placed_empty and --property block_placed name two properties" in done.err
+
+
+FAULTY = """{"jani-version": 1, "name": "faulty", "type": "mdp", "features": ["arrays"], "actions": [], "variables": [
+{"name": "n", "type": {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 2}, "initial-value": 0}],
+"properties": [{"name": "never", "expression": {"op": "filter", "fun": "values", "states": {"op": "initial"},
+"values": {"op": "Pmax", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 5}}}}}],
+"automata": [{"name": "A", "locations": [{"name": "l"}], "initial-locations": ["l"], "edges": [{"location": "l",
+"destinations": [{"location": "l", "assignments": [{"ref": "n", "value": {"op": "+", "left": "n", "right": 1}}]}]}]}],
+"system": {"elements": [{"automaton": "A"}], "syncs": []}}"""
+
+
+def test_the_run_up_to_a_fault_is_printed(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "faulty.jani").write_text(FAULTY, encoding="utf-8")
+    done = command("simulate", str(tmp_path / "faulty.jani"))
+    assert done.status == 1
+    assert "the run fails after step 2: " in done.err
+    assert done.out.splitlines()[-1].endswith(", 2 steps")
+
+
+def test_the_terminal_survives_a_fault(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "faulty.jani").write_text(FAULTY, encoding="utf-8")
+    out = command("simulate", str(tmp_path / "faulty.jani"), "--interactive", stdin=b"\n\n\nb\ns\nq\n").out
+    assert out.count("the next step fails: ") == 1
+    assert "  n: 1\n" in out[out.index("the next step fails: ") :]
+
+
 def test_files(command: Command, tmp_path: Path) -> None:
     names = {kind: str(tmp_path / f"run.{kind}") for kind in ("csv", "json", "mermaid", "html")}
     options = [text for kind, name in names.items() for text in (f"--{kind}", name)]
@@ -56,14 +89,14 @@ def test_files(command: Command, tmp_path: Path) -> None:
     rows = list(csv.DictReader(Path(names["csv"]).read_text(encoding="utf-8").splitlines()))
     assert len(rows) == 483
     assert rows[0]["Arm.state"] == "still"
-    assert rows[-1]["time"] == "10"
+    assert rows[-1]["time"] == "10.0"
     value = json.loads(Path(names["json"]).read_text(encoding="utf-8"))
     assert (value["verdict"], len(value["steps"])) == ("passed", 482)
-    assert value["steps"][-1]["changes"] == {
-        "Arm.holding": False,
-        "topic_block__placed_msg.valid": True,
-        "topic_block__placed_msg__ros_fields__data": True,
-    }
+    assert value["steps"][-1]["changes"] == [
+        {"variable": "topic_block__placed_msg.valid", "value": True},
+        {"variable": "topic_block__placed_msg__ros_fields__data", "value": True},
+        {"variable": "holding", "automaton": "Arm", "value": False},
+    ]
     assert Path(names["mermaid"]).read_text(encoding="utf-8").startswith("sequenceDiagram\n")
     assert "<table>" in Path(names["html"]).read_text(encoding="utf-8")
 

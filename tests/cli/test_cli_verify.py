@@ -136,6 +136,15 @@ def late(command: Command, folder: Path) -> None:
     (folder / "main.xml").write_text(main.replace('value="60"', 'value="7"'))
 
 
+def test_properties_share_traces_with_the_same_results(command: Command, robot: Path) -> None:
+    shared, separate = (
+        rows(command("verify", "main.xml", "--format", "json", "--epsilon", 0.05, *more).out)
+        for more in ((), ("--separate",))
+    )
+    assert [{**row, "seconds": 0} for row in shared.values()] == [{**row, "seconds": 0} for row in separate.values()]
+    assert len(shared) == 2
+
+
 def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     late(command, robot)
     done = command("verify", "main.xml", "--property", "all_delivered", "--explain")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from collections.abc import Iterator
 
 from fuzz.limits import restart
@@ -36,7 +37,8 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
     restart()
     for finding in check_model(model):
         yield f"unsound: {finding.message}"
-    observers = tuple(f"{property_.name}__" for property_ in model.properties)
+    # The variables of an observer begin with the name of its property, in characters that names of variables may have.
+    observers = tuple(re.sub(r"[^A-Za-z0-9_.-]", "_", property_.name) for property_ in model.properties)
     translated, known = {variable.name for variable in model.variables}, set(system.analysis.globals(path))
     table = (known - translated) | {name for name in translated - known if not name.startswith(observers)}
     if table:

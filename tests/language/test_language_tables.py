@@ -173,19 +173,12 @@ def test_roles_are_those_that_tools_know() -> None:
     assert all(attribute.value_type for attribute in attributes if attribute.value in ("expression", "ros-type"))
 
 
-SENT = ("ros_topic", "ros_service", "ros_action", "scxml_event_send")
 PORT_MODEL = ("type", "default", "description")
 PLAIN = {
     "ascxml.xsd": {"log@expr", "log@label"},
     "roaml.xsd": set(),
     "structs.xsd": set(),
-    "properties.xsd": {
-        *(f"{name}@id" for name in ("property", "state_var", "event_var", "goal_id", "result_code", "accepted")),
-        *(f"{port}@{end}" for port in SENT for end in ("origin", "target")),
-        *("ros_topic@topic_name", "ros_service@service_name", "ros_action@action_name", "bt_node@node"),
-        *("scxml_event_send@event", "state_var@field", "state_var@param", "property@expr"),
-        *("clock@topic_name", "clock@type"),
-    },
+    "properties.xsd": {"property@expr", "clock@topic_name", "clock@type"},
     "behaviortree.xsd": {
         *("root@BTCPP_format", "include@ros_pkg"),
         *(f"{port}@{name}" for port in ("input_port", "output_port", "inout_port") for name in PORT_MODEL),

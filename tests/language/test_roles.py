@@ -8,7 +8,7 @@ from lxml import etree
 from roaml.language.resources import schema_path
 from roaml.roles import ELSEWHERE, ProtocolPart, RoleValue, SymbolKind
 
-SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd")
+SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd", "properties.xsd")
 ROLES = "{urn:roaml:roles}"
 
 

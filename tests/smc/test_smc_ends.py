@@ -186,10 +186,11 @@ def test_a_batch_returns_the_end_of_each_trace(tmp_path: Path) -> None:
 
     checker = of_system(tmp_path, hospital())
     outcome = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 10_000))
-    assert len(outcome.ends) == len(outcome.verdicts) == 10
-    assert {(verdict, reason) for verdict, reason in zip(outcome.verdicts, outcome.ends, strict=True)} == {
+    (rows,) = outcome.questions
+    assert len(rows.ends) == len(rows.verdicts) == 10
+    assert {(verdict, reason) for verdict, reason in zip(rows.verdicts, rows.ends, strict=True)} == {
         (0, End.STUCK),
         (1, End.DECIDED),
     }
     cut = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 5))
-    assert set(cut.ends) == {End.CUT}
+    assert set(cut.questions[0].ends) == {End.CUT}

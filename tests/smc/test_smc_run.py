@@ -251,7 +251,7 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
     with ThreadPoolExecutor(2) as executor, Pool(2, executor) as pool:
         found = pool.outcomes(counted())
         task, outcome = next(found)
-        assert (task.first, len(outcome.verdicts)) == (0, 10)
+        assert (task.first, len(outcome.questions[0].verdicts)) == (0, 10)
         assert taken <= 5
 
 
@@ -259,7 +259,8 @@ def test_a_batch_is_a_function_of_its_task() -> None:
     task = next(tasks())
     first, second = run(task), run(task)
     assert isinstance(first, BatchOutcome)
-    assert (first.verdicts, first.steps, first.rewards) == (second.verdicts, second.steps, second.rewards)
+    (one,), (other,) = first.questions, second.questions
+    assert (one.verdicts, one.steps, one.rewards) == (other.verdicts, other.steps, other.rewards)
 
 
 def test_dask() -> None:

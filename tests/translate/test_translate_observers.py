@@ -14,7 +14,7 @@ from translating import errors, loaded
 from roaml import api
 from roaml.jani.model import Model
 from roaml.smc.run import Options
-from roaml.to_jani.observers import TIME_OVER_ACTION
+from roaml.to_jani.end_of_time import TIME_OVER_ACTION
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
     <datamodel><data id="count" type="int32" expr="0" /></datamodel>
@@ -231,3 +231,94 @@ def test_a_file_with_assumptions_is_refused() -> None:
     assumed = TWINS["existence"][0].format("assumed")
     files["properties.xml"] = f"<properties>{PORTS}<assumes>{assumed}</assumes></properties>"
     assert [error.code for error in errors(files)] == ["property-form"]
+
+
+NOTES = '<ros_topic_publisher name="notes" topic="/notes" type="std_msgs/Empty" />'
+SERVER = f"""<ascxml name="Server" version="1.0" initial="wait">
+    <ros_action_server name="count" action_name="/count" type="example_interfaces/Fibonacci" />
+    {NOTES}
+    <ros_action_thread name="count" n_threads="2" initial="wait">
+        <datamodel />
+        <state id="wait">
+            <ros_action_handle_thread_start name="count" target="wait">
+                <ros_topic_publish name="notes" />
+                <ros_action_succeed name="count" goal_id="0"><field name="sequence" expr="[]" /></ros_action_succeed>
+            </ros_action_handle_thread_start>
+        </state>
+    </ros_action_thread>
+    <state id="wait">
+        <ros_action_handle_goal name="count" target="wait">
+            <ros_action_accept_goal name="count" goal_id="0" />
+            <ros_action_start_thread name="count" thread_id="1" goal_id="0"><field name="order" expr="2" />
+            </ros_action_start_thread>
+        </ros_action_handle_goal>
+    </state>
+</ascxml>"""
+CLIENT = f"""<ascxml name="Client" version="1.0" initial="ask">
+    <ros_action_client name="count" action_name="/count" type="example_interfaces/Fibonacci" />
+    {NOTES}
+    <state id="ask">
+        <onentry><ros_topic_publish name="notes" /></onentry>
+        <transition target="wait">
+            <ros_action_send_goal name="count"><field name="order" expr="2" /></ros_action_send_goal>
+        </transition>
+    </state>
+    <state id="wait">
+        <ros_action_handle_goal_response name="count" accept="wait" reject="wait" />
+        <ros_action_handle_success_result name="count" target="wait" />
+    </state>
+</ascxml>"""
+PROBE = f"""<ascxml name="Look" version="1.0" initial="wait">
+    {NOTES}
+    <state id="wait">
+        <bt_tick target="wait"><ros_topic_publish name="notes" /><bt_return_status status="SUCCESS" /></bt_tick>
+        <bt_halt target="wait"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>"""
+TREE = """<root BTCPP_format="4" main_tree_to_execute="T"><BehaviorTree ID="T">
+    <Sequence><Look name="left_thread_x" /><Look name="right_thread_x" /></Sequence>
+</BehaviorTree></root>"""
+
+
+def observed_senders(origin: str) -> list[str]:
+    """The automata whose notes are observed if the port names this `origin`."""
+    port = f'<ros_topic topic_name="/notes" type="std_msgs/Empty" event="publish" origin="{origin}">'
+    existence = '<property id="noted" pattern="existence"><event>noted</event><scope type="globally" /></property>'
+    model = api.to_jani(
+        loaded(
+            {
+                "main.xml": """<roaml>
+    <parameters><max_time value="1" unit="s" /><bt_tick_rate value="1" /></parameters>
+    <node_models>
+        <input type="node-ascxml" src="server.ascxml" /><input type="node-ascxml" src="client.ascxml" />
+    </node_models>
+    <behavior_tree><input type="bt.cpp-xml" src="tree.xml" /><input type="bt-plugin-ascxml" src="look.ascxml" />
+    </behavior_tree>
+    <properties><input type="xml" src="properties.xml" /></properties>
+</roaml>""",
+                "server.ascxml": SERVER,
+                "client.ascxml": CLIENT,
+                "look.ascxml": PROBE,
+                "tree.xml": TREE,
+                "properties.xml": f'<properties><ports>{port}<event_var id="noted" /></ros_topic></ports>'
+                f"<guarantees>{existence}</guarantees></properties>",
+            }
+        )
+    )
+    sending = [sync for sync in model.system.syncs if sync.result == "topic_notes_msg_on_send"]
+    buffer, observer = "topic_notes_msg", "noted__observer"
+    names = [[model.automata[index].name for index, _ in sync.participants] for sync in sending]
+    return [name for group in names if observer in group for name in group if name not in (buffer, observer)]
+
+
+@pytest.mark.parametrize(
+    ("origin", "automata"),
+    [
+        ("Server", ["count_thread_0", "count_thread_1"]),
+        ("Client", ["Client"]),
+        ("left_thread_x", ["BT_plugin_1001_left_thread_x"]),
+        ("Look", ["BT_plugin_1001_left_thread_x", "BT_plugin_1002_right_thread_x"]),
+    ],
+)
+def test_an_origin_includes_the_threads_of_its_machine_and_no_other_automata(origin: str, automata: list[str]) -> None:
+    assert observed_senders(origin) == automata

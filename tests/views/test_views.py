@@ -10,7 +10,11 @@ import pytest
 from fixture import split_files
 from roaml import api
 from roaml.project.settings import Settings
-from roaml.views import NOTATIONS, Graph, GraphLink, GraphNode, Kind, machine_graph, network_graph, tree_graph
+from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
+from roaml.views.machine import machine_graph
+from roaml.views.network import network_graph
+from roaml.views.notations import NOTATIONS
+from roaml.views.tree import tree_graph
 
 FILES = split_files(
     """\

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.output import print_text
-from roaml.rules import BY_CODE
-from roaml.rules.rule import close_names, did_you_mean
+from roaml.suggest import close_names, did_you_mean
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
@@ -51,4 +50,6 @@ class ArgumentParser(argparse.ArgumentParser):
 
 def unknown_rule(code: str) -> str:
     """The error message for an unknown rule code."""
+    from roaml.rules import BY_CODE  # noqa: PLC0415 - other commands start faster without the rules
+
     return f"there is no rule `{code}`{did_you_mean(close_names(code, BY_CODE))}"

@@ -10,15 +10,15 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TextIO
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, FOUND, USAGE
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
-from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.output import complain, print_text, takes_color
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
@@ -27,10 +27,6 @@ from roaml.rules import BY_CODE
 from roaml.rules.files import internal_error
 
 _CRASH = internal_error.RULE.code
-
-CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
-"""Exit statuses: nothing found; errors found; usage error; internal error."""
-
 
 EXAMPLES = """\
 examples:
@@ -134,16 +130,11 @@ def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
 
 
 def _write(options: argparse.Namespace, report: CheckReport) -> None:
-    text = _statistics(report.entries) if options.statistics else FORMATS[options.format](report)
+    text = _statistics(report.entries) if options.statistics else render(report, options.format)
     if options.output is not None:
         write_file(options.output, text)
     else:
         print_text(text, None if options.format == "text" else "utf-8")
-
-
-def takes_color(stream: TextIO) -> bool:
-    """Whether the output goes to a terminal that supports and wants colors (https://no-color.org)."""
-    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def _statistics(entries: Sequence[Entry]) -> str:

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
-from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.output import complain, print_text
 from roaml.rules import BY_CODE, cited, document
 

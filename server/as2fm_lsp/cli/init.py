@@ -12,7 +12,7 @@ from pathlib import Path
 import as2fm_lsp
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from typing import TextIO
 
 from as2fm_lsp.atomic_write import write_file
-from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
-from roaml.model.system_file import duration
-from roaml.simulation import Choice, Outcome, Session
+from roaml.model.parameters import duration
+from roaml.simulation import Choice, Session
+from roaml.smc.fault import FaultError
 from roaml.verification.target import VerificationTarget
 from roaml.views.values import shown_value
 
@@ -47,40 +48,46 @@ class Terminal:
 
     def _do(self, line: str) -> None:
         command, _, rest = line.partition(" ")
-        rest = rest.strip()
+        if command == "?":
+            print_text(HELP)
+            return
+        if command == "s":
+            print_text("".join(f"  {text}\n" for text in self._state()))
+            return
         before = self._session.position
-        message = ""
-        match command:
-            case "?":
-                print_text(HELP)
-                return
-            case "s":
-                print_text("".join(f"  {text}\n" for text in self._state()))
-                return
-            case "w":
-                message = self._save(rest)
-            case "" if not rest:
-                self._session.step()
-            case "t":
-                self._session.turn()
-            case "k":
-                if not self._session.tick():
-                    message = "the tree was not ticked again"
-            case "e":
-                self._session.until_decided()
-                message = f"{self._session.save().property}: {self._session.verdict}"
-            case "b":
-                self._session.back(int(rest) if rest.isdecimal() else 1)
-            case "g":
-                message = self._go(rest)
-            case "u":
-                message = self._until(rest)
-            case _:
-                message = self._choose(line)
+        try:
+            message = self._move(command, rest.strip(), line)
+        except FaultError as fault:
+            message = f"the next step fails: {fault_text(self._target, fault)}"
         self._show_steps(before)
         if message:
             print_text(f"  {message}\n")
         self._show_choices()
+
+    def _move(self, command: str, rest: str, line: str) -> str:
+        """Execute a command that moves or saves the session; what there is to say about it."""
+        session = self._session
+        match command:
+            case "w":
+                return self._save(rest)
+            case "":
+                session.step()
+            case "t":
+                session.turn()
+            case "k":
+                return "" if session.tick() else "the tree was not ticked again"
+            case "e":
+                session.until_decided()
+                return f"{session.save().property}: {session.verdict}"
+            case "b":
+                session.back(int(rest) if rest.isdecimal() else 1)
+            case "g":
+                return self._go(rest)
+            case "u":
+                return self._until(rest)
+            case _:
+                return self._choose(line)
+        return ""
 
     def _save(self, path: str) -> str:
         if not path:
@@ -147,12 +154,10 @@ class Terminal:
             print_text("".join(f"{line}\n" for line in self._choice(choice)))
 
     def _choice(self, choice: Choice) -> Iterator[str]:
-        place = self._target.place(choice.origin)
-        where = "" if place is None else f"  {shown_path(place.path)}:{place.line}"
-        yield f"  {choice.number:>2}  {choice.text}{where}"
+        yield f"  {choice.number:>2}  {choice.text}  {line_of(self._target, choice.origin)}".rstrip()
         if len(choice.outcomes) > 1:
             for letter, outcome in zip(_LETTERS, choice.outcomes, strict=False):
-                yield f"      {letter}  by chance, {outcome.probability:g}: {_effect(outcome)}"
+                yield f"      {letter}  by chance, {outcome.probability:g}: {outcome.text}"
 
     def _state(self) -> Iterator[str]:
         state = self._session.state()
@@ -168,10 +173,6 @@ class Terminal:
             yield f"{event.text}{f' ({values})' if values else ''}, step {event.step}{waiting}"
         for name, value in {**state.blackboard, **state.shared}.items():
             yield f"{name}: {shown_value(value)}"
-
-
-def _effect(outcome: Outcome) -> str:
-    return outcome.text
 
 
 MAX_STEPS_SHOWN = 40

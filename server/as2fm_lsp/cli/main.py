@@ -15,11 +15,11 @@ import traceback
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FAILURE, USAGE
+from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, USAGE
 from as2fm_lsp.cli.options import check_options, serve_options
 from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
 from roaml import __version__
-from roaml.rules.rule import close_names, did_you_mean, listing
+from roaml.suggest import close_names, did_you_mean, listing
 
 COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
@@ -30,6 +30,7 @@ COMMANDS = {
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "estimate the probabilities of properties",
     "simulate": "run a system step by step",
+    "debug": "serve a debugger: the debug adapter",
     "init": "write a small working system",
 }
 """What each command does. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is asked for."""

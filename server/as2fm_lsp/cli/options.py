@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 
+from as2fm_lsp.cli.formats import FORMATS
 from roaml.project.settings import SEVERITIES
 
 
@@ -16,8 +17,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
         help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
     )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
-    formats = ("text", "json", "github", "gitlab", "sarif", "junit")
-    check.add_argument("--format", default="text", choices=formats, help="format of the diagnostics")
+    check.add_argument("--format", default="text", choices=FORMATS, help="format of the diagnostics")
     check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"

@@ -56,3 +56,8 @@ def _open(stream: TextIO) -> Iterator[None]:
         if stream is not sys.stderr:
             error.filename = STANDARD_OUTPUT
             raise
+
+
+def takes_color(stream: TextIO) -> bool:
+    """Whether the output goes to a terminal that supports and wants colors (https://no-color.org)."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

@@ -42,6 +42,12 @@ class ProgressBar:
         self._began, self._first = time.monotonic(), tally.traces
         self._search = None
 
+    def together(self, question: Question, tally: Tally, number: int) -> None:
+        """Update after a batch for one of several properties that share traces."""
+        if not tally.is_finished:
+            self._question = replace(question, name=f"{question.name} ({number} properties together)")
+            self.watch(tally)
+
     def watch(self, tally: Tally) -> None:
         """Update after a batch."""
         self._tally = tally

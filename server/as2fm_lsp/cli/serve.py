@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from as2fm_lsp import sockets
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, USAGE
+from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.options import serve_options
 from as2fm_lsp.server import create
 

@@ -4,31 +4,33 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
-import json
-import os
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
-from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats import render
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.model_arguments import (
+    UsageError,
+    add_model_arguments,
+    check_model_arguments,
+    error_report,
+    fault_text,
+    line_of,
+    read_target,
+    settings_of,
+)
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.times import time_of
+from as2fm_lsp.verification.run_files import csv_lines, json_text
 from roaml import api
-from roaml.model.system_file import Overrides
-from roaml.project.configuration import find_settings
-from roaml.project.settings import ament_prefixes
-from roaml.simulation import RunError, SavedSession, Session, SystemState
+from roaml.jani.node import Origin
+from roaml.simulation import RunError, SavedSession, Session
 from roaml.smc.fault import FaultError
-from roaml.text import Location
 from roaml.verification.target import VerificationTarget
 
 EXAMPLES = """\
@@ -47,10 +49,6 @@ exit status: 0 success; 1 the model has errors, or the run fails; 2 usage error;
 """
 
 
-class UsageError(ValueError):
-    """Invalid arguments; the message contains the reason."""
-
-
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -66,61 +64,59 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    settings, problems = find_settings(os.path.abspath(options.main))
-    if problems:
-        raise UsageError(problems[0])
-    if options.constant and not options.main.endswith(".jani"):
-        raise UsageError("--constant needs a JANI model; a system has no constants")
-    if options.max_time is not None and options.main.endswith(".jani"):
-        raise UsageError("--max-time needs a system; a JANI model has no such parameter")
-    settings = replace(settings, ament_prefixes=ament_prefixes())
-    overrides = Overrides(options.max_time, None)
+    check_model_arguments(options)
+    settings = settings_of(options.main)
+    status = CLEAN
     try:
-        target = api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
-        session = _session(options, target)
-        if options.interactive:
-            from as2fm_lsp.cli.interactive import Terminal  # noqa: PLC0415
-
-            Terminal(session, target).run(sys.stdin)
-        else:
-            _advance(options, session, target)
-    except api.ModelError as error:
-        result = error.result
-        entries = [entry(diagnostic, result.source, shown_path) for diagnostic in result.diagnostics]
-        report = CheckReport(entries, len(result.files), color=takes_color(sys.stderr))
-        print_text(FORMATS["text"](report), stream=sys.stderr)
-        return FOUND
-    except api.JaniError as error:
-        complain(str(error))
+        target = read_target(options, settings)
+        session = api.session(target, _property(options, target), options.seed, options.trace, _saved(options))
+    except (api.ModelError, api.JaniError) as error:
+        print_text(render(error_report(error), "text"), stream=sys.stderr)
         return FOUND
     except FaultError as fault:
-        place = target.place(fault.origin)
-        where = "" if place is None else f"{shown_path(place.path)}:{place.line}: "
-        complain(f"{where}{fault.message}")
+        complain(fault_text(target, fault))
         return FOUND
-    _write(options, session, target)
-    return CLEAN
+    if options.interactive:
+        from as2fm_lsp.cli.interactive import Terminal  # noqa: PLC0415
 
-
-def _session(options: argparse.Namespace, target: VerificationTarget) -> Session:
-    saved = None
-    if options.script is not None:
+        Terminal(session, target).run(sys.stdin)
+    else:
         try:
-            saved = SavedSession.from_json(Path(options.script).read_text(encoding="utf-8"))
-        except (ValueError, UnicodeDecodeError) as error:
-            raise UsageError(f"{options.script}: {error}") from None
-    name = saved.property if saved is not None else options.property
-    return api.session(target, name, options.seed, options.trace, saved)
+            _advance(options, session, target)
+        except FaultError as fault:
+            complain(f"the run fails after step {session.position}: {fault_text(target, fault)}")
+            status = FOUND
+    _write(options, session, target)
+    return status
+
+
+def _saved(options: argparse.Namespace) -> SavedSession | None:
+    if options.script is None:
+        return None
+    try:
+        return SavedSession.from_json(Path(options.script).read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise UsageError(f"{options.script}: {error}") from None
+
+
+def _property(options: argparse.Namespace, target: VerificationTarget) -> str | None:
+    """The property that is evaluated on the run: the one until which it is to last, if any."""
+    names = {property_.name for property_ in target.model.properties}
+    if options.until not in names:
+        return options.property  # type: ignore[no-any-return]
+    if options.property not in (None, options.until):
+        raise UsageError(f"--until {options.until} and --property {options.property} name two properties; name one")
+    if options.script is not None:
+        raise UsageError(f"--until {options.until}: with --script, the property is the one of the saved run")
+    return str(options.until)
 
 
 def _advance(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
     """Take steps up to the end that the options set."""
-    if options.script is not None and options.until is None and options.for_ is None:
-        return
-    properties = {property_.name for property_ in target.model.properties}
-    if options.until is not None and options.until not in properties:
+    watched = session.save().property
+    if options.until is not None and options.until != watched:
         if not session.has_event(options.until):
-            known = ", ".join(sorted(properties)) or "none"
+            known = ", ".join(sorted(property_.name for property_ in target.model.properties)) or "none"
             raise UsageError(
                 f"--until {options.until}: there is neither a property nor an event of this name; properties: {known}"
             )
@@ -129,16 +125,15 @@ def _advance(options: argparse.Namespace, session: Session, target: Verification
         if target.clock is None:
             raise UsageError("--for needs a model with a clock; use --max-steps instead")
         session.until_time(options.for_ / 1e9, options.max_steps)
-    else:
+    elif options.script is None:
         session.until_decided(options.max_steps)
 
 
 def _write(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
     from roaml.views.story import as_html, as_mermaid, as_text  # noqa: PLC0415
 
-    def place_of(origin: Location) -> str:
-        place = target.place(origin)
-        return "" if place is None else f"{shown_path(place.path)}:{place.line}"
+    def place_of(origin: Origin) -> str:
+        return line_of(target, origin)
 
     story = session.story()
     if options.save is not None:
@@ -148,11 +143,10 @@ def _write(options: argparse.Namespace, session: Session, target: VerificationTa
     if options.mermaid is not None:
         write_file(options.mermaid, as_mermaid(story, place_of))
     if options.csv is not None:
-        write_file(options.csv, _csv(session))
+        write_file(options.csv, csv_lines(session))
     if options.json is not None:
-        write_file(options.json, json.dumps(_as_json(session, target), indent=2) + "\n")
-    files = (options.html, options.mermaid, options.csv, options.json)
-    if not options.interactive and not any(files):
+        write_file(options.json, json_text(session, target))
+    if not options.interactive and not any((options.html, options.mermaid, options.csv, options.json)):
         print_text(as_text(story, place_of) + _summary(session))
         flush()
 
@@ -169,63 +163,6 @@ def _summary(session: Session) -> str:
     if session.is_by_hand:
         parts.append("some steps were chosen by hand")
     return f"  {', '.join(parts)}\n"
-
-
-def _csv(session: Session) -> str:
-    """CSV with a row for each step: its number, the time, the action, and all variables after it."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    for position in range(session.position + 1):
-        session.jump(position)
-        values = _values(session.state())
-        if position == 0:
-            writer.writerow(["step", "time", "action", *values])
-        time = session.state().time
-        action = session.steps[position - 1].action or "" if position else ""
-        writer.writerow([position, "" if time is None else f"{time:g}", action, *values.values()])
-    return text.getvalue()
-
-
-def _values(state: SystemState) -> dict[str, Any]:
-    """The columns of a state: the variables and states of machines, and the statuses of the nodes of the tree."""
-    values: dict[str, Any] = {}
-    for machine in state.machines:
-        values |= {f"{machine.name}.{name}": value for name, value in machine.variables.items()}
-        values[f"{machine.name}.state"] = machine.state
-    values |= {f"bt_{node.number}": node.status.value for node in state.nodes}
-    values |= {**state.blackboard, **state.shared}
-    return {name: str(value).lower() if isinstance(value, bool) else value for name, value in values.items()}
-
-
-def _as_json(session: Session, target: VerificationTarget) -> dict[str, Any]:
-    rows = []
-    for number, step in enumerate(session.steps[: session.position]):
-        place = target.place(step.parts[0].edge.origin) if step.parts else None
-        rows.append(
-            {
-                "step": number + 1,
-                "action": step.action,
-                "automata": [part.automaton for part in step.parts],
-                "changes": {_name(session, change.variable): change.after for change in step.changes},
-                "file": None if place is None else shown_path(place.path),
-                "line": None if place is None else place.line,
-            }
-        )
-    saved = session.save()
-    end = session.end
-    return {
-        "model": shown_path(target.path),
-        "property": saved.property,
-        "verdict": session.verdict,
-        "end": None if end is None else end.key,
-        "seed": saved.seed,
-        "trace": saved.trace,
-        "steps": rows,
-    }
-
-
-def _name(session: Session, variable: Any) -> str:
-    return variable.name if variable.instance < 0 else f"{session.automaton(variable.instance)}.{variable.name}"
 
 
 def parser() -> ArgumentParser:
@@ -254,8 +191,5 @@ def parser() -> ArgumentParser:
     add("--json", metavar="FILE", help="write the steps as JSON")
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
     add("--html", metavar="FILE", help="write the run as a page")
-    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
-        "MODEL.jani declares without one; may be repeated")  # fmt: skip
-    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+    add_model_arguments(result)
     return result

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 
-from roaml.model.system_file import duration
+from roaml.model.parameters import duration
 
 
 def time_of(text: str) -> int:

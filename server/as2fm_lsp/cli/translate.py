@@ -12,10 +12,10 @@ from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
-from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
@@ -23,13 +23,16 @@ from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
-from roaml.model.system_file import Overrides
+from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.scxml.model import Network
 from roaml.scxml.writer import write as scxml_texts
 from roaml.text import SourceFile
-from roaml.views import NOTATIONS, Notation, machine_graph, network_graph, tree_graph
+from roaml.views.machine import machine_graph
+from roaml.views.network import network_graph
+from roaml.views.notations import NOTATIONS, Notation
+from roaml.views.tree import tree_graph
 
 STANDARD_OUTPUT = "-"
 
@@ -198,9 +201,9 @@ def _reported(
 def _report(options: argparse.Namespace, report: CheckReport) -> None:
     """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
     if options.format == "json":
-        print_text(FORMATS["json"](report), "utf-8")
+        print_text(render(report, "json"), "utf-8")
     elif report.entries:
-        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print_text(render(report, "text"), stream=sys.stderr)
 
 
 def _not_written(options: argparse.Namespace, output: str) -> int:

@@ -17,14 +17,22 @@ from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN, FOUND, USAGE, takes_color
-from as2fm_lsp.cli.formats import FORMATS, CheckReport
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.model_arguments import (
+    UsageError,
+    add_model_arguments,
+    check_model_arguments,
+    error_report,
+    read_target,
+    report_of,
+    settings_of,
+)
 from as2fm_lsp.cli.numbers import natural, positive, size
-from as2fm_lsp.cli.output import complain, flush, print_text
+from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
-from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_json, as_junit, as_text
@@ -32,9 +40,6 @@ from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.explicit.space import MAX_STATES, Limits
-from roaml.model.system_file import NO_OVERRIDES, Overrides
-from roaml.project.configuration import find_settings
-from roaml.project.settings import ament_prefixes
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
@@ -76,10 +81,6 @@ INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
 
 
-class UsageError(ValueError):
-    """Wrong arguments; the message contains the reason."""
-
-
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -97,29 +98,18 @@ def run(arguments: Sequence[str]) -> int:
 def _run(options: argparse.Namespace) -> int:
     expectations = _expectations(options.expect)
     limits = _limits(options)
-    settings_found, problems = find_settings(os.path.abspath(options.main))
-    if problems:
-        raise UsageError(problems[0])
-    settings = replace(settings_found, ament_prefixes=ament_prefixes())
-    overrides = Overrides(options.max_time, None)
-    if options.main.endswith(".jani"):
-        if overrides != NO_OVERRIDES:
-            raise UsageError("--max-time needs a system; a JANI model has no such parameter")
-    elif options.constant:
-        raise UsageError("--constant needs a JANI model; a system has no constants")
+    check_model_arguments(options)
+    settings = settings_of(options.main)
     only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
     names = options.property or None
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            target = api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
+            target = read_target(options, settings)
             status.stage("compiling")
             verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
-    except api.ModelError as error:
-        return _errors(options, error.result.diagnostics, error.result.source, error.result.files)
-    except api.JaniError as error:
-        source = error.source
-        return _errors(options, error.diagnostics, lambda _: source, (source.path,))
+    except (api.ModelError, api.JaniError) as error:
+        return _errors(options, error_report(error))
     except FaultError as fault:
         return _fault(options, target, fault)
     if not verifier.names:
@@ -142,19 +132,17 @@ class _Verification:
 
     def run(self) -> int:
         checker = self.verifier.checker
-        interrupted = False
         with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar:
+            with Pool(workers or self.options.jobs, executor) as pool:
+                shared = self._answer_shared(pool, bar)
+            interrupted = any(result.is_interrupted for result in shared.values())
             for name in self.verifier.names:
-                try:
+                if name in shared:
+                    self.results.append(shared[name])
+                elif not interrupted:
                     with Pool(workers or self.options.jobs, executor) as pool:
-                        result = self._answer(self.verifier.question(name), pool, bar)
-                except FaultError as fault:
-                    self.faults.append(fault)
-                    result = self._refused(name, fault)
-                self.results.append(result)
-                if result.is_interrupted:
-                    interrupted = True
-                    break
+                        self.results.append(self._answer_alone(name, pool, bar))
+                    interrupted = self.results[-1].is_interrupted
             if not interrupted and not self.options.exhaustive and stuck.can_be_stuck(checker):
                 asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
                 self.look = self._look(None if asks_stuck or self.faults else bar)
@@ -166,9 +154,50 @@ class _Verification:
             self._tell()
         return status
 
-    def _refused(self, name: str, fault: FaultError) -> Result:
-        """The result of a property that cannot be decided, with a readable path."""
-        result = self.verifier.refused(name, fault)
+    def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
+        """The results of the properties that share traces; none if there are fewer than two."""
+        options, verifier = self.options, self.verifier
+        if options.separate or options.exhaustive or options.scheduler == "lss":
+            return {}
+        asked = verifier.sharing()
+        if not asked:
+            return {}
+        payloads = [verifier.checker.payload(each) for each in asked] if self.state is not None else []
+        tallies = [Tally() for _ in asked]
+        if self.state is not None:
+            tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
+        by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
+
+        def watch(each: CompiledProperty, so_far: Tally) -> None:
+            bar.together(each.question, so_far, len(asked))
+            if self.state is not None:
+                self.state.keep(each.question.name, by_name[each.question.name], so_far)
+
+        began = time.monotonic()
+        bar.begin(asked[0].question, self.limits, tallies[0])
+        try:
+            results = verifier.answer_together(asked, pool, tallies, watch, bar.pulse)
+        except NoThresholdError as error:
+            raise UsageError(f"{error}; use --expect") from None
+        except KeyboardInterrupt:
+            seconds = time.monotonic() - began
+            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
+        if self.state is not None:
+            for each, tally in zip(asked, tallies, strict=True):
+                self.state.keep(each.question.name, by_name[each.question.name], tally, now=True)
+        self.faults += [result.fault for result in results if result.fault is not None]
+        return {result.name: self._with_shown_path(result) for result in results}
+
+    def _answer_alone(self, name: str, pool: Pool, bar: ProgressBar) -> Result:
+        """The result of a property by traces of its own; a refusal if it cannot be decided."""
+        try:
+            return self._answer(self.verifier.question(name), pool, bar)
+        except FaultError as fault:
+            self.faults.append(fault)
+            return self._with_shown_path(self.verifier.refused(name, fault))
+
+    def _with_shown_path(self, result: Result) -> Result:
+        """A result whose refusal has a readable path."""
         why = result.refusal
         if why is None or why.place is None:
             return result
@@ -291,7 +320,7 @@ class _Verification:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
-                print_text(FORMATS["text"](report), stream=sys.stderr)
+                print_text(render(report, "text"), stream=sys.stderr)
 
     def _tell(self) -> None:
         """Write traces and stories."""
@@ -423,12 +452,11 @@ def parser() -> ArgumentParser:
     add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states, undecided")
     add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
         "so much, for example 4G or 500M; undecided then (half of the free memory)")  # fmt: skip
-    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example '
-        '"100 s"')  # fmt: skip
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
-        "MODEL.jani declares without one; may be repeated")  # fmt: skip
+    add_model_arguments(result)
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
+    add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
+        "traces, with the same results")  # fmt: skip
     add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
     add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
@@ -436,7 +464,6 @@ def parser() -> ArgumentParser:
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
-    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add("--format", default="text", choices=("text", "json", "junit"), help="format of the results")
     return result
 
@@ -523,23 +550,16 @@ def _fault(options: argparse.Namespace, target: VerificationTarget, fault: Fault
         if options.format == "json":
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
-    return _errors(options, (diagnostic,), _source_of(target), target.files)
+    return _errors(options, report_of((diagnostic,), _source_of(target), len(target.files)))
 
 
-def _errors(
-    options: argparse.Namespace,
-    diagnostics: Sequence[Diagnostic],
-    source_of: Callable[[str], SourceFile],
-    files: Sequence[str],
-) -> int:
-    entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
-    report = CheckReport(entries, len(files), color=takes_color(sys.stderr))
+def _errors(options: argparse.Namespace, report: CheckReport) -> int:
     if options.format == "json":
-        print_text(as_json((), [_row(finding) for finding in entries]), "utf-8")
+        print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
     elif options.format == "junit":
-        print_text(FORMATS["junit"](report), "utf-8")
+        print_text(render(report, "junit"), "utf-8")
     else:
-        print_text(FORMATS["text"](report), stream=sys.stderr)
+        print_text(render(report, "text"), stream=sys.stderr)
     return FOUND
 
 

@@ -19,6 +19,10 @@ def symbol_kind(kind: SymbolKind) -> types.SymbolKind:
             return types.SymbolKind.EnumMember
         case SymbolKind.VARIABLE | SymbolKind.BLACKBOARD | SymbolKind.EVENT_VARIABLE | SymbolKind.GLOBAL:
             return types.SymbolKind.Variable
+        case SymbolKind.PORT_VARIABLE:
+            return types.SymbolKind.Variable
+        case SymbolKind.PROPERTY:
+            return types.SymbolKind.Boolean
         case SymbolKind.PORT | SymbolKind.ATTRIBUTE | SymbolKind.JSON:
             return types.SymbolKind.Property
         case SymbolKind.STRUCT | SymbolKind.ROS_TYPE | SymbolKind.BASE_TYPE:

@@ -12,7 +12,7 @@ import csv
 import json
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from as2fm_lsp.atomic_write import write_file
 from roaml.jani.node import Origin
@@ -67,12 +67,12 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
             assert not isinstance(seconds, list)
             assert not isinstance(nanoseconds, list)
             cells.append(seconds + nanoseconds / 1e9)
-        return csv_line([*cells, end, *(cell for value in values for cell in _cells(value))])
+        return csv_line([*cells, end, *(cell for value in values for cell in cells_of(value))])
 
     start = recorder.initial(storages)
     header = ["step", *(() if places is None else ("time",)), "end"]
     for name, value in zip(names, start, strict=True):
-        header += (name + suffix for suffix in _suffixes(value))
+        header += (name + suffix for suffix in suffixes_of(value))
     yield csv_line(header)
     recording = Recording(trace)
     number, values = 0, start
@@ -85,13 +85,14 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
 def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> Iterator[str]:
     """The text of a trace: one line for each step."""
     recording = Recording(trace)
+    automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
     yield "{\n"
     yield f' "property": {_json(recorder.asked.question.name)},\n "trace": {trace},\n "seed": {recorder.seed},\n'
     yield f' "initial": {_json(start)},\n "steps": ['
     comma = "\n  "
     for step in recorder.walk(recording):
-        yield comma + _json(step_row(target, recorder, step))
+        yield comma + _json(step_row(target, automata, step))
         comma = ",\n  "
     verdict = VERDICTS.get(recording.verdict, "fault")
     yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
@@ -109,9 +110,12 @@ def end_of(recording: Recording) -> str:
     return "fault" if recording.problem is not None else recording.end.key
 
 
-def step_row(target: VerificationTarget, recorder: Recorder, step: TraceStep) -> dict[str, object]:
-    """A step as a value for JSON."""
-    automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
+def step_row(target: VerificationTarget, automata: Sequence[str], step: TraceStep) -> dict[str, object]:
+    """A step as a value for JSON.
+
+    Args:
+        automata: the name of the automaton of each instance.
+    """
     return {
         "step": step.number,
         "action": step.action,
@@ -160,21 +164,24 @@ _CSV = csv.writer(_Echo())
 
 
 def csv_line(cells: Iterable[int | float | str]) -> str:
+    """A line of a CSV file, with LF at its end."""
     line: str = _CSV.writerow(cells)
     return line.removesuffix("\r\n") + "\n"
 
 
-def _cells(value: Plain) -> Iterator[int | float]:
+def cells_of(value: Plain) -> Iterator[int | float]:
+    """The cells of a value: one for each element of an array; true is 1, false 0."""
     if isinstance(value, list):
         for element in value:
-            yield from _cells(element)
+            yield from cells_of(element)
     else:
         yield int(value) if isinstance(value, bool) else value
 
 
-def _suffixes(value: Plain) -> Iterator[str]:
+def suffixes_of(value: Plain) -> Iterator[str]:
+    """What the names of these cells have behind the name of the variable."""
     if isinstance(value, list):
         for position, element in enumerate(value):
-            yield from (f"[{position}]{more}" for more in _suffixes(element))
+            yield from (f"[{position}]{more}" for more in suffixes_of(element))
     else:
         yield ""

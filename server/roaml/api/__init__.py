@@ -12,8 +12,8 @@
     for result in api.verify(system, jobs=2, expectations=["alarm >= 0.95"]):
         print(result.name, result.answer.value, result.answer.bounds, result.is_met)
 
-Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Names
-that a check does not need are imported when they are used, so that it starts fast.
+Nothing here prints or raises for what is written in a user's files; a path that does not exist is a `PathError`. Each
+name is imported when it is used, so that a program loads only what it needs.
 """
 
 from __future__ import annotations
@@ -21,29 +21,27 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import CheckResult, PathError, check, fix
-from roaml.api.jani_files import JaniError, read_jani
-from roaml.api.migrating import SharedFileError, migrate
-from roaml.api.simulating import session
-from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
-from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
-from roaml.diagnostics import Diagnostic, Severity
-from roaml.jani.model import Model
-from roaml.jani.node import Origin
-from roaml.jani.properties import Property
-from roaml.jani.selection import PropertyError
-from roaml.model.system_file import NO_OVERRIDES, Overrides
-from roaml.project.analysis import Analysis
-from roaml.project.migrate import Migration
-from roaml.project.settings import Settings
-from roaml.project.source_map import SourceMap
-from roaml.project.workspace import Snapshot
-from roaml.scxml.model import Network
-from roaml.scxml.observed import ObservedProperty
-from roaml.text import Location, SourceFile, Span
-
 if TYPE_CHECKING:
+    from roaml.api.checking import CheckResult, check, fix
+    from roaml.api.jani_files import JaniError, PathError, read_jani
+    from roaml.api.migrating import SharedFileError, migrate
+    from roaml.api.simulating import session
+    from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
+    from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
+    from roaml.diagnostics import Diagnostic, Severity
+    from roaml.jani.model import Model
+    from roaml.jani.node import Origin
+    from roaml.jani.properties import Property
+    from roaml.jani.selection import PropertyError
     from roaml.jani.writer import write as write_jani
+    from roaml.model.parameters import NO_OVERRIDES, Overrides
+    from roaml.project.analysis import Analysis
+    from roaml.project.migrate import Migration
+    from roaml.project.settings import Settings
+    from roaml.project.source_map import SourceMap
+    from roaml.project.workspace import Snapshot
+    from roaml.scxml.model import Network
+    from roaml.scxml.observed import ObservedProperty
     from roaml.scxml.writer import write as write_scxml
     from roaml.simulation.choices import Choice, Outcome
     from roaml.simulation.run import Decision, RunError
@@ -60,6 +58,7 @@ if TYPE_CHECKING:
     from roaml.smc.run import Answer, Options, Tally, Watch
     from roaml.smc.statistics import Bounds
     from roaml.smc.story import Story
+    from roaml.text import Location, SourceFile, Span
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.refusal import Refusal
@@ -71,6 +70,26 @@ if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
+        "roaml.api.checking": ("CheckResult", "check", "fix"),
+        "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
+        "roaml.api.migrating": ("SharedFileError", "migrate"),
+        "roaml.api.simulating": ("session",),
+        "roaml.api.systems": ("LoadedSystem", "ModelError", "load", "loaded", "source_map", "to_jani", "to_scxml"),
+        "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
+        "roaml.diagnostics": ("Diagnostic", "Severity"),
+        "roaml.jani.model": ("Model",),
+        "roaml.jani.node": ("Origin",),
+        "roaml.jani.properties": ("Property",),
+        "roaml.jani.selection": ("PropertyError",),
+        "roaml.model.parameters": ("NO_OVERRIDES", "Overrides"),
+        "roaml.project.analysis": ("Analysis",),
+        "roaml.project.migrate": ("Migration",),
+        "roaml.project.settings": ("Settings",),
+        "roaml.project.source_map": ("SourceMap",),
+        "roaml.project.workspace": ("Snapshot",),
+        "roaml.scxml.model": ("Network",),
+        "roaml.scxml.observed": ("ObservedProperty",),
+        "roaml.text": ("Location", "SourceFile", "Span"),
         "roaml.simulation.choices": ("Choice", "Outcome"),
         "roaml.simulation.run": ("Decision", "RunError"),
         "roaml.simulation.session": ("SavedSession", "Session"),

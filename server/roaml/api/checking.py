@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from roaml.api.jani_files import PathError
 from roaml.diagnostics import Diagnostic
 from roaml.disk import UnreadableReason
 from roaml.model.kinds import FileKind
@@ -17,10 +18,6 @@ from roaml.project.paths import is_below
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import SourceFile
-
-
-class PathError(ValueError):
-    """A given path cannot be checked; the message contains the reason."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import os
 
-from roaml.api.checking import PathError
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.disk import MAX_DATA, NotReadableError, required
 from roaml.jani.model import Model
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.text import SourceFile, decode
+
+
+class PathError(ValueError):
+    """A given path cannot be read; the message contains the reason."""
 
 
 class JaniError(ValueError):

@@ -7,7 +7,8 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from roaml.api.checking import PathError, check
+from roaml.api.checking import check
+from roaml.api.jani_files import PathError
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.migrate import Migration

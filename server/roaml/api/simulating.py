@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from roaml.api.systems import LoadedSystem
 from roaml.api.verifying import as_target, checker
 from roaml.jani.model import Model
 
 if TYPE_CHECKING:
+    from roaml.api.systems import LoadedSystem
     from roaml.simulation.session import SavedSession, Session
     from roaml.verification.target import VerificationTarget
 

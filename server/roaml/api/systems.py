@@ -7,13 +7,14 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from roaml.api.checking import CheckResult, PathError, check
+from roaml.api.checking import CheckResult, check
+from roaml.api.jani_files import PathError
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.selection import select
 from roaml.lower import lower
 from roaml.model.kinds import FileKind
-from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes

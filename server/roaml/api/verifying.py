@@ -8,12 +8,12 @@ from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
-from roaml.api.systems import LoadedSystem, load, to_jani
 from roaml.jani.model import Model
-from roaml.model.system_file import NO_OVERRIDES, Overrides
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 
 if TYPE_CHECKING:
+    from roaml.api.systems import LoadedSystem
     from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
@@ -52,6 +52,8 @@ def target(
     if not path.endswith(".jani"):
         if constants:
             raise ConstantError("a system has no constants; they are for JANI models")
+        from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
+
         return as_target(load(path, ros_paths, settings, texts, overrides))
     if overrides != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; they are for systems")
@@ -67,11 +69,15 @@ def target(
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
     """A system, which is translated, or a model, as what is verified."""
-    from roaml.verification.target import target_of  # noqa: PLC0415
+    from roaml.verification.target import VerificationTarget, target_of  # noqa: PLC0415
 
-    if isinstance(subject, LoadedSystem):
-        return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
-    return target_of(subject) if isinstance(subject, Model) else subject
+    if isinstance(subject, VerificationTarget):
+        return subject
+    if isinstance(subject, Model):
+        return target_of(subject)
+    from roaml.api.systems import to_jani  # noqa: PLC0415 - a JANI model needs no system
+
+    return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:
@@ -124,7 +130,7 @@ def verify(
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
 ) -> Iterator[Result]:
-    """Estimate how probable properties are, by random traces with uniform choices. Results come one by one.
+    """Estimate how probable properties are, by random traces with uniform choices. Properties share traces.
 
     Args:
         subject: a system, a JANI model, or what `target` gives.
@@ -146,5 +152,4 @@ def verify(
 
     ready = verifier(subject, properties, options, expectations, only_uniform=only_uniform)
     with Pool(jobs, executor) as pool:
-        for name in ready.names:
-            yield ready.verify(name, pool)
+        yield from ready.verify_all(pool)

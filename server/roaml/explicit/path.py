@@ -77,6 +77,7 @@ class PathRecorder(Recorder):
     def __init__(self, space: Space, path: Path) -> None:
         super().__init__(space.checker, space.asked, 0, len(path.steps))
         self._path = path
+        self._label = space.search.label_of(path.state)
 
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
         kernel = self._kernel
@@ -86,8 +87,7 @@ class PathRecorder(Recorder):
             kernel.go(vector, edges, ways)
             yield self._steps.read(number)
         recording.verdict = self._path.verdict
-        is_stuck = self.asked.question.is_stuck
-        has_ended = kernel.ended() and (is_stuck or kernel.look() == UNKNOWN)
+        has_ended = self._label & codes.ENDED and self._label & codes.STATUS == UNKNOWN
         recording.end = End(kernel.standstill()) if has_ended else End.DECIDED
 
     def rush(self, recording: Recording) -> None:

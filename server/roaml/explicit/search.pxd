@@ -86,6 +86,7 @@ cdef class Search:
     cdef void _visit(self, i64 state) noexcept
     @cython.locals(steps=i64, label=int, lasting=int, leaf=int, verdict=int, lower=i64, status=int)
     cdef int _judged(self) noexcept
+    cdef int _combined(self) noexcept
     @cython.locals(label=int, leads_on=int, combinations=i64, exit_reward=double, i=int, vector=int, count=int,
                    weight=double, k=int, j=int)
     cdef void _expand(self, i64 state) except *

@@ -621,7 +621,7 @@ class Search:
             self.kernel.verdict[leaf] = verdict
             if self.remembers != 0:
                 self.memory[leaf] = verdict
-        status = self.kernel._combined()
+        status = self._combined()
         if self.lower_bound > 0 and status != UNKNOWN:
             status = FALSE
         label |= status
@@ -629,17 +629,21 @@ class Search:
             for leaf in range(self.leaves):
                 if self.kernel.verdict[leaf] == UNKNOWN:
                     self.kernel.verdict[leaf] = FALSE
-            if self.kernel._combined() == TRUE:
+            if self._combined() == TRUE:
                 label |= FAILS
             if lasting >= 0:
                 self.kernel.verdict[lasting] = TRUE
-                if self.kernel._combined() == TRUE:
+                if self._combined() == TRUE:
                     label |= LASTS
             elif label & FAILS != 0:
                 label |= LASTS
         if self.most_steps > 0 and steps < self.most_steps:
             self.memory[self.leaves] = steps + 1
         return label
+
+    def _combined(self) -> int:
+        """The value of the goal's formula by the verdicts of the kernel."""
+        return self.kernel._value(self.kernel.formula_start[0], self.kernel.formula_start[1])
 
     def _expand(self, state: int) -> None:
         """Judge a state, and compute its choices if the goal is not decided there."""

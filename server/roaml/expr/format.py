@@ -7,8 +7,8 @@ Parsing the text gives the same tree, except for positions; a tree with an `Erro
 from __future__ import annotations
 
 import json
-from typing import NoReturn
 
+from roaml.exhaustive import assert_never
 from roaml.expr.operators import CONDITIONAL_PRECEDENCE, UNARY_PRECEDENCE, Operator, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
@@ -70,7 +70,7 @@ def _text(expr: Expr, least: int) -> str:
         case ErrorExpr():
             raise ValueError("an expression that could not be parsed has no text")
         case _:
-            _never(expr)
+            assert_never(expr)
     return f"({text})" if precedence < least else text
 
 
@@ -113,7 +113,3 @@ def _conditional(expr: Conditional) -> str:
     test = _text(expr.test, CONDITIONAL_PRECEDENCE + 1)
     then, otherwise = (_text(part, CONDITIONAL_PRECEDENCE) for part in (expr.then, expr.otherwise))
     return f"{test} ? {then} : {otherwise}"
-
-
-def _never(value: NoReturn) -> NoReturn:
-    raise AssertionError(f"unknown kind of expression: {value!r}")

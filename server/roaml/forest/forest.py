@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.forest.cpp_types import normal
+from roaml.forest.settings import TreeSettings
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Direction, Library, Node, NodeKind, Port, library
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, PortSetting, Tree, TreeFile, TreeNode, nodes
@@ -29,22 +30,6 @@ _COMMON_NAMES = frozenset(
 
 _OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))
-
-
-@dataclass(frozen=True, slots=True)
-class TreeSettings:
-    """Attributes:
-    models: files with models of nodes, in addition to those that trees include.
-    libraries: the names of the libraries whose nodes are available.
-    version: the version of BehaviorTree.CPP, as two numbers; `None` for the newest one.
-    """
-
-    models: tuple[str, ...] = ()
-    libraries: tuple[str, ...] = ()
-    version: tuple[int, int] | None = None
-
-
-NEWEST = TreeSettings()
 
 
 @dataclass(frozen=True, eq=False)

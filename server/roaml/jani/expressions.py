@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.jani.node import CommentedNode, Node, never
+from roaml.exhaustive import assert_never
+from roaml.jani.node import CommentedNode, Node
 from roaml.jani.operators import BinaryOperator, Distribution, NumberConstant, UnaryOperator
 
 
@@ -219,7 +220,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
         case Boolean() | Integer() | Real() | NamedNumber() | Name() | EmptyOption() | Derivative() | Missing():
             return ()
         case _:
-            return never(expression)
+            return assert_never(expression)
 
 
 def walk(expression: Expression) -> Iterator[Expression]:

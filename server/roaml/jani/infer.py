@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.jani.deep import Steps
 from roaml.jani.expressions import (
     ArrayAccess,
@@ -40,7 +41,7 @@ from roaml.jani.expressions import (
     Unary,
 )
 from roaml.jani.model import Datatype, Function
-from roaml.jani.node import Node, never
+from roaml.jani.node import Node
 from roaml.jani.notes import Notes
 from roaml.jani.operators import BinaryOperator, Operator, Signature
 from roaml.jani.properties import (
@@ -175,7 +176,7 @@ class Inference:
             case Missing():
                 return UNKNOWN
             case _:
-                return never(node)
+                return assert_never(node)
 
     def name(self, node: Node, identifier: str, bound: Bound) -> Type:
         found = bound.get(identifier) or self.scope.variables.get(identifier)
@@ -210,7 +211,7 @@ class Inference:
                     values.append(REAL)
                 return UNKNOWN if UNKNOWN in values else REAL if REAL in values else INT
             case _:
-                return never(signature)
+                return assert_never(signature)
 
     def joined(self, node: Node, left: Type, right: Type) -> Type:
         """The common type of both values, or a finding that there is none."""
@@ -241,7 +242,7 @@ class Inference:
                 self.expect(length, (yield self.type(length, bound)), INT, "the length of an array")
                 return ArrayType((yield self.type(body, {**bound, variable: INT})))
             case _:
-                return never(node)
+                return assert_never(node)
 
     def record(self, node: DatatypeAccess | DatatypeValue, bound: Bound) -> Steps[Type]:
         match node:
@@ -266,7 +267,7 @@ class Inference:
                         self.notes.type(span_of(node), f"a `{datatype}` needs a value for `{part.name}`")
                 return DatatypeType(datatype) if declared else UNKNOWN
             case _:
-                return never(node)
+                return assert_never(node)
 
     def member(self, node: Node, datatype: str, name: str) -> Type:
         declared = self.scope.datatypes.get(datatype)
@@ -345,7 +346,7 @@ class Inference:
             case Predicate():
                 return BOOL
             case _:
-                return never(node)
+                return assert_never(node)
 
     def on_path(self, operator: str, node: Formula, kind: Kind) -> None:
         if not isinstance(kind, PathKind):
@@ -381,7 +382,7 @@ class Inference:
             case FilterFunction.VALUES:
                 return kind
             case _:
-                return never(function)
+                return assert_never(function)
 
     def expectation(self, node: Expectation) -> Steps[None]:
         self.expect(node.reward, (yield self.type(node.reward, {})), REAL, "a reward")

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NoReturn, TypeAlias
+from typing import TypeAlias
 
 from roaml.text import Location
 
@@ -24,8 +24,3 @@ class CommentedNode(Node):
     """A node whose JSON form may have a member `comment`."""
 
     comment: str | None = None
-
-
-def never(value: NoReturn) -> NoReturn:
-    """The last case of an exhaustive `match`; mypy proves that it is not reached."""
-    raise AssertionError(f"unknown kind of node: {value!r}")

@@ -13,34 +13,71 @@ from roaml.jani.model import Assignment, Automaton, Edge, Model
 from roaml.jani.properties import Formula, identifiers
 
 
+def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:
+    """The variables of the model that only passive automata write, and on which nothing else and no formula depends."""
+    passive = [_follows(automaton) for automaton in model.automata]
+    if model.restrict_initial is not None or any(element.input_enable for element in model.system.elements):
+        return frozenset()
+    needed = {name for formula in formulas for name, _ in identifiers(formula)}
+    written: set[str] = set()
+    sources: dict[str, set[str]] = {}
+    for automaton, is_passive in zip(model.automata, passive, strict=True):
+        if not is_passive:
+            needed |= _read(automaton)
+            continue
+        for assignment in _assignments(automaton.edges):
+            target = _target(assignment)
+            written.add(target)
+            sources.setdefault(target, set()).update(_names(assignment.target), _names(assignment.value))
+    waiting = list(needed)
+    while waiting:
+        for name in sources.pop(waiting.pop(), ()):
+            if name not in needed:
+                needed.add(name)
+                waiting.append(name)
+    return frozenset(variable.name for variable in model.variables if variable.name in written - needed)
+
+
 def without_passive(model: Model, *formulas: Formula) -> Model:
-    """The model without the passive automata whose variables no formula reads, and without these variables. The model
-    itself if there are none. Its other properties may name variables that are gone."""
-    candidates = {number: _written(a) for number, a in enumerate(model.automata) if _follows(a)}
-    if not candidates or model.restrict_initial is not None:
+    """The model without the `unread_variables`, and without the passive automata that then do nothing. The model itself
+    if there are none. Its other properties may name variables that are gone."""
+    gone = unread_variables(model, *formulas)
+    if not gone:
         return model
-    kept = {name for formula in formulas for name, _ in identifiers(formula)}
-    for number, automaton in enumerate(model.automata):
-        if number not in candidates:
-            kept |= _read(automaton)
-    shared = {variable.name for variable in model.variables}
-    dropped = {n: names for n, names in candidates.items() if names and names <= shared and not names & kept}
-    if not dropped or any(element.input_enable for element in model.system.elements):
-        return model
-    gone = frozenset().union(*dropped.values())
-    numbers = [number for number in range(len(model.automata)) if number not in dropped]
+    automata = [_without(automaton, gone) for automaton in model.automata]
+    numbers = [
+        number
+        for number, (automaton, before) in enumerate(zip(automata, model.automata, strict=True))
+        if automaton is before or any(True for _ in _assignments(automaton.edges))
+    ]
     place = {number: position for position, number in enumerate(numbers)}
     syncs = tuple(
         replace(sync, participants=tuple((place[i], action) for i, action in sync.participants if i in place))
         for sync in model.system.syncs
     )
-    elements = tuple(model.system.elements[number] for number in numbers)
     return replace(
         model,
-        automata=tuple(model.automata[number] for number in numbers),
-        system=replace(model.system, elements=elements, syncs=syncs),
+        automata=tuple(automata[number] for number in numbers),
+        system=replace(model.system, elements=tuple(model.system.elements[number] for number in numbers), syncs=syncs),
         variables=tuple(variable for variable in model.variables if variable.name not in gone),
     )
+
+
+def _without(automaton: Automaton, gone: frozenset[str]) -> Automaton:
+    """The automaton without its assignments to some variables; the automaton itself if there are none."""
+    if all(_target(assignment) not in gone for assignment in _assignments(automaton.edges)):
+        return automaton
+    edges = tuple(
+        replace(
+            edge,
+            destinations=tuple(
+                replace(d, assignments=tuple(a for a in d.assignments if _target(a) not in gone))
+                for d in edge.destinations
+            ),
+        )
+        for edge in automaton.edges
+    )
+    return replace(automaton, edges=edges)
 
 
 def _follows(automaton: Automaton) -> bool:
@@ -59,14 +96,12 @@ def _assignments(edges: tuple[Edge, ...]) -> Iterator[Assignment]:
     return (a for edge in edges for destination in edge.destinations for a in destination.assignments)
 
 
-def _written(automaton: Automaton) -> frozenset[str]:
-    names = set()
-    for assignment in _assignments(automaton.edges):
-        target: Expression = assignment.target
-        while isinstance(target, ArrayAccess):
-            target = target.array
-        names.add(target.identifier if isinstance(target, Name) else "")
-    return frozenset(names)
+def _target(assignment: Assignment) -> str:
+    """The variable that an assignment writes, or a part of it."""
+    target: Expression = assignment.target
+    while isinstance(target, ArrayAccess):
+        target = target.array
+    return target.identifier if isinstance(target, Name) else ""
 
 
 def _read(automaton: Automaton) -> set[str]:
@@ -78,4 +113,8 @@ def _read(automaton: Automaton) -> set[str]:
         expressions += [d.probability.exp for d in edge.destinations if d.probability is not None]
     for assignment in _assignments(automaton.edges):
         expressions += (assignment.target, assignment.value)
-    return {part.identifier for e in expressions for part in walk_expression(e) if isinstance(part, Name)}
+    return {name for expression in expressions for name in _names(expression)}
+
+
+def _names(expression: Expression) -> set[str]:
+    return {part.identifier for part in walk_expression(expression) if isinstance(part, Name)}

@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.jani.deep import Steps, run
 from roaml.jani.expressions import (
     ArrayAccess,
@@ -42,7 +43,7 @@ from roaml.jani.expressions import (
     Unary,
 )
 from roaml.jani.model import Function
-from roaml.jani.node import Origin, never
+from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, Operator, Signature
 
 MAX_ARRAY_LENGTH = 1_000_000
@@ -202,7 +203,7 @@ class _Evaluation:
             case EmptyOption():
                 return None
             case _:
-                return never(node)
+                return assert_never(node)
 
     def lookup(self, identifier: str, bound: Mapping[str, Value], origin: Origin | None) -> Value:
         if identifier in bound:

@@ -7,8 +7,8 @@ import enum
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.jani.expressions import Expression
-from roaml.jani.node import never
 
 
 class BasicType(enum.Enum):
@@ -119,7 +119,7 @@ def describe(type_: Type) -> str:
             case UnknownType():
                 return f"{prefix}something"
             case _:
-                never(type_)
+                assert_never(type_)
     if prefix:
         return prefix + type_.value
     return f"an {type_.value}" if type_ is INT else f"a {type_.value}"

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.jani.expressions import (
     ArrayAccess,
     ArrayConstructor,
@@ -35,7 +36,7 @@ from roaml.jani.expressions import (
     Unary,
 )
 from roaml.jani.features import Feature
-from roaml.jani.node import CommentedNode, never
+from roaml.jani.node import CommentedNode
 from roaml.jani.operators import Operator
 from roaml.jani.properties import (
     Accumulation,
@@ -157,7 +158,7 @@ class FormulaWriter:
             case Predicate(predicate):
                 return [f'{_start(node)}"op":"{predicate.value}"}}']
             case _:
-                return never(node)
+                return assert_never(node)
 
     def expectation(self, node: Expectation) -> list[Part]:
         parts: list[Part] = [f'{_start(node)}"op":"{node.operator.value}","exp":', node.reward]

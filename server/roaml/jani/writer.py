@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from roaml.exhaustive import assert_never
 from roaml.jani.features import Feature
 from roaml.jani.model import (
     Action,
@@ -32,7 +33,6 @@ from roaml.jani.model import (
     TransientValue,
     Variable,
 )
-from roaml.jani.node import never
 from roaml.jani.properties import Property
 from roaml.jani.types import ArrayType, BasicType, BoundedType, DatatypeType, OptionType, Type, UnknownType
 from roaml.jani.write_formulas import FormulaWriter
@@ -155,7 +155,7 @@ class _Writer:
             case UnknownType():
                 raise ValueError("a model with unknown types cannot be written")
             case _:
-                return never(type_)
+                return assert_never(type_)
 
     def nested(self, type_: ArrayType | OptionType) -> str:
         """The text of a type; types can be nested as deeply as expressions."""

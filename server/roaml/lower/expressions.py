@@ -29,7 +29,7 @@ from roaml.expr.tree import (
 )
 from roaml.expr.types import UNKNOWN, Array, Struct, Type, leaves, unwrap, wrap
 from roaml.lower.build import event_data, indexed, integer, length, name
-from roaml.model.globals import FIELD_PREFIX
+from roaml.scxml.names import FIELD_PREFIX
 from roaml.text import Span
 
 SEPARATOR = "__"

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
-from roaml.model.globals import FIELD_PREFIX
-from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, safe_name, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import EventRole, ScxmlEvent
-from roaml.scxml.names import named
+from roaml.scxml.names import FIELD_PREFIX, named, safe_name
 
 
 def topic_event(topic: str) -> ScxmlEvent:

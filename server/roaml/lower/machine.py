@@ -23,11 +23,10 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton, sanitise
-from roaml.model.value_types import STATUSES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
-from roaml.scxml.names import named
+from roaml.scxml.names import STATUSES, named
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, timer handle) -> the event of its ticks."""
@@ -76,7 +75,8 @@ class _ChartLowering:
         states = tuple(plain for state in chart.states for plain in self.state(state))
         data = (*self.data(), *self.statements.drawn)
         origin = context.origin(chart.element.name_span)
-        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin)
+        thread_of = "" if context.thread is None else context.automaton.name
+        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin, thread_of)
 
     # -------------------------------------------------------------------- data
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.model.machine import Machine
+from roaml.model.parameters import Parameters
 from roaml.model.system import System, SystemAutomaton
-from roaml.model.system_file import Parameters
 from roaml.model.value_types import Environment
 from roaml.text import Location, Span
 

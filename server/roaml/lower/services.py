@@ -7,10 +7,10 @@ from __future__ import annotations
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
-from roaml.model.system import Channel, safe_name, sanitise
+from roaml.model.system import Channel, sanitise
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Automaton, Role, Send, State
-from roaml.scxml.names import SERVICE_HANDLER_PREFIX
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name
 
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
 

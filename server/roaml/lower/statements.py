@@ -19,13 +19,12 @@ from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_e
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
 from roaml.model.expand import Reference
-from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import CallChild, NoEffect, ReturnHalted, ReturnStatus, RosSend, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.value_types import STATUSES, unset_fields
+from roaml.model.value_types import unset_fields
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, ScxmlEvent, Send, Statement
-from roaml.scxml.names import named
+from roaml.scxml.names import FIELD_PREFIX, STATUSES, named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]

@@ -21,10 +21,9 @@ from roaml.lower.machine import copies
 from roaml.lower.program import NOWHERE, TranslatableSystem
 from roaml.lower.tree import tick_timer
 from roaml.model.expand import ROOT_NUMBER
-from roaml.model.globals import FIELD_PREFIX
 from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
-from roaml.model.system import CLOCK_TOPIC, SystemAutomaton, safe_name
+from roaml.model.system import CLOCK_TOPIC, SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import (
@@ -43,7 +42,7 @@ from roaml.scxml.model import (
     Transition,
 )
 from roaml.scxml.model import Automaton as PlainAutomaton
-from roaml.scxml.names import CLOCK, CLOCK_STEP, TIME_IS_OVER, TIMER_PREFIX
+from roaml.scxml.names import CLOCK, CLOCK_STEP, FIELD_PREFIX, TIME_IS_OVER, TIMER_PREFIX, safe_name
 from roaml.text import Location
 
 

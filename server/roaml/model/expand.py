@@ -90,6 +90,21 @@ class NodeSource:
 
 
 @dataclass(frozen=True, slots=True)
+class TreeUse:
+    """One use of a tree: that of the executed tree, or that of a `<SubTree>`.
+
+    Attributes:
+        name: the name of the `<SubTree>`; the ID of the tree if it has none.
+        tree: the ID of the tree.
+        outer: the index of the use around it; `None` for the executed tree.
+    """
+
+    name: str
+    tree: str
+    outer: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class Instance:
     """One node of the executed tree.
 
@@ -99,6 +114,7 @@ class Instance:
         ports: what the tree sets, defaults of `<TreeNodesModel>` included.
         children: the numbers of its children.
         condition: the tree says that it is a condition: it is written or modelled as `<Condition>`.
+        use: the index of the `TreeUse` that the node is in.
     """
 
     number: int
@@ -109,6 +125,7 @@ class Instance:
     children: tuple[int, ...]
     source: NodeSource
     condition: bool = False
+    use: int = 0
 
     @property
     def automaton(self) -> str:
@@ -320,6 +337,7 @@ class Frame:
 
     Attributes:
         use: the `<SubTree>` node that the instance is for; None for the executed tree.
+        name: the name of that node; the ID of the tree if it has none.
         word, suffix: its part of `prefix`, `<word><suffix>__`: the name of that node, and what makes it unique.
         prefix: what the full names of its variables begin with.
         remapped: the values that its names have from outside.
@@ -332,6 +350,7 @@ class Frame:
 
     tree: TreeOutline
     use: NodeSource | None
+    name: str
     word: str
     suffix: str
     prefix: str
@@ -382,6 +401,15 @@ class Expansion:
     frames: tuple[Frame, ...] = ()
     frame_of: Mapping[int, Frame] = field(default_factory=dict)
 
+    @property
+    def uses(self) -> tuple[TreeUse, ...]:
+        """The uses of trees, in the order of `frames`."""
+        indices = {id(frame): index for index, frame in enumerate(self.frames)}
+        return tuple(
+            TreeUse(frame.name, frame.tree.id, None if frame.outer is None else indices[id(frame.outer)])
+            for frame in self.frames
+        )
+
 
 def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
     """The executed tree; it is empty if it cannot be told which tree that is, or if there are too many nodes."""
@@ -423,7 +451,7 @@ class _Expander:
 
     def run(self, main: TreeOutline) -> Expansion:
         assert main.root is not None
-        frame = Frame(main, None, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
+        frame = Frame(main, None, main.id, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
         self.frames.append(frame)
         pending: list[tuple[NodeOutline, Frame, int | None]] = [(main.root, frame, None)]
         while pending:
@@ -435,6 +463,7 @@ class _Expander:
                 continue
             number = self.place(node, frame, parent)
             pending += ((child, frame, number) for child in reversed(node.children))
+        indices = {id(frame): index for index, frame in enumerate(self.frames)}
         instances = (
             Instance(
                 number,
@@ -445,6 +474,7 @@ class _Expander:
                 tuple(placed.children),
                 placed.source,
                 placed.condition,
+                indices[id(self.frame_of[number])],
             )
             for number, placed in enumerate(self.placed, ROOT_NUMBER)
         )
@@ -479,7 +509,19 @@ class _Expander:
                 remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
         autoremap = _is_autoremapped(node)
         use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
-        entered = Frame(inner, use, word, suffix, prefix, remapped, autoremap, frame, self.names_in(inner), inside)
+        entered = Frame(
+            inner,
+            use,
+            node.name or node.plugin,
+            word,
+            suffix,
+            prefix,
+            remapped,
+            autoremap,
+            frame,
+            self.names_in(inner),
+            inside,
+        )
         self.frames.append(entered)
         return entered
 

@@ -14,12 +14,10 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
-
-FIELD_PREFIX = "ros_fields__"
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX, FIELD_PREFIX, safe_name
 
 FindInterface = Callable[[str, str], InterfaceType | None]
 """(kind, name as written) -> the ROS type."""
@@ -49,6 +47,15 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
             for variable, leaf in _flatten(f"{event}__{name}", type_):
                 table.setdefault(variable, GlobalVariable(variable, leaf, event, name, source))
     return table
+
+
+def event_parameters(system: System, interface: FindInterface) -> dict[str, dict[str, Type]]:
+    """The parameters of each event of the translated system, with the types of the models."""
+    parameters: dict[str, dict[str, Type]] = {}
+    for event, _, params in _events(system, interface):
+        for name, type_ in params:
+            parameters.setdefault(event, {}).setdefault(name, type_)
+    return parameters
 
 
 def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:

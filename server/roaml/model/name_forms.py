@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 from roaml.expr.words import CONTEXTUAL, RESERVED
-from roaml.model.value_types import STATUSES
+from roaml.scxml.names import STATUSES
 
 VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
 EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")

@@ -25,6 +25,7 @@ from roaml.expr.tree import Binary, Name, walk
 from roaml.expr.types import UNKNOWN, Type, is_kind
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
+from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
     ASSUMES,
     EVENT,
@@ -38,7 +39,6 @@ from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
-from roaml.model.system_file import NANOSECONDS
 from roaml.model.timing import periods
 from roaml.observers.properties import (
     CLOSE,

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
 from roaml.interfaces.registry import NotFound
-from roaml.model.globals import FIELD_PREFIX, GlobalVariable
+from roaml.interfaces.types import Kind
+from roaml.model.globals import GlobalVariable
 from roaml.model.property_file import (
     ACCEPTED,
     ACTION,
@@ -26,12 +27,15 @@ from roaml.model.property_file import (
     TOPIC,
     Port,
     PortVariable,
+    PropertyFile,
 )
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, safe_name, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
+from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
+from roaml.scxml.names import FIELD_PREFIX, safe_name
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -39,14 +43,16 @@ from roaml.text import Span
 FindInterface = Callable[[str, str], "InterfaceType | NotFound"]
 
 INT32 = BASE_TYPES["int32"]
-_KINDS = {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}
+INTERFACE_KINDS: Mapping[str, Kind] = {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}
+"""Kind of port -> the kind of its ROS type."""
 _WORDS = {TOPIC: "topic", SERVICE: "service", ACTION: "action", NODE: "node of the behavior tree", PLAIN: "event"}
-_EVENTS = {
+EVENTS = {
     TOPIC: ("publish",),
     SERVICE: ("request", "response"),
     ACTION: ("goal_request", "goal_response", "feedback", "result"),
     NODE: ("tick", "response", "halt"),
 }
+"""Kind of port -> the values of its attribute `event`."""
 _PARTS = {
     "publish": "message",
     "request": "request",
@@ -55,7 +61,7 @@ _PARTS = {
     "feedback": "feedback",
     "result": "result",
 }
-_GIVEN_BY = {GOAL_ID: _EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
+_GIVEN_BY = {GOAL_ID: EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
 """Kind of variable -> the events of an action that carry its value."""
 
 
@@ -111,7 +117,7 @@ class PortLinker:
         """The value of the attribute `event`; `None` if it is not one of its values, which the schema reports."""
         if port.kind == PLAIN:
             return ""
-        return port.event.value if port.event and port.event.value in _EVENTS[port.kind] else None
+        return port.event.value if port.event and port.event.value in EVENTS[port.kind] else None
 
     def _unlinked(self, port: Port) -> Iterator[LinkedVariable]:
         for variable in port.variables:
@@ -173,7 +179,7 @@ class PortLinker:
     def _type(self, port: Port, channel: Channel) -> InterfaceType | None:
         if port.type is None:
             return None
-        kind = _KINDS[port.kind]
+        kind = INTERFACE_KINDS[port.kind]
         given = self.find(kind, port.type.value)
         declared = {endpoint.use.type: self.find(kind, endpoint.use.type) for endpoint in channel.endpoints}
         types = [type_ for type_ in declared.values() if isinstance(type_, InterfaceType)]
@@ -232,9 +238,9 @@ class PortLinker:
     ) -> list[ChannelEndpoint]:
         if name is None:
             return endpoints
-        chosen = [endpoint for endpoint in endpoints if name.value in _names_of(endpoint.automaton)]
+        chosen = [endpoint for endpoint in endpoints if name.value in names_of(endpoint.automaton)]
         if not chosen and self._is_complete():
-            known = [each for endpoint in endpoints for each in _names_of(endpoint.automaton)]
+            known = [each for endpoint in endpoints for each in names_of(endpoint.automaton)]
             close = close_names(name.value, known) or tuple(known[:1])
             hint = f"; did you mean `{close[0]}`?" if close else ""
             message = f"no machine `{name.value}` {does} `{channel.name}`{hint}"
@@ -252,70 +258,24 @@ class PortLinker:
     # ------------------------------------------------------------- the tree
 
     def _node(self, port: Port, name: Name, event: str) -> LinkedPort:
-        automata = [automaton for automaton in self.system.automata if automaton.instance is not None]
-        matches = [automaton for automaton in automata if self._is_called(automaton, name.value)]
+        matches = nodes_called(self.system, name.value)
         if len(matches) != 1:
             if matches:
-                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(self._path(each) for each in matches))
+                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(path_of(self.system, node) for node in matches))
                 message = f"{len(matches)} nodes of the tree are called `{name.value}`: {paths}; use the path of one"
-                self.report(ProblemKind.UNKNOWN_PORT, name.span, message)
+                shorter = short_paths(self.system)
+                close = tuple(dict.fromkeys(shorter[node.number] for node in matches))
+                self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             elif self._is_complete():
-                known = dict.fromkeys(
-                    each
-                    for automaton in automata
-                    if automaton.instance
-                    for each in (automaton.instance.name, automaton.instance.plugin)
-                )
+                known = dict.fromkeys(text for node in self.system.instances for text in (node.name, node.plugin))
                 close = close_names(name.value, known)
                 hint = f"; did you mean `{close[0]}`?" if close else ""
                 message = f"the tree has no node `{name.value}`{hint}"
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
-        instance = matches[0].instance
-        assert instance is not None
         status = Struct("", (("status", INT32),) if event == "response" else (), f"{event} of a node")
         variables = tuple(self._variables(port, status, "", event))
-        return LinkedPort(port, (PortEvent(f"bt_{instance.number}_{event}"),), variables)
-
-    def _is_called(self, automaton: SystemAutomaton, text: str) -> bool:
-        instance = automaton.instance
-        assert instance is not None
-        *path, last = text.split("/")
-        if last != instance.name and (last != instance.plugin or self._has_name(last)):
-            return False
-        above = self._above(automaton)
-        for part in reversed(path):
-            while above and above[-1] != part:
-                above.pop()
-            if not above:
-                return False
-            above.pop()
-        return True
-
-    def _has_name(self, text: str) -> bool:
-        return any(each.instance is not None and each.instance.name == text for each in self.system.automata)
-
-    def _above(self, automaton: SystemAutomaton) -> list[str]:
-        """The names of the ancestors of a node and of the trees that contain them, outermost first."""
-        names: list[str] = []
-        instance = automaton.instance
-        assert instance is not None
-        tree = instance.source.tree
-        names.append(tree)
-        while instance.parent is not None:
-            parent = self.system.by_instance.get(instance.parent)
-            if parent is None or parent.instance is None:
-                break
-            instance = parent.instance
-            names.append(instance.name)
-            if instance.source.tree != tree:
-                tree = instance.source.tree
-                names.append(tree)
-        return names[::-1]
-
-    def _path(self, automaton: SystemAutomaton) -> str:
-        assert automaton.instance is not None
-        return "/".join(filter(None, (*self._above(automaton), automaton.instance.name)))
+        return LinkedPort(port, (PortEvent(f"bt_{matches[0].number}_{event}"),), variables)
 
     # -------------------------------------------------------- plain events
 
@@ -395,6 +355,23 @@ class PortLinker:
         return type_, parameter
 
 
+def observed_names(file: PropertyFile) -> Iterator[str]:
+    """The flags of the events of topics and plain events that the ports of a file listen to, in the names of global
+    variables, without a system to link them to."""
+    for port in file.ports:
+        if port.name is not None and port.kind in (TOPIC, PLAIN):
+            name = f"topic_{sanitise(port.name.value)}_msg" if port.kind == TOPIC else port.name.value
+            yield f"{name}.valid"
+
+
+def part_of(port: Port, find: Callable[[str, str], InterfaceType | None]) -> Struct | None:
+    """The message, or the part of a service or action, that a port of a ROS interface carries; `None` if its type or
+    its event is not known, or if there is none."""
+    part = _PARTS.get(port.event.value) if port.event is not None and port.kind in INTERFACE_KINDS else None
+    type_ = find(INTERFACE_KINDS[port.kind], port.type.value) if part is not None and port.type is not None else None
+    return None if type_ is None or part is None else type_.part(part)
+
+
 def _declared(variable: PortVariable) -> Type:
     """The type in the attribute `type`, if it is a base type."""
     name = variable.type.name if variable.type else None
@@ -413,7 +390,7 @@ def _leaf_paths(data: Struct) -> Iterator[str]:
             yield name
 
 
-def _names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
+def names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
     """The names by which a port may choose an automaton: that of its machine or node, and its own."""
     names = [automaton.name]
     if automaton.instance is not None:

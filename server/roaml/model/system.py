@@ -18,7 +18,7 @@ from typing import TypeAlias
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
-from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference
+from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import (
     ANYTHING,
     NAME,
@@ -42,7 +42,7 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.system_file import Parameters
+from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
 from roaml.suggest import close_names
@@ -61,12 +61,6 @@ Fact: TypeAlias = "tuple[str, str | None]"
 def sanitise(name: str) -> str:
     """The form of a topic, service or action name in events (docs/spec/plain-scxml.md#interface-names)."""
     return name.removeprefix("/").replace("/", "__")
-
-
-def safe_name(automaton: str) -> str:
-    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
-    `_`."""
-    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +167,7 @@ class System:
         older: the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: listed nodes, in order; plugins: listed plugins, in order.
         instances: the nodes of the executed tree, in pre-order.
+        tree_uses: the trees that they are in; `Instance.use` is an index.
         tree_paths: the tree file and what it includes; empty without a tree.
         structs: by name.
         gaps: what may be said where the system file, the trees and the listed files cannot be read at all. What cannot
@@ -187,6 +182,7 @@ class System:
     nodes: tuple[tuple[str, MachineOutline], ...]
     plugins: tuple[tuple[str, MachineOutline], ...]
     instances: tuple[Instance, ...]
+    tree_uses: tuple[TreeUse, ...]
     tree_paths: tuple[str, ...]
     structs: Mapping[str, Type]
     gaps: frozenset[Gap]

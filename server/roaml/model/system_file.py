@@ -3,11 +3,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from roaml.disk import UnreadableReason
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
+from roaml.model.parameters import (
+    DEFAULT_MAX_ARRAY_SIZE,
+    DEFAULT_RANDOM_VALUES,
+    DEFAULT_TICK_RATE,
+    MAX_RANDOM_VALUES,
+    NANOSECONDS,
+    NO_OVERRIDES,
+    Overrides,
+    Parameters,
+    integer,
+)
 from roaml.model.spelling import meant
 from roaml.model.syntax import Name, name_of
 from roaml.suggest import close_names
@@ -19,13 +30,6 @@ SECTIONS = ("data_declarations", "behavior_tree", "node_models", "properties")
 TREE_TYPES = ("bt.cpp-xml",)
 PLUGIN_TYPES = ("bt-plugin-ascxml", "bt-plugin-ros-scxml")
 NODE_TYPES = ("node-ascxml", "ros-scxml")
-
-DEFAULT_MAX_ARRAY_SIZE = 100
-DEFAULT_TICK_RATE = 1.0
-DEFAULT_RANDOM_VALUES = 100
-MAX_RANDOM_VALUES = 10_000
-"""Each value is a destination of an edge in JANI."""
-NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,47 +86,6 @@ def wanted_kind(entry: SystemInput) -> FileKind | None:
         return FileKind.XML_PROPERTIES
     close = close_names(entry.type.value, _WANTED, 1) if entry.type.value not in _WANTED else (entry.type.value,)
     return _WANTED[close[0]] if close else None
-
-
-@dataclass(frozen=True, slots=True)
-class Parameters:
-    """How the system is translated.
-
-    Attributes:
-        max_time: the bound of the clock in ns; None if it is not given or no number.
-        tick_rate: of the behavior tree, in Hz.
-        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
-    """
-
-    max_time: int | None = None
-    max_array_size: int = DEFAULT_MAX_ARRAY_SIZE
-    tick_rate: float = DEFAULT_TICK_RATE
-    tick_if_not_running: bool = False
-    random_values: int = DEFAULT_RANDOM_VALUES
-
-
-@dataclass(frozen=True, slots=True)
-class Overrides:
-    """Parameters that replace those of a system file, where they are given; see `Parameters`."""
-
-    max_time: int | None = None
-    max_array_size: int | None = None
-
-    def applied(self, parameters: Parameters) -> Parameters:
-        max_time = parameters.max_time if self.max_time is None else self.max_time
-        size = parameters.max_array_size if self.max_array_size is None else self.max_array_size
-        return replace(parameters, max_time=max_time, max_array_size=size)
-
-
-NO_OVERRIDES = Overrides()
-
-
-def duration(text: str) -> int | None:
-    """The duration in `text`, in ns; `None` if `text` is not a duration such as `100 s` or `250ms`."""
-    number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
-    unit = text.strip().removeprefix(number)
-    value = _integer(number.strip())
-    return value * NANOSECONDS[unit] if value and unit in NANOSECONDS else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,24 +169,20 @@ def _parameters(root: Element) -> Parameters:
         text = value.value if value else ""
         if element.name == "max_time":
             unit = name_of(element.get("unit"))
-            number = _integer(text)
+            number = integer(text)
             if number is not None and unit and unit.value in NANOSECONDS:
                 max_time = number * NANOSECONDS[unit.value]
         elif element.name == "max_array_size":
-            size = _integer(text) or size
+            size = integer(text) or size
         elif element.name == "bt_tick_rate":
             rate = _positive(text) or rate
         elif element.name == "bt_tick_if_not_running":
             keep_ticking = text == "true"
         elif element.name == "random_values":
-            number = _integer(text)
+            number = integer(text)
             if number is not None and 1 <= number <= MAX_RANDOM_VALUES:
                 random_values = number
     return Parameters(max_time, size, rate, keep_ticking, random_values)
-
-
-def _integer(text: str) -> int | None:
-    return int(text[:18]) if text.isascii() and text.isdigit() else None
 
 
 def _positive(text: str) -> float | None:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.model.expand import PortConstant
+from roaml.model.parameters import NANOSECONDS, Parameters
 from roaml.model.system import System, SystemAutomaton
-from roaml.model.system_file import NANOSECONDS, Parameters
 
 NANOSECONDS_PER_SECOND = 10**9
 

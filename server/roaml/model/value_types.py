@@ -48,6 +48,7 @@ from roaml.model.machine import (
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.xml_syntax import Element
 
 
@@ -367,8 +368,8 @@ class _Typer:
             _Body(self, variables, known, ValuePlace(chart, state, handler, "body", late)).run(target.body)
 
 
-STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
-"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+GOAL_STATUSES = {4: "STATUS_SUCCEEDED", 5: "STATUS_CANCELED", 6: "STATUS_ABORTED"}
+"""`action_msgs/GoalStatus` of ROS 2: the codes that results can have."""
 
 
 def port_type(machine: Machine, read: PortRead) -> Type:

@@ -19,7 +19,8 @@ from typing import TypeVar
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
 from roaml.expr.types import UNKNOWN, Struct, Type
-from roaml.forest.forest import NEWEST, Forest, TreeSettings
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
 from roaml.jani.properties import Property, identifiers
@@ -31,27 +32,21 @@ from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
 from roaml.model.gaps import ANYTHING, NODE, RECEIVES, REMAP, SENDS, Gap, PlacedGap, machine_gaps
-from roaml.model.globals import GlobalVariable, global_variables
+from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
 from roaml.model.machine import Machine
 from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.outline import MachineOutline, outline
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.property_file import PropertyFile, build_property_file
 from roaml.model.property_links import LinkedFile, link
+from roaml.model.property_ports import observed_names
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
-from roaml.model.system_file import (
-    NO_OVERRIDES,
-    ListedFile,
-    Overrides,
-    SystemFile,
-    SystemInput,
-    build_system_file,
-    wanted_kind,
-)
+from roaml.model.system_file import ListedFile, SystemFile, SystemInput, build_system_file, wanted_kind
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
@@ -584,14 +579,18 @@ class Analysis:
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
         paths = tuple(tree.path for tree in trees)
-        instances = expand(trees).instances
-        return System(path, file.older, file.parameters, nodes, plugins, instances, paths, structs.types, *known)
+        expansion = expand(trees)
+        instances, uses = expansion.instances, expansion.uses
+        return System(path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
         paths = [f.path for f in listed if f.wanted is FileKind.PROPERTIES and f.usable]
         properties = [declared for path in paths for declared in self.properties(path)[0]]
-        return frozenset(name for declared in properties for name, _ in identifiers(declared.expression))
+        names = {name for declared in properties for name, _ in identifiers(declared.expression)}
+        xml_paths = [f.path for f in listed if f.wanted is FileKind.XML_PROPERTIES and f.usable]
+        files = [file for path in xml_paths if (file := self.property_file(path)) is not None]
+        return frozenset(names.union(*(observed_names(file) for file in files)))
 
     def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
         """The facts that a system file, its trees and the unreadable files may contain: file, gap and place."""
@@ -804,6 +803,12 @@ class Analysis:
             return {}
         environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
         return self.memo.get("globals", system, linked, lambda: global_variables(linked, environment.interface))
+
+    def event_parameters(self, system: str) -> Mapping[str, Mapping[str, Type]]:
+        """The parameters of each event of the translated system, with the types of the models."""
+        linked = self.system(system)
+        environment = _MachineEnvironment(self, NO_STRUCTS, {}, {})
+        return {} if linked is None else event_parameters(linked, environment.interface)
 
 
 _ROUNDS = 4

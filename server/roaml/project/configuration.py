@@ -18,7 +18,6 @@ from roaml.disk import UnreadableReason
 from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, SettingMistake, Settings, folders_above, folders_in, settings_from
-from roaml.rules.parser_rules import INVALID_SETTING, MISSING_FOLDER, TOML_SYNTAX
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
@@ -46,12 +45,12 @@ def read_configuration(source: SourceFile) -> Configuration:
         return Configuration(None)  # reported by `file-too-large`
     if is_ours and source.encoding != "utf-8":
         text = f"the file is encoded as {source.encoding}, but TOML requires UTF-8"
-        return Configuration(None, (TOML_SYNTAX.at(Span(0, min(1, len(source.text))), text),))
+        return Configuration(None, (Finding("toml-syntax", Span(0, min(1, len(source.text))), text),))
     try:
         table: Any = loads(source.text)
     except TomlError as error:
         message = str(error)
-        syntax = (TOML_SYNTAX.at(error.span, f"{message[:1].lower()}{message[1:]}"),)
+        syntax = (Finding("toml-syntax", error.span, f"{message[:1].lower()}{message[1:]}"),)
         return Configuration(None, syntax if is_ours else ())
     for key in prefix:
         table = table.get(key) if isinstance(table, dict) else None
@@ -60,7 +59,7 @@ def read_configuration(source: SourceFile) -> Configuration:
     known = places(source.text)
     if not isinstance(table, dict):
         message = "`tool.as2fm` must be a table of settings"
-        return Configuration(None, (INVALID_SETTING.at(_span(source, known, prefix), message),))
+        return Configuration(None, (Finding("invalid-setting", _span(source, known, prefix), message),))
     _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
     findings = tuple(_finding(source, known, prefix, mistake) for mistake in mistakes)
     folders = folders_in(table, os.path.dirname(source.path))
@@ -70,8 +69,10 @@ def read_configuration(source: SourceFile) -> Configuration:
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
     """The folders that do not exist at this moment."""
     return tuple(
-        MISSING_FOLDER.at(
-            span, f"there is no folder `{folder.written}`; relative paths begin at the folder of this file"
+        Finding(
+            "missing-folder",
+            span,
+            f"there is no folder `{folder.written}`; relative paths begin at the folder of this file",
         )
         for span, folder in configuration.folders
         if not os.path.isdir(folder.full)
@@ -84,11 +85,11 @@ def _finding(source: SourceFile, known: Places, prefix: Path, mistake: SettingMi
     span = span or _span(source, known, path)
     quotes = source.text[span.start : span.start + 1]
     quotes = quotes if quotes in ("'", '"') else ""
-    fixes = (
+    fixes = tuple(
         Fix(f"Change to `{name}`", (TextEdit(span, f"{quotes}{name}{quotes}"),), preferred=number == 0)
         for number, name in enumerate(mistake.instead)
     )
-    return INVALID_SETTING.at(span, mistake.message, *fixes)
+    return Finding("invalid-setting", span, mistake.message, fixes=fixes)
 
 
 def _span(source: SourceFile, known: Places, path: Path) -> Span:

@@ -9,21 +9,20 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.diagnostics import Severity
-from roaml.forest.forest import NEWEST, TreeSettings
+from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
 from roaml.model.kinds import CONFIG_FILE
+from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.size import DEFAULT_LIMITS, Limits
-from roaml.model.system_file import NO_OVERRIDES, Overrides
 from roaml.project import exclude
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.paths import full
-from roaml.rules import BY_CODE
-from roaml.rules.rule import close_names, did_you_mean
+from roaml.suggest import close_names, did_you_mean
 from roaml.toml import Path
 
 SCHEDULERS = ("uniform",)
@@ -168,18 +167,24 @@ def _places(path: Path, value: str | list[str]) -> list[Path]:
     return [path] if isinstance(value, str) else [(*path, index) for index in range(len(value))]
 
 
+def _rule_codes() -> Collection[str]:
+    from roaml.rules import BY_CODE  # noqa: PLC0415 - a model is verified faster without loading the rules
+
+    return BY_CODE
+
+
 def _codes(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
     read = _strings(path, value, mistakes)
     if read is None:
         return None
     for place, code in zip(_places(path, value), read, strict=True):
-        if code not in BY_CODE:
+        if code not in _rule_codes():
             mistakes.append(_no_rule(place, code))
-    return tuple(code for code in read if code in BY_CODE)
+    return tuple(code for code in read if code in _rule_codes())
 
 
 def _no_rule(place: Path, code: str, is_key: bool = False) -> SettingMistake:
-    close = close_names(code, BY_CODE)
+    close = close_names(code, _rule_codes())
     return SettingMistake(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
 
 
@@ -189,7 +194,7 @@ def _severities(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[
         return None
     severities = {}
     for code, label in value.items():
-        if code not in BY_CODE:
+        if code not in _rule_codes():
             mistakes.append(_no_rule((*path, code), code, is_key=True))
         elif not isinstance(label, str) or label not in SEVERITIES:
             known = ", ".join(f"`{severity}`" for severity in SEVERITIES)

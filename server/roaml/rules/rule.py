@@ -35,6 +35,7 @@ from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
 from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
+from roaml.suggest import listing as listing  # noqa: PLC0414
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.xml_syntax import Document
 
@@ -185,9 +186,3 @@ def unused(name: str, names: Iterable[str]) -> str:
     """`name` with the smallest number at its end with which it is not in `names`."""
     taken = set(names)
     return next(new for number in itertools.count(2) if (new := f"{name}_{number}") not in taken)
-
-
-def listing(names: Iterable[str]) -> str:
-    """`a`, `b` and `c`."""
-    quoted = [f"`{name}`" for name in names]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"

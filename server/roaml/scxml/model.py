@@ -148,7 +148,11 @@ class State:
 @dataclass(frozen=True, slots=True)
 class Automaton:
     """One state machine. Entering a state executes its `entry`; that of the initial state is executed once at the
-    start."""
+    start.
+
+    Attributes:
+        thread_of: the automaton of the machine whose thread this is; "" for other automata.
+    """
 
     name: str
     role: Role
@@ -156,6 +160,7 @@ class Automaton:
     data: tuple[Data, ...]
     states: tuple[State, ...]
     origin: Location
+    thread_of: str = ""
 
 
 @dataclass(frozen=True, slots=True)

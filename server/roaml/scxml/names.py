@@ -36,6 +36,9 @@ WAITING, RECEIVED = "waiting", "received"
 
 _GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
 
+NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
+"""The automaton of a tree node: its number and its type."""
+
 # ------------------------------------------------------------------------ events
 
 CLOCK_STEP = "global_timer_tick_event"
@@ -43,6 +46,12 @@ TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
+TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
+"""What the nodes of a tree send to each other: the number of the child, and what is sent."""
+STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
+"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+FIELD_PREFIX = "ros_fields__"
+"""Begins the parameters of an event that are fields of its message."""
 
 
 def role_of(event: str) -> EventRole:
@@ -112,9 +121,25 @@ _ON_RECEIVE = "_on_receive"
 
 
 def open_variable(property_: str) -> str:
-    """Whether what a property says of a trace is still open when the time of the model ends
+    """The variable that says whether a property is still open when the time of the model ends
     (docs/spec/jani.md#observers)."""
     return f"{property_}__open"
+
+
+def asked_variable(property_: str) -> str:
+    """The variable that says whether what a property is about has occurred, such as the request of a response
+    (docs/spec/jani.md#observers)."""
+    return f"{property_}__asked"
+
+
+def opened_variable(property_: str) -> str:
+    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
+    return f"{property_}__opened"
+
+
+def pending_variable(property_: str) -> str:
+    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
+    return f"{property_}__pending"
 
 
 def is_length(variable: str) -> bool:
@@ -123,3 +148,9 @@ def is_length(variable: str) -> bool:
 
 
 _LENGTH = re.compile(r"\.d[0-9]+_len\Z")
+
+
+def safe_name(automaton: str) -> str:
+    """An automaton name as part of an event name: other characters than letters, digits, `_`, `.` and `-` become
+    `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)

@@ -3,27 +3,35 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import BLACKBOARD, CLOCK, RECEIVED, is_generated, is_length, is_timer, received_by, sent_by
-from roaml.simulation.state import (
+from roaml.scxml.names import (
+    BLACKBOARD,
+    CLOCK,
     NODE_AUTOMATON,
+    RECEIVED,
+    TREE_EVENT,
+    is_generated,
+    is_length,
+    is_timer,
+    received_by,
+    sent_by,
+)
+from roaml.simulation.state import (
     EventState,
     MachineState,
     NodeState,
     NodeStatus,
     SystemState,
 )
-from roaml.simulation.words import TREE_EVENT, who
+from roaml.simulation.words import STATUS_NAMES, who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
-from roaml.views.event_words import said
+from roaml.views.event_words import interface_name, said
 from roaml.views.events import EventReader
 from roaml.views.turns import is_inner
-
-_STATUS_NAMES = {number: NodeStatus(name) for name, number in STATUSES.items() if name in NodeStatus.__members__}
 
 
 class Follower:
@@ -48,18 +56,27 @@ class Follower:
         self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
         self._status: dict[int, NodeStatus] = {}
         self._origin: dict[int, Origin | None] = {}
-        self._state: dict[int, str] = {}
         self._handles: dict[int, str] = {}
+        self._handler: dict[int, Origin | None] = {}
+
+    def copied(self) -> Follower:
+        """A follower that has read the same steps and continues independently."""
+        other = copy.copy(self)
+        other.events = self.events.copied()
+        other._clock_values = dict(self._clock_values)
+        other._sent, other._status = dict(self._sent), dict(self._status)
+        other._origin, other._handles, other._handler = dict(self._origin), dict(self._handles), dict(self._handler)
+        return other
 
     def is_machine(self, instance: int) -> bool:
         """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
         return self._is_machine[instance]
 
     def is_named(self, event: str, name: str) -> bool:
-        """Whether `name` refers to an event: by the name of the event, or of its topic, service or action."""
-        if not event:
-            return False
-        return name in (event, self.events.name(event)) or f"`{name}`" in said(event, "", self._names)
+        """Whether an event has this name, or belongs to a topic, service or action of this name, with or without the
+        leading `/`."""
+        interface = interface_name(event, self._names)
+        return name in (event, self.events.name(event)) or (bool(interface) and interface == f"/{name.lstrip('/')}")
 
     def read(self, step: TraceStep) -> None:
         """Read the next step."""
@@ -77,6 +94,7 @@ class Follower:
             self._origin[part.instance] = part.destination.origin or part.edge.origin
             if received:
                 self._handles[part.instance] = received
+                self._handler[part.instance] = part.edge.origin
         event = sent_by(step.action or "")
         if event:
             sender = actors[0].automaton if actors else ""
@@ -94,7 +112,8 @@ class Follower:
                 self._status[node] = NodeStatus.TICKED
             case "response":
                 status = self.events.parameters(event).get("status")
-                self._status[node] = _STATUS_NAMES.get(status if isinstance(status, int) else 0, NodeStatus.IDLE)
+                name = STATUS_NAMES.get(status, "") if isinstance(status, int) else ""
+                self._status[node] = NodeStatus.__members__.get(name, NodeStatus.IDLE)
             case "halt_response":
                 self._status[node] = NodeStatus.IDLE
 
@@ -148,6 +167,8 @@ class Follower:
                 own.get(number, {}),
                 self.events.name(handled) if handled else "",
                 self._origin.get(number, automaton.origin),
+                handled,
+                self._handler.get(number) if handled else None,
             )
 
     def _nodes(self) -> Iterator[NodeState]:

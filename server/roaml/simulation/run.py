@@ -2,23 +2,27 @@
 """A run of a model: a sequence of steps, each decided by the seed or by hand, that can be replayed up to any step.
 
 A step that the seed decides is the same as in the trace that `verify` generates for this seed and trace number. Going
-back replays the run from its start, which takes as long as generating a trace of that length.
+back restores the last snapshot before the position and replays the steps from there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
 from roaml.smc.record import Plain, RecordedVariable, StepReader, TraceStep
 from roaml.smc.standstill import Standstill
+
+SNAPSHOT_INTERVAL = 512
+"""The number of steps between two snapshots of the kernel."""
 
 
 class RunError(ValueError):
@@ -99,6 +103,7 @@ class Run:
         self._reader = StepReader(self._kernel, self.legend)
         self.steps: list[TraceStep] = []
         self.decisions: list[Decision | None] = []
+        self._snapshots: dict[int, tuple[Any, ...]] = {}
         self._begin()
         shared = self.legend.layout.shared
         self.start = dict(zip((storage.name for storage in shared), self._reader.values(shared), strict=True))
@@ -110,8 +115,13 @@ class Run:
         self.position = 0
         self.status = self._kernel.begin(self.seed, self.trace)
         self._check()
-        self.has_ended = self._kernel.ended()
+        self._look_for_end()
         self._reader.start()
+
+    def _look_for_end(self) -> None:
+        self.has_ended = self._kernel.ended()
+        if self.has_ended:
+            self._learn(self._kernel.close())
 
     def _check(self) -> None:
         if self.status == FAULTY:
@@ -127,25 +137,43 @@ class Run:
 
         Raises:
             RunError: the decision is not possible here.
-            FaultError: the model executes an undefined operation in the step, such as a division by zero.
+            FaultError: the model executes an undefined operation in the step, such as a division by zero; the run stays
+                in the state before it.
         """
         if self.has_ended:
             return None
         if decision is not None:
             self._check_possible(decision)
-        self._take(decision)
+        try:
+            self._take(decision)
+        except FaultError:
+            self._return()
+            raise
         if self.position <= len(self.steps) and self.decisions[self.position - 1] == decision:
             self._reader.start()
             return self.steps[self.position - 1]
-        del self.steps[self.position - 1 :], self.decisions[self.position - 1 :]
+        if self.position <= len(self.steps):
+            self._discard(self.position - 1)
         self.steps.append(self._reader.read(self.position))
         self.decisions.append(decision)
         return self.steps[-1]
 
+    def _discard(self, position: int) -> None:
+        """Discard the steps after `position`."""
+        del self.steps[position:], self.decisions[position:]
+        self._snapshots = {at: saved for at, saved in self._snapshots.items() if at <= position}
+
+    def _return(self) -> None:
+        """Restore the state at the position, after a step that failed."""
+        position = self.position
+        self._begin()
+        self.go_to(position)
+
     def go_to(self, position: int) -> None:
         """Go to the state after the first `position` of the steps taken."""
-        if position < self.position:
-            self._begin()
+        nearest = max((at for at in self._snapshots if at <= position), default=0)
+        if position < self.position or nearest > self.position:
+            self._restore(nearest)
         while self.position < position:
             decision = self.decisions[self.position]
             until = self.position + 1
@@ -153,6 +181,15 @@ class Run:
                 until += 1
             self._take(decision, until)
         self._reader.start()
+
+    def _restore(self, position: int) -> None:
+        """Go to a position with a snapshot, or to the start."""
+        if position not in self._snapshots:
+            self._begin()
+            return
+        self.status, self.has_ended, saved = self._snapshots[position]
+        self._kernel.load(saved)
+        self.position = position
 
     def _take(self, decision: Decision | None, until: int = 0) -> None:
         """Take one step by hand, or the steps that the seed decides up to position `until`; 0 means only the next
@@ -166,9 +203,9 @@ class Run:
             self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
             self._learn(self._kernel.look())
             self.position += 1
-        self.has_ended = self._kernel.ended()
-        if self.has_ended:
-            self._learn(self._kernel.close())
+        self._look_for_end()
+        if self.position % SNAPSHOT_INTERVAL == 0 and self.position not in self._snapshots:
+            self._snapshots[self.position] = self.status, self.has_ended, self._kernel.save()
 
     def _check_possible(self, decision: Decision) -> None:
         for enabled in self.enabled():

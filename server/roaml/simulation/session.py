@@ -6,20 +6,21 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from roaml.jani.model import Automaton
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome, choices
 from roaml.simulation.follow import Follower
-from roaml.simulation.run import Decision, Run
+from roaml.simulation.run import SNAPSHOT_INTERVAL, Decision, Run
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import resting
 from roaml.smc.end import End
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
-from roaml.smc.record import VERDICTS, Recording, TraceStep
+from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep
 from roaml.smc.story import Story, clock_times
 
 FORMAT_VERSION = 1
@@ -125,6 +126,7 @@ class Session:
         self._automata = tuple(instance.automaton for instance in self._run.legend.layout.instances)
         self._resting = [resting(automaton) for automaton in self._automata]
         self._follower = Follower(self._automata, self._run.start, clock)
+        self._followers: dict[int, Follower] = {0: self._follower.copied()}
         self.jump(len(self._run.steps) if saved is None else saved.position)
 
     # ------------------------------------------------------------ the position
@@ -150,6 +152,11 @@ class Session:
         return VERDICTS[self._run.status]
 
     @property
+    def time(self) -> float | None:
+        """The time of the clock in s; `None` if the model has no clock."""
+        return self._follower.time
+
+    @property
     def is_decided(self) -> bool:
         """Whether the property is decided here or before, so that the trace of `verify` ends."""
         return self._run.status != UNKNOWN
@@ -158,6 +165,54 @@ class Session:
     def is_by_hand(self) -> bool:
         """Whether a step up to here was decided by hand, so that the run is not one of the traces of `verify`."""
         return any(decision is not None for decision in self._run.decisions[: self.position])
+
+    @property
+    def seed(self) -> int:
+        return self._run.seed
+
+    @property
+    def trace(self) -> int:
+        return self._run.trace
+
+    @property
+    def asked(self) -> CompiledProperty:
+        """The property that is evaluated on the run."""
+        return self._run.asked
+
+    @property
+    def clock(self) -> tuple[str, ...]:
+        """The variables with the time of the model."""
+        return self._clock or ()
+
+    @property
+    def decisions(self) -> Sequence[Decision | None]:
+        """The decision of each of `steps`; `None` where the seed decides."""
+        return self._run.decisions
+
+    def locations(self) -> tuple[str, ...]:
+        """The name of the current location of each instance."""
+        return self._run.locations()
+
+    def parameters(self, event: str) -> dict[str, Plain]:
+        """The parameters with which an event was sent last."""
+        return self._follower.events.parameters(event)
+
+    def actors(self, step: TraceStep) -> list[AutomatonStep]:
+        """The parts of a step except for those of automata that only hold an event."""
+        return self._follower.events.actors(step)
+
+    @property
+    def automata_of_model(self) -> Sequence[Automaton]:
+        """The automaton of each instance."""
+        return self._automata
+
+    def is_resting(self, instance: int, location: str) -> bool:
+        """Whether an instance waits for an event in a location, or never leaves it."""
+        return location in self._resting[instance]
+
+    def values(self) -> list[tuple[RecordedVariable, Plain]]:
+        """The values of all variables of the network, lengths of arrays included."""
+        return self._run.values()
 
     def choices(self) -> tuple[Choice, ...]:
         """The possible next steps."""
@@ -174,9 +229,8 @@ class Session:
 
     def fork(self) -> Session:
         """An independent session with the same run up to the position."""
-        run = self._run
-        decisions = tuple(run.decisions[: self.position])
-        saved = SavedSession(run.asked.question.name, run.seed, run.trace, self.position, decisions)
+        run, saved = self._run, self.save()
+        saved = replace(saved, decisions=saved.decisions[: self.position])
         return Session(run.checker, run.asked, clock=self._clock, saved=saved)
 
     def story(self) -> Story:
@@ -215,10 +269,35 @@ class Session:
             decision = (outcome or self._drawn(choice)).decision
         elif self.position < len(self._run.steps):
             decision = self._run.decisions[self.position]
+        position = self.position
+        before = self._run.steps[position] if position < len(self._run.steps) else None
         step = self._run.advance(decision)
+        if before is not None and step is not before:
+            self._followers = {at: follower for at, follower in self._followers.items() if at <= position}
         if step is not None:
-            self._follower.read(step)
+            self._read(step)
         return step
+
+    def upcoming(self) -> TraceStep | None:
+        """The next step that is taken unless a choice is made by hand; the position does not change.
+
+        Returns:
+            `None` if no step changes anything.
+
+        Raises:
+            FaultError: the model executes an undefined operation in this step.
+        """
+        position = self.position
+        if position < len(self._run.steps):
+            return self._run.steps[position]
+        step = self._run.advance()
+        self._run.go_to(position)
+        return step
+
+    def _read(self, step: TraceStep) -> None:
+        self._follower.read(step)
+        if step.number % SNAPSHOT_INTERVAL == 0 and step.number not in self._followers:
+            self._followers[step.number] = self._follower.copied()
 
     def _drawn(self, choice: Choice) -> Outcome:
         chance = random.Random(f"{self._run.seed}:{self._run.trace}:{self.position}")
@@ -241,24 +320,31 @@ class Session:
 
     def has_event(self, name: str) -> bool:
         """Whether the system has an event with this name, or of a topic, service or action with this name."""
-        return any(self._follower.is_named(sent_by(action or ""), name) for _, action in self._run.legend.vectors)
+        return bool(self.events_named(name))
+
+    def events_named(self, name: str) -> frozenset[str]:
+        """The events with this name, or of a topic, service or action with this name."""
+        events = {sent_by(action or "") for _, action in self._run.legend.vectors} - {""}
+        return frozenset(event for event in events if self._follower.is_named(event, name))
 
     def is_machine(self, instance: int) -> bool:
         """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
         return self._follower.is_machine(instance)
 
-    def automaton(self, instance: int) -> str:
-        """The name of the automaton of an instance."""
-        return self._automata[instance].name
+    @property
+    def automata(self) -> Sequence[str]:
+        """The name of the automaton of each instance."""
+        return [automaton.name for automaton in self._automata]
 
     def turn(self) -> bool:
         """Take steps until a state machine has handled an event completely; returns whether one has.
 
         Automata added by the translation, and nodes of the tree that only tick others, have no turns.
         """
-        return self.go_on(self._ends_turn)
+        return self.go_on(self.ends_turn)
 
-    def _ends_turn(self, step: TraceStep) -> bool:
+    def ends_turn(self, step: TraceStep) -> bool:
+        """Whether a state machine has handled an event completely after a step."""
         return any(
             self._follower.is_machine(part.instance) and part.destination.location in self._resting[part.instance]
             for part in step.parts
@@ -266,15 +352,7 @@ class Session:
 
     def tick(self) -> bool:
         """Take steps until the root of the tree has answered a tick; returns whether it has."""
-        return self.go_on(
-            lambda step: (
-                bool(received_by(step.action or ""))
-                and any(
-                    part.automaton.startswith(TREE_ROOT_PREFIX) and received_by(step.action or "").endswith("response")
-                    for part in step.parts
-                )
-            )
-        )
+        return self.go_on(ends_tick)
 
     def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
         """Take steps until the time of the clock is at least `seconds`; returns whether it is."""
@@ -283,11 +361,12 @@ class Session:
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
         """Take steps until an event is sent, named as in plain SCXML or by its topic, service or action; returns
         whether it was sent."""
-        return self.go_on(lambda step: self._follower.is_named(sent_by(step.action or ""), event), limit)
+        events = self.events_named(event)
+        return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
         """Take steps until the property is decided; returns whether it is."""
-        return self.is_decided or self.go_on(lambda _: self.is_decided, limit) or self.is_decided
+        return self.is_decided or self.go_on(lambda _: self.is_decided, limit)
 
     def back(self, steps: int = 1) -> None:
         """Go back by `steps` steps, at most to the start."""
@@ -296,9 +375,16 @@ class Session:
     def jump(self, position: int) -> None:
         """Go to the state after `position` steps; takes new steps if there are fewer."""
         self._run.go_to(min(position, len(self._run.steps)))
-        if self._follower.position > self.position:
-            self._follower = Follower(self._automata, self._run.start, self._clock)
+        nearest = max(at for at in self._followers if at <= self.position)
+        if not nearest <= self._follower.position <= self.position:
+            self._follower = self._followers[nearest].copied()
         for step in self._run.steps[self._follower.position : self.position]:
-            self._follower.read(step)
+            self._read(step)
         while self.position < position and self.step() is not None:
             pass
+
+
+def ends_tick(step: TraceStep) -> bool:
+    """Whether the root of the tree receives the answer to its tick."""
+    has_answer = received_by(step.action or "").endswith("response")
+    return has_answer and any(part.automaton.startswith(TREE_ROOT_PREFIX) for part in step.parts)

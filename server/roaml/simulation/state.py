@@ -4,15 +4,11 @@
 from __future__ import annotations
 
 import enum
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.jani.node import Origin
 from roaml.smc.record import Plain
-
-NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
-"""Matches the name of the automaton of a tree node, with its number and its type."""
 
 
 class NodeStatus(enum.Enum):
@@ -35,6 +31,8 @@ class MachineState:
         variables: its own variables.
         handles: the name of the event that it handles; "" while it waits for one.
         origin: the place in the source of its state, or of the statement that it executes next.
+        event: the event that it handles, with the name of the client of a service or action.
+        handler: the place of the handler of this event.
     """
 
     name: str
@@ -43,6 +41,8 @@ class MachineState:
     variables: Mapping[str, Plain]
     handles: str
     origin: Origin | None
+    event: str = ""
+    handler: Origin | None = None
 
 
 @dataclass(frozen=True, slots=True)

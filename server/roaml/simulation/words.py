@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 
 from roaml.jani.model import Automaton
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, TREE_ROOT_PREFIX, received_by
+from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, STATUSES, TREE_EVENT, TREE_ROOT_PREFIX, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
-TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
-"""Matches the names of events between nodes of a tree, with the number of the child and the kind of the event."""
-_STATUS_NAMES = {number: name for name, number in STATUSES.items()}
+STATUS_NAMES = {number: name for name, number in STATUSES.items()}
+"""The number with which a node answers -> the name of the status."""
 CLOCK_NAME, TREE_NAME, BLACKBOARD_NAME = "clock", "tree", "blackboard"
 
 
@@ -64,7 +61,7 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
             return f"{actor} answers its tick"
         case "response", False:
             status = parameters.get("status")
-            answer = _STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
+            answer = STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
             return f"{actor} receives {answer} from {child}"
         case _, True:
             return f"{actor} answers that it has halted"

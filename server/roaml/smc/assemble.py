@@ -63,6 +63,12 @@ class ExpressionAssembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
         return start
 
+    def integer(self, expression: Expression, names: StorageNames) -> int:
+        """Code that returns the value of an integer `expression`."""
+        start = self.tape.begin(expression.origin)
+        self.tape.emit(Op.RETURN, a=self.value(expression, names).register)
+        return start
+
     def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
         """Code that returns the number of the real register with the value of `expression`."""
         start = self.tape.begin(expression.origin or origin)

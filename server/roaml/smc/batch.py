@@ -42,7 +42,10 @@ class TraceProblem(NamedTuple):
 
 
 class Task(NamedTuple):
-    """The traces `first` to `first + size - 1`, none longer than `max_steps`, by `scheduler` (0: uniform)."""
+    """The traces `first` to `first + size - 1`, none longer than `max_steps`, by `scheduler` (0: uniform).
+
+    `questions` are the numbers of those that are asked about them.
+    """
 
     payload: Payload
     seed: int
@@ -50,17 +53,26 @@ class Task(NamedTuple):
     size: int
     max_steps: int
     scheduler: int = 0
+    questions: tuple[int, ...] = (0,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BatchOutcome:
-    """The result of a batch: for each trace FALSE, TRUE or UNKNOWN, why it has ended (`End`), its steps, and for
-    questions about rewards its reward. A problem ends the batch; its trace is not counted."""
+class Rows:
+    """The result of a batch for one question: for each trace FALSE, TRUE or UNKNOWN, why it has ended for the question
+    (`End`), its steps until then, its `goal.Activity`, and for questions about rewards its reward."""
 
     verdicts: bytes
     ends: bytes
     steps: Ints
+    activities: bytes
     rewards: Reals
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BatchOutcome:
+    """The result of a batch: rows for each of its questions. A problem ends the batch; its trace is not counted."""
+
+    questions: tuple[Rows, ...]
     problem: TraceProblem | None = None
 
 
@@ -107,23 +119,30 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
 
 def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
     """The same on a kernel that nothing else uses meanwhile."""
-    verdicts, ends, steps, rewards = bytearray(), bytearray(), array("q"), array("d")
+    kernel.choose(task.questions)
+    rows = [(bytearray(), bytearray(), array("q"), bytearray()) for _ in task.questions]
+    rewards = array("d")
+    problem: TraceProblem | None = None
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)
         limit = 0
-        while verdict == UNKNOWN and limit < task.max_steps:
+        while verdict == UNKNOWN and kernel.ending() == End.DECIDED and limit < task.max_steps:
             limit = min(limit + SLICE, task.max_steps)
             verdict = kernel.advance(limit)
             if pulse is not None and (limit > SLICE or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
-            return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards, TraceProblem(trace, *kernel.problem()))
-        length, _, reward = kernel.outcome()
-        verdicts.append(verdict)
-        ends.append(kernel.ending() or End.CUT if verdict == UNKNOWN else kernel.ending())
-        steps.append(length)
-        rewards.append(reward)
-    return BatchOutcome(bytes(verdicts), bytes(ends), steps, rewards)
+            problem = TraceProblem(trace, *kernel.problem())
+            break
+        for question, (verdicts, ends, steps, activities) in zip(task.questions, rows, strict=True):
+            known, end, length, activity = kernel.result(question)
+            verdicts.append(known)
+            ends.append(end or End.CUT if known == UNKNOWN else end)
+            steps.append(length)
+            activities.append(activity)
+        rewards.append(kernel.outcome()[2])
+    results = (Rows(bytes(v), bytes(e), steps, bytes(a), rewards) for v, e, steps, a in rows)
+    return BatchOutcome(tuple(results), problem)
 
 
 class StoppedError(Exception):

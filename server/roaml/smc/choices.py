@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from roaml.jani.model import Model, ModelType
 from roaml.smc.batch import Payload
+from roaml.smc.explore import NO_REGISTERS, Registers
 from roaml.smc.lss import candidates, described, probe
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import Compiled
@@ -88,9 +89,11 @@ def look_at_choices(
     automata: Sequence[str],
     pool: Pool,
     pulse: Pulse | None = None,
+    ignored: Registers = NO_REGISTERS,
 ) -> Choices:
     """
     Args:
+        ignored: registers that neither the goal nor a choice depends on.
         answer: the one under uniform choices.
         automata: the names of the elements of the system.
 
@@ -99,7 +102,7 @@ def look_at_choices(
     """
     if model.type is ModelType.DTMC:
         return Choices("the model has no nondeterminism", *_of_answer(answer))
-    solution = solve(compiled)
+    solution = solve(compiled, ignored=ignored)
     if solution is not None:
         states = "1 state" if solution.states == 1 else f"{solution.states:,} states"
         if not solution.has_choices:

@@ -25,6 +25,16 @@ class ExploredState(NamedTuple):
     reals: tuple[float, ...]
 
 
+class Registers(NamedTuple):
+    """Some of the registers of a program."""
+
+    ints: tuple[int, ...] = ()
+    reals: tuple[int, ...] = ()
+
+
+NO_REGISTERS = Registers()
+
+
 class Successor(NamedTuple):
     """A successor with its probability."""
 
@@ -54,13 +64,16 @@ class Explorer:
     Args:
         limit: the maximum number of combinations of edges and destinations that are enumerated in one state. With n
             automata of k edges on one action there are kⁿ of them.
+        ignored: registers that neither the goal nor a choice depends on; states that differ only there are the same.
     """
 
-    def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES) -> None:
+    def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES, ignored: Registers = NO_REGISTERS) -> None:
         self._limit = limit
+        self._ignored = ignored
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._instances = compiled.program.instances
         self._kernel.begin(0, 0)
+        self._start = self._kernel.snapshot()
         self.initial = self._state()
 
     def verdict(self, state: ExploredState) -> int:
@@ -119,5 +132,9 @@ class Explorer:
 
     def _state(self) -> ExploredState:
         ints, reals = self._kernel.snapshot()
+        for register in self._ignored.ints:
+            ints[register] = self._start[0][register]
+        for register in self._ignored.reals:
+            reals[register] = self._start[1][register]
         place = tuple(self._kernel.location(i) for i in range(self._instances))
         return ExploredState(place, tuple(ints), tuple(reals))

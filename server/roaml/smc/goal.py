@@ -8,11 +8,12 @@ state in which a trace stays.
 
 from __future__ import annotations
 
+import enum
 import math
 from array import array
 from dataclasses import dataclass, replace
 
-from roaml.jani.expressions import Expression, Unary
+from roaml.jani.expressions import Conditional, Expression, Integer, Unary
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     Accumulation,
@@ -82,6 +83,9 @@ class Question:
         threshold: the comparison of the value, if there is one.
         variables: the variables that the property reads.
         is_stuck: whether it is about stuck traces (`ask_stuck`).
+        can_be_vacuous: whether it may not apply to a trace (`Activity`).
+        can_be_late: see `ObserverOutputs`.
+        is_conditional: whether only traces that satisfy assumptions count.
     """
 
     name: str
@@ -90,28 +94,66 @@ class Question:
     threshold: Threshold | None
     variables: tuple[str, ...]
     is_stuck: bool = False
+    can_be_vacuous: bool = False
+    can_be_late: bool = False
+    is_conditional: bool = False
+
+
+class Activity(enum.IntEnum):
+    """How far a trace has exercised a property. The numbers are those of the kernel."""
+
+    CLOSED = 0
+    """The scope of the property was never judged: nothing was asked."""
+    IDLE = 1
+    """The scope was judged, but what the property is about never occurred in it, such as the request of a response."""
+    ASKED = 2
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledProperty:
-    """A property with its question and its goal."""
+    """A property with its question and its goal, and the goal of its assumptions if it has any."""
 
     property: Property
     question: Question
     goal: Goal
+    assumptions: Goal | None = None
 
 
-def ask(compilation: Compilation, property_: Property, open_: Expression | None = None) -> CompiledProperty:
+@dataclass(frozen=True, slots=True)
+class ObserverOutputs:
+    """Expressions over the variables of an observer; `None` where it has none.
+
+    Attributes:
+        open: where this holds at the end of the model's time, `F G` is undecided.
+        asked: whether what the property is about has occurred.
+        opened: whether the scope of the property has been judged.
+        can_be_late: whether the property fails if the time ends while something is still to come.
+    """
+
+    open: Expression | None = None
+    asked: Expression | None = None
+    opened: Expression | None = None
+    can_be_late: bool = False
+
+    @property
+    def expressions(self) -> tuple[Expression, ...]:
+        return tuple(each for each in (self.open, self.asked, self.opened) if each is not None)
+
+
+NO_OUTPUTS = ObserverOutputs()
+
+
+def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs = NO_OUTPUTS) -> CompiledProperty:
     """Compile a property.
 
     Args:
-        open_: where this holds at the end of the model's time, `F G` is undecided.
+        outputs: those of its observer.
 
     Raises:
         FaultError: it is of a form that sampling cannot answer, or compares with what is not a number.
     """
     check_form(property_)
-    return _Writer(compilation, property_, open_).asked()
+    return _Writer(compilation, property_, outputs).asked()
 
 
 STUCK_PROPERTY = "stuck"
@@ -126,12 +168,17 @@ def ask_stuck(compilation: Compilation) -> CompiledProperty:
     states = Predicate(StatePredicate.INITIAL)
     formula = Filter(FilterFunction.VALUES, Probability(ProbabilityOperator.PMAX, path), states)
     goal = Goal(
-        seen=array("i", [0] * len(compilation.watched)),
+        seen_start=array("i", [0] * (len(compilation.watched) + 1)),
+        seen_leaf=array("i"),
         left=array("i", [TRUE]),
         right=array("i", [STUCK]),
         lower=array("q", [0]),
         upper=array("q", [-1]),
         formula=array("i", [0]),
+        formula_start=array("i", [0, 1]),
+        leaf_start=array("i", [0, 1]),
+        activity=array("i", [-1]),
+        zero_steps=array("q", [0]),
         is_bounded=0,
         step_reward=-1,
         exit_reward=-1,
@@ -141,9 +188,9 @@ def ask_stuck(compilation: Compilation) -> CompiledProperty:
 
 
 class _Writer:
-    def __init__(self, compilation: Compilation, property_: Property, open_: Expression | None) -> None:
+    def __init__(self, compilation: Compilation, property_: Property, outputs: ObserverOutputs) -> None:
         self.compilation = compilation
-        self.open = open_
+        self.outputs = outputs
         self.names = compilation.layout.names
         self.property = property_
         self.left: list[int] = []
@@ -152,6 +199,8 @@ class _Writer:
         self.upper: list[int] = []
         self.formula: list[int] = []
         self.conditions: list[Formula] = []
+        self.read: list[set[str]] = []
+        self.unread: set[str] = set()
         self.is_bounded = 0
 
     def asked(self) -> CompiledProperty:
@@ -167,20 +216,48 @@ class _Writer:
             case _:
                 raise AssertionError("`check_form` lets nothing else pass")
         variables = self.variables()
-        question = Question(self.property.name, name, isinstance(formula, Expectation), threshold, variables)
-        seen = [int(storage.name in variables) for storage in self.compilation.watched]
+        outputs = self.outputs
+        question = Question(
+            self.property.name,
+            name,
+            isinstance(formula, Expectation),
+            threshold,
+            variables,
+            can_be_vacuous=outputs.asked is not None or outputs.opened is not None,
+            can_be_late=outputs.can_be_late,
+        )
+        seen_start, seen_leaf = array("i", [0]), array("i")
+        for storage in self.compilation.watched:
+            seen_leaf.extend(leaf for leaf, names in enumerate(self.read) if storage.name in names)
+            seen_start.append(len(seen_leaf))
         goal = Goal(
-            seen=array("i", seen),
+            seen_start=seen_start,
+            seen_leaf=seen_leaf,
             left=array("i", self.left),
             right=array("i", self.right),
             lower=array("q", self.lower),
             upper=array("q", self.upper),
             formula=array("i", self.formula),
+            formula_start=array("i", [0, len(self.formula)]),
+            leaf_start=array("i", [0, len(self.left)]),
+            activity=array("i", [self.activity()]),
+            zero_steps=array("q", [0]),
             is_bounded=self.is_bounded,
             step_reward=step_reward,
             exit_reward=exit_reward,
         )
         return CompiledProperty(self.property, question, goal)
+
+    def activity(self) -> int:
+        """Code that gives the activity of the property in a trace."""
+        asked, opened = self.outputs.asked, self.outputs.opened
+        if asked is None and opened is None:
+            return -1
+        idle: Expression = Integer(Activity.IDLE)
+        if opened is not None:
+            idle = Conditional(opened, idle, Integer(Activity.CLOSED))
+        value = Conditional(asked, Integer(Activity.ASKED), idle) if asked is not None else idle
+        return self.compilation.expressions.integer(value, self.names)
 
     def variables(self) -> tuple[str, ...]:
         found = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))
@@ -259,12 +336,13 @@ class _Writer:
 
     def at_end(self, lasting: Lasting) -> None:
         """`F G b` is true if b holds in the state in which a trace stays."""
-        left = FALSE if self.open is None else self.condition(self.open)
+        left = FALSE if self.outputs.open is None else self.condition(self.outputs.open)
         right = self.condition(lasting.condition)
         self.formula.append(len(self.left))
         self.left.append(left)
         self.right.append(right)
         self.lower.append(AT_END)
+        self._end_leaf()
         self.upper.append(-1)
         if lasting.is_negated:
             self.formula.append(NOT)
@@ -277,8 +355,14 @@ class _Writer:
         self.right.append(right)
         self.lower.append(lower)
         self.upper.append(-1 if upper is None else upper)
+        self._end_leaf()
         if lower > 0 or upper is not None:
             self.is_bounded = max(self.is_bounded, 1)
+
+    def _end_leaf(self) -> None:
+        """Note the variables that the conditions of the last until read."""
+        self.read.append(self.unread)
+        self.unread = set()
 
     def condition(self, formula: Formula, negated: bool = False) -> int:
         """The code of a formula about states."""
@@ -291,6 +375,7 @@ class _Writer:
             case _:
                 assert not isinstance(formula, ProperFormula)
                 self.conditions.append(formula)
+                self.unread.update(name for name, _ in identifiers(formula))
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
                 return self.compilation.expressions.condition(
                     expression, self.names, formula.origin or self.property.origin

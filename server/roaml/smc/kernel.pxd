@@ -11,7 +11,7 @@ cdef u64 MASK, GOLDEN, MIX_1, MIX_2
 cdef i64 MOST, LEAST
 cdef double TO_UNIT, HUGE, TINY
 cdef u64 FEW
-cdef int FALSE, TRUE, UNKNOWN, FAULTY
+cdef int FALSE, TRUE, UNKNOWN, FAULTY, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
 
 @cython.final
@@ -30,9 +30,11 @@ cdef class Kernel:
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
     cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, location_code, location_mark
-    cdef int[::1] seen, left, right, formula, verdict, holds_left, holds_right, stack
+    cdef int[::1] seen_start, seen_leaf, left, right, formula, formula_start, leaf_start, activity
+    cdef int[::1] verdict, holds_left, holds_right, stale, stack, asked, known, known_end, known_activity
+    cdef i64[::1] known_steps
     cdef i64[::1] lower, upper
-    cdef int leaves, is_bounded, step_reward, exit_reward
+    cdef int leaves, questions, status, is_bounded, step_reward, exit_reward
     cdef int[::1] ready, ready_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0, position, position_0
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
@@ -108,10 +110,10 @@ cdef class Kernel:
     cdef int _is_possible(self, int way) noexcept
     @cython.locals(i=int, changed=int)
     cdef int _changes(self, int slot, int way) noexcept
-    @cython.locals(status=int)
+    @cython.locals(status=int, i=int)
     cdef int _advance(self, i64 limit) noexcept
     cdef int _finish(self, int status) noexcept
-    @cython.locals(i=int)
+    @cython.locals(i=int, decided=int)
     cdef int _look(self) noexcept
     cdef int _holds(self, int code) noexcept
     cdef int _is_deadlock(self) noexcept
@@ -121,8 +123,13 @@ cdef class Kernel:
     cdef int _goes_round(self) noexcept
     @cython.locals(found=int, i=int, mark=int)
     cdef int _reason(self, int repeats) noexcept
-    @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)
+    @cython.locals(status=int, is_open=int, i=int)
     cdef int _combined(self) noexcept
+    cdef int _active(self, int code) noexcept
+    @cython.locals(i=int)
+    cdef void _drop(self, int question) noexcept
+    @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)
+    cdef int _value(self, int start, int end) noexcept
     @cython.locals(register=int)
     cdef void _add_reward(self, int code) noexcept
     cdef void _fail(self, int fault, int at) noexcept

@@ -39,6 +39,8 @@ FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """What is known of the goal. UNKNOWN: the trace can go on; FAULTY: the model executed an undefined operation."""
 DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
 """The reason why a trace has ended, see `end.End`."""
+ASKED = 2
+"""The activity of a question that every trace answers, see `goal.Activity`."""
 
 
 def compiled() -> bool:
@@ -99,12 +101,17 @@ class Kernel:
         self.location_code = program.location_code
         self.location_mark = program.location_mark
 
-        self.seen = goal.seen
+        self.seen_start = goal.seen_start
+        self.seen_leaf = goal.seen_leaf
         self.left = goal.left
         self.right = goal.right
         self.lower = goal.lower
         self.upper = goal.upper
         self.formula = goal.formula
+        self.formula_start = goal.formula_start
+        self.leaf_start = goal.leaf_start
+        self.activity = goal.activity
+        self.questions = len(goal.activity)
         self.leaves = len(goal.left)
         self.is_bounded = goal.is_bounded
         self.step_reward = goal.step_reward
@@ -112,7 +119,15 @@ class Kernel:
         self.verdict = goal.left[:]
         self.holds_left = goal.left[:]
         self.holds_right = goal.left[:]
+        self.stale = goal.left[:]
         self.stack = goal.formula[:]
+        self.asked = goal.activity[:]
+        self.known = goal.activity[:]
+        self.known_end = goal.activity[:]
+        self.known_activity = goal.activity[:]
+        self.known_steps = goal.zero_steps[:]
+        for i in range(self.questions):
+            self.asked[i] = 1
 
         self.ready = program.zero_slots[:]
         self.ready_0 = program.zero_slots[:]
@@ -154,12 +169,20 @@ class Kernel:
         self.mass = 1.0
         self.rank = 0
         self.end = DECIDED
+        self.status = UNKNOWN
         self.steps = 0
         self.still = 0
         self.reward = 0.0
         self._prepare()
 
     # ------------------------------------------------------------ public
+
+    def choose(self, questions: Sequence[int]) -> None:
+        """Ask only these questions, given by their numbers, of the traces that begin from now on."""
+        for i in range(self.questions):
+            self.asked[i] = 0
+        for i in questions:
+            self.asked[i] = 1
 
     def begin(self, seed: int, trace: int, scheduler: int = 0) -> int:
         """Go to the start of a trace; `advance` continues it.
@@ -168,7 +191,7 @@ class Kernel:
             scheduler: 0 draws uniformly among the choices; any other number identifies a scheduler, see `lss`.
 
         Returns:
-            What is known of the goal there.
+            What is known of the goal there: UNKNOWN while it is unknown of one of the questions.
         """
         self.key = self._mixed((self._mixed(seed & MASK) + (trace & MASK) * GOLDEN) & MASK)
         self.drawn = 0
@@ -209,6 +232,18 @@ class Kernel:
     def outcome(self) -> tuple[int, int, float]:
         """The number of steps of the trace, its number of random draws, and its reward."""
         return self.steps, self.drawn, self.reward
+
+    def result(self, question: int) -> tuple[int, int, int, int]:
+        """What the trace says about a question: the verdict; why the trace has ended for it (`end.End`), DECIDED while
+        it can go on; the number of steps until then; and its `goal.Activity`."""
+        if self.known[question] == UNKNOWN:
+            return UNKNOWN, self.end, self.steps, self._active(self.activity[question])
+        return (
+            self.known[question],
+            self.known_end[question],
+            self.known_steps[question],
+            self.known_activity[question],
+        )
 
     def ending(self) -> int:
         """Why the trace has ended (`end.End`); also DECIDED while it can go on."""
@@ -266,6 +301,32 @@ class Kernel:
         for i in range(self.instances):
             for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
                 self._set_ready(self.group_slot[group], self._count(group))
+
+    def save(self) -> tuple[Any, ...]:
+        """Everything that determines how the trace continues, for `load`."""
+        arrays = [list(array) for array in self._changing()]
+        counts = (self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved)
+        goal = (self.must_look, self.steps, self.still, self.reward)
+        draws = (self.key, self.drawn, self.scheduler)
+        loop = (self.loop_state, self.loop_drawn, self.loop_span, self.loop_left)
+        return arrays, counts, goal, draws, loop
+
+    def load(self, saved: tuple[Any, ...]) -> None:
+        """Go back to a state of the same model and goal that `save` has returned."""
+        arrays, counts, goal, draws, loop = saved
+        self._reset()
+        for array, values in zip(self._changing(), arrays, strict=True):
+            for i, value in enumerate(values):
+                array[i] = value
+        self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved = counts
+        self.must_look, self.steps, self.still, self.reward = goal
+        self.key, self.drawn, self.scheduler = draws
+        self.loop_state, self.loop_drawn, self.loop_span, self.loop_left = loop
+
+    def _changing(self) -> list[Any]:
+        """The arrays that steps change, except for those that contain something only within a step."""
+        state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
+        return [*state, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for
@@ -350,6 +411,13 @@ class Kernel:
         self.must_look = 1
         for i in range(self.leaves):
             self.verdict[i] = UNKNOWN
+            self.stale[i] = 1
+        self.status = UNKNOWN
+        for i in range(self.questions):
+            self.known[i] = UNKNOWN
+            if self.asked[i] == 0:
+                self.known[i] = FALSE
+                self._drop(i)
 
     # ------------------------------------------------------------ random numbers
 
@@ -750,7 +818,8 @@ class Kernel:
         for i in range(self.note_count):
             variable = self.notes[i]
             self.noted[variable] = 0
-            if self.seen[variable] != 0:
+            for k in range(self.seen_start[variable], self.seen_start[variable + 1]):
+                self.stale[self.seen_leaf[k]] = 1
                 self.must_look = 1
             for k in range(self.watch_start[variable], self.watch_start[variable + 1]):
                 instance = self.watch_instance[k]
@@ -834,11 +903,14 @@ class Kernel:
                 return self._finish(self._goes_round())
             if self.is_bounded == 2:
                 self.must_look = 1
+                for i in range(self.leaves):
+                    self.stale[i] = 1
             if self.must_look != 0 or self.is_bounded != 0:
                 status = self._look()
                 if status != UNKNOWN:
                     if self.is_bounded == 2 and self.enabled_count == 0:
                         self.end = self._reason(0)
+                        self.known_end[0] = self.end
                     return self._finish(status)
             if self.moved != 0:
                 self.still = 0
@@ -853,9 +925,11 @@ class Kernel:
 
     def _look(self) -> int:
         """Evaluate the goal in the current state; returns what is known of it."""
+        decided = 0
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
-                if self.must_look != 0:
+                if self.stale[i] != 0:
+                    self.stale[i] = 0
                     self.holds_left[i] = self._holds(self.left[i])
                     self.holds_right[i] = self._holds(self.right[i])
                     if self.fault != 0:
@@ -864,10 +938,12 @@ class Kernel:
                     continue
                 if self.holds_right[i] != 0 and self.steps >= self.lower[i]:
                     self.verdict[i] = TRUE
+                    decided = 1
                 elif self.holds_left[i] == 0 or (self.upper[i] >= 0 and self.steps >= self.upper[i]):
                     self.verdict[i] = FALSE
+                    decided = 1
         self.must_look = 0
-        return self._combined()
+        return self.status if decided == 0 else self._combined()
 
     def _holds(self, code: int) -> int:
         """The value of a condition: the address of its bytecode, or a negative number that `program.Goal` defines."""
@@ -926,9 +1002,36 @@ class Kernel:
         return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:
-        """The value of the formula over the leaves. It is in reverse Polish notation: -1 is not, -2 and, -3 or."""
+        """Evaluate the formulas of the open questions; UNKNOWN if one of them stays open, else the last verdict."""
+        status = self.status
+        is_open = 0
+        for i in range(self.questions):
+            if self.known[i] == UNKNOWN:
+                status = self._value(self.formula_start[i], self.formula_start[i + 1])
+                if status == UNKNOWN:
+                    is_open = 1
+                else:
+                    self.known[i] = status
+                    self.known_end[i] = self.end
+                    self.known_steps[i] = self.steps
+                    self.known_activity[i] = self._active(self.activity[i])
+                    self._drop(i)
+        self.status = UNKNOWN if is_open != 0 else status
+        return self.status
+
+    def _active(self, code: int) -> int:
+        """The `goal.Activity` that `code` computes."""
+        return ASKED if code < 0 else self._execute(code)
+
+    def _drop(self, question: int) -> None:
+        """Do not evaluate the leaves of a question any more."""
+        for i in range(self.leaf_start[question], self.leaf_start[question + 1]):
+            self.verdict[i] = FALSE
+
+    def _value(self, start: int, end: int) -> int:
+        """The value of a formula over the leaves. It is in reverse Polish notation: -1 is not, -2 and, -3 or."""
         top = 0
-        for i in range(len(self.formula)):
+        for i in range(start, end):
             item = self.formula[i]
             if item >= 0:
                 self.stack[top] = self.verdict[item]

@@ -214,12 +214,13 @@ def probe(
     for task, outcome in pool.outcomes(tasks, pulse):
         if outcome.problem is not None:
             raise TraceFaultError(outcome.problem)
-        decided = [verdict == TRUE for verdict, steps in zip(outcome.verdicts, outcome.steps, strict=True)
+        rows = outcome.questions[0]
+        decided = [verdict == TRUE for verdict, steps in zip(rows.verdicts, rows.steps, strict=True)
                    if verdict in (TRUE, FALSE)]  # fmt: skip
-        spent += sum(outcome.steps)
+        spent += sum(rows.steps)
         if decided:
             shares[task.scheduler] = sum(decided) / len(decided)
-            lengths[task.scheduler] = sum(outcome.steps) / len(outcome.steps)
+            lengths[task.scheduler] = sum(rows.steps) / len(rows.steps)
         if spent > 2 * budget:
             break
     if not shares:
@@ -254,7 +255,8 @@ def _best(
             if outcome.problem is not None:
                 raise TraceFaultError(outcome.problem)
             successes, traces = candidates[task.scheduler]
-            good = outcome.verdicts.count(TRUE) + outcome.verdicts.count(UNKNOWN) / 2
+            verdicts = outcome.questions[0].verdicts
+            good = verdicts.count(TRUE) + verdicts.count(UNKNOWN) / 2
             candidates[task.scheduler] = successes + good, traces + tried
             state.done += 1
             told(state)

@@ -4,25 +4,37 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
-from roaml.jani.expressions import Expression
 from roaml.jani.model import Model
-from roaml.jani.passive import without_passive
-from roaml.jani.properties import Property
+from roaml.jani.passive import unread_variables, without_passive
+from roaml.jani.properties import Formula, Property
 from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, look_at_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
+from roaml.smc.explore import Registers
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import CompiledProperty, ask, ask_stuck
+from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, ask, ask_stuck
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
-from roaml.smc.program import Compiled, Program
-from roaml.smc.run import Answer, Options, Tally, TraceFaultError, Watch, answer
+from roaml.smc.program import Compiled, Program, merged
+from roaml.smc.registers import REAL, product
+from roaml.smc.run import (
+    Answer,
+    Inquiry,
+    Options,
+    Tally,
+    TraceFaultError,
+    Watch,
+    answer,
+    answer_together,
+    columns_of,
+    summary,
+)
 from roaml.smc.size import check_size
 
 DEPTH = 15_000
@@ -34,7 +46,7 @@ class ModelChecker:
 
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
-        open_: property -> condition under which it is undecided at the end of time; see `goal.ask`.
+        outputs: property -> what its observer says, if it has one.
         asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
@@ -53,10 +65,10 @@ class ModelChecker:
         marks: Marks = MappingProxyType({}),
         *,
         asks_stuck: bool = False,
-        open_: Mapping[str, Expression] = MappingProxyType({}),
+        outputs: Mapping[str, ObserverOutputs] = MappingProxyType({}),
     ) -> None:
         self.model = model
-        self.open_ = open_
+        self.outputs = outputs
         self._marks = marks
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
@@ -64,12 +76,13 @@ class ModelChecker:
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
             check_size(model, chosen)
-            self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *open_.values()])
+            read = [expression for each in outputs.values() for expression in each.expressions]
+            self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *read])
             self.asked: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    self.asked += (ask(self._compilation, property_, open_.get(property_.name)),)
+                    self.asked += (ask(self._compilation, property_, outputs.get(property_.name, NO_OUTPUTS)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
             self.stuck: CompiledProperty = ask_stuck(self._compilation)
@@ -87,25 +100,45 @@ class ModelChecker:
         return self._compilation.legend
 
     def compiled(self, asked: CompiledProperty) -> Compiled:
+        """The model with the goal of a question, without its assumptions."""
         return Compiled(self.program, asked.goal)
 
     def reduced(self, asked: CompiledProperty) -> ModelChecker:
         """The same for one question, without the automata that only matter to others: it has fewer states and the same
         probabilities. Its traces have other numbers."""
-        model = without_passive(self.model, asked.property.expression, *self._open(asked).values())
+        model = without_passive(self.model, *self._read(asked))
         if model is self.model:
             return self
         properties = () if asked.question.is_stuck else (asked.property,)
         model = replace(model, properties=properties)
-        return ModelChecker(model, properties, self._marks, asks_stuck=asked.question.is_stuck, open_=self._open(asked))
+        return ModelChecker(
+            model, properties, self._marks, asks_stuck=asked.question.is_stuck, outputs=self._outputs(asked)
+        )
 
-    def _open(self, asked: CompiledProperty) -> Mapping[str, Expression]:
+    def _ignored(self, asked: CompiledProperty) -> Registers:
+        """The registers that only matter to other questions."""
+        names = unread_variables(self.model, *self._read(asked))
+        ints: list[int] = []
+        reals: list[int] = []
+        for storage in self.legend.layout.shared:
+            if storage.name in names:
+                registers = reals if storage.kind == REAL else ints
+                registers += range(storage.base, storage.base + product(storage.shape))
+        return Registers(tuple(ints), tuple(reals))
+
+    def _read(self, asked: CompiledProperty) -> tuple[Formula, ...]:
+        """All that the probability of a question depends on."""
+        is_open = self.outputs.get(asked.property.name, NO_OUTPUTS).open
+        return (asked.property.expression, *([] if is_open is None else [is_open]))
+
+    def _outputs(self, asked: CompiledProperty) -> Mapping[str, ObserverOutputs]:
         name = asked.property.name
-        return {name: self.open_[name]} if name in self.open_ else {}
+        return {name: ObserverOutputs(open=self.outputs[name].open)} if name in self.outputs else {}
 
-    def payload(self, asked: CompiledProperty) -> Payload:
-        """The data that workers need for a question."""
-        return pack(self.compiled(asked))
+    def payload(self, *asked: CompiledProperty) -> Payload:
+        """The data that workers need for questions."""
+        goals = [goal for each in asked for goal in (each.goal, each.assumptions) if goal is not None]
+        return pack(Compiled(self.program, merged(goals)))
 
     def answer(
         self,
@@ -125,6 +158,35 @@ class ModelChecker:
             return answer(self.payload(asked), asked.question, options, pool, tally, watch, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
+
+    def answer_together(
+        self,
+        asked: Sequence[CompiledProperty],
+        options: Options,
+        pool: Runner,
+        tallies: Sequence[Tally],
+        watch: Callable[[CompiledProperty, Tally], None],
+        pulse: Pulse | None = None,
+    ) -> list[Answer | FaultError]:
+        """Answer several questions by the same traces, each exactly as by traces of its own; see
+        `roaml.smc.run.answer_together`.
+
+        Args:
+            tallies: where to go on; they are changed as batches come in.
+            watch: called for each question after each of its batches.
+        """
+        questions = [each.question for each in asked]
+        inquiries = [Inquiry(*parts) for parts in zip(questions, tallies, columns_of(questions), strict=True)]
+        names = {each.question.name: each for each in asked}
+        answer_together(
+            self.payload(*asked), inquiries, options, pool, lambda i: watch(names[i.question.name], i.tally), pulse
+        )
+        return [
+            summary(inquiry.question, options, inquiry.tally)
+            if inquiry.problem is None
+            else self.fault(inquiry.problem)
+            for inquiry in inquiries
+        ]
 
     def search(
         self,
@@ -154,10 +216,9 @@ class ModelChecker:
         Raises:
             FaultError: a trace under some scheduler failed.
         """
-        reduced = self.reduced(asked)
-        compiled = reduced.compiled(asked if reduced is self else reduced.asked[0])
+        compiled, payload, ignored = self.compiled(asked), self.payload(asked), self._ignored(asked)
         try:
-            return look_at_choices(self.model, compiled, self.payload(asked), answer, self.automata, pool, pulse)
+            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse, ignored)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

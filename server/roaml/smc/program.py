@@ -9,6 +9,7 @@ range of the parts of `i`. Code is given by the index of its first instruction, 
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -99,29 +100,78 @@ class Program:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """What is asked about a trace: a formula over untils, and rewards.
+    """What is asked about a trace: for each question a formula over untils, and rewards. A goal with rewards, or with a
+    deadlock in a condition, has one question.
 
     Attributes:
-        seen: for each watched variable, whether a condition reads it.
+        seen_start, seen_leaf: for each watched variable, the untils with a condition that reads it.
         left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 its opposite; on the right
             side, -5 that the trace gets stuck.
         lower, upper: its step bounds, both inclusive; -1 is none. With the lower bound `AT_END`, it is decided where
             the trace ends: it is true if the right side holds there; it stays undecided if the time is over and the
             left side holds.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
+        formula_start, leaf_start: the formula and the untils of each question.
+        activity: code for each question that gives its `goal.Activity`; -1 if that is always `ASKED`.
+        zero_steps: a counter for each question.
         is_bounded: 0: only changes of variables matter, 1: the number of steps, too, 2: and what is enabled.
         step_reward, exit_reward: code that gives the register of the reward of a step.
     """
 
-    seen: Ints
+    seen_start: Ints
+    seen_leaf: Ints
     left: Ints
     right: Ints
     lower: Ints
     upper: Ints
     formula: Ints
+    formula_start: Ints
+    leaf_start: Ints
+    activity: Ints
+    zero_steps: Ints
     is_bounded: int
     step_reward: int
     exit_reward: int
+
+
+def merged(goals: Sequence[Goal]) -> Goal:
+    """One goal with the questions of several, in their order."""
+    first, *others = goals
+    if not others:
+        return first
+    assert not any(goal.is_bounded > 1 or goal.step_reward >= 0 or goal.exit_reward >= 0 for goal in goals)
+    offsets = [sum(len(goal.left) for goal in goals[:i]) for i in range(len(goals))]
+    seen_start, seen_leaf = array("i", [0]), array("i")
+    for variable in range(len(first.seen_start) - 1):
+        for goal, offset in zip(goals, offsets, strict=True):
+            part = goal.seen_leaf[goal.seen_start[variable] : goal.seen_start[variable + 1]]
+            seen_leaf.extend(leaf + offset for leaf in part)
+        seen_start.append(len(seen_leaf))
+    formula_start, leaf_start, formula = array("i", [0]), array("i", [0]), array("i")
+    for goal, offset in zip(goals, offsets, strict=True):
+        formula_start.extend(len(formula) + end for end in goal.formula_start[1:])
+        leaf_start.extend(offset + end for end in goal.leaf_start[1:])
+        formula.extend(item + offset if item >= 0 else item for item in goal.formula)
+    return Goal(
+        seen_start,
+        seen_leaf,
+        _joined("i", [goal.left for goal in goals]),
+        _joined("i", [goal.right for goal in goals]),
+        _joined("q", [goal.lower for goal in goals]),
+        _joined("q", [goal.upper for goal in goals]),
+        formula,
+        formula_start,
+        leaf_start,
+        _joined("i", [goal.activity for goal in goals]),
+        _joined("q", [goal.zero_steps for goal in goals]),
+        max(goal.is_bounded for goal in goals),
+        -1,
+        -1,
+    )
+
+
+def _joined(kind: str, parts: Iterable[Ints]) -> Ints:
+    return array(kind, [item for part in parts for item in part])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,13 +9,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from roaml.smc.batch import BatchOutcome, Payload, Task, TraceProblem
+from roaml.smc.batch import Payload, Rows, Task, TraceProblem
 from roaml.smc.end import End
-from roaml.smc.goal import Question
+from roaml.smc.goal import Activity, Question
 from roaml.smc.pool import Pulse, Runner
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
@@ -32,6 +32,10 @@ the allowed error. A test computes that the total error stays within the confide
 LEAST_EPSILON = 1e-9
 """The minimum half-width of an interval; a narrower one needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
+MAX_REJECTED = 100_000
+"""The number of traces after which no more are made if the assumptions have rejected all of them."""
+REJECTED = 4
+"""The verdict on a trace that violates the assumptions of a question."""
 KEPT = 1000
 """The maximum number of stored trace numbers for each verdict."""
 
@@ -88,6 +92,10 @@ class Tally:
     """The state after some batches; sufficient to continue.
 
     Attributes:
+        traces: of a question with assumptions, the accepted ones.
+        rejected: the traces that violate the assumptions.
+        closed, idle: the traces with these activities; see `goal.Activity`.
+        late: the traces that failed at the end of time, because something was still to come.
         accepted: the decision of a sequential test.
         is_revised: whether the options were changed after results were known: then the number of traces was chosen with
             knowledge of them.
@@ -99,6 +107,10 @@ class Tally:
     successes: int = 0
     undecided: int = 0
     steps: int = 0
+    rejected: int = 0
+    closed: int = 0
+    idle: int = 0
+    late: int = 0
     mean: Mean = field(default_factory=Mean)
     accepted: bool | None = None
     is_finished: bool = False
@@ -106,6 +118,11 @@ class Tally:
     examples: dict[int, list[Seen]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
     shortest: dict[int, Seen] = field(default_factory=dict)
     ends: dict[End, Ended] = field(default_factory=dict)
+
+    @property
+    def simulated(self) -> int:
+        """The number of all traces, rejected or not."""
+        return self.traces + self.rejected
 
     def ended(self, *reasons: End) -> int:
         """The number of traces that have ended for one of these reasons."""
@@ -118,6 +135,10 @@ class Tally:
             "successes": self.successes,
             "undecided": self.undecided,
             "steps": self.steps,
+            "rejected": self.rejected,
+            "closed": self.closed,
+            "idle": self.idle,
+            "late": self.late,
             "mean": [self.mean.number, self.mean.mean.hex(), self.mean.squares.hex()],
             "accepted": self.accepted,
             "finished": self.is_finished,
@@ -139,6 +160,10 @@ class Tally:
             successes=int(value["successes"]),
             undecided=int(value["undecided"]),
             steps=int(value["steps"]),
+            rejected=int(value["rejected"]),
+            closed=int(value["closed"]),
+            idle=int(value["idle"]),
+            late=int(value["late"]),
             mean=Mean(int(count), float.fromhex(mean), float.fromhex(squares)),
             accepted=value["accepted"],
             is_finished=bool(value["finished"]),
@@ -210,6 +235,7 @@ def answer(
     """Run traces until the question is answered.
 
     Args:
+        payload: of the question, and of its assumptions if it has any.
         tally: the state to continue from; it is updated after each batch, so that it contains the result if this is
             interrupted.
         watch: called after each batch.
@@ -218,20 +244,119 @@ def answer(
     Raises:
         TraceFaultError: a trace failed.
     """
-    tally = Tally() if tally is None else tally
-    if not tally.is_finished:
-        tasks = _tasks(payload, options, tally.traces, first, scheduler)
-        for _, outcome in pool.outcomes(tasks, pulse):
-            _add(tally, outcome, question, options, first)
+    inquiry = Inquiry(question, Tally() if tally is None else tally, columns_of([question])[0])
+
+    def watch_one(_: Inquiry) -> None:
+        if watch is not None:
+            watch(inquiry.tally)
+
+    if not inquiry.tally.is_finished:
+        problem = _run(payload, [inquiry], options, pool, watch_one, pulse, first, scheduler)
+        if problem is not None:
+            raise TraceFaultError(problem)
+    return summary(question, options, inquiry.tally)
+
+
+@dataclass(slots=True)
+class Inquiry:
+    """A question that shares traces with others.
+
+    Attributes:
+        tally: changed after each batch.
+        columns: its numbers in the goal of the shared traces: its own, and that of its assumptions if it has any.
+        problem: the trace that failed for it; then it has no answer.
+    """
+
+    question: Question
+    tally: Tally
+    columns: tuple[int, ...]
+    problem: TraceProblem | None = None
+
+
+def columns_of(questions: Iterable[Question]) -> list[tuple[int, ...]]:
+    """The numbers that questions have in a goal that is made of theirs in their order."""
+    columns: list[tuple[int, ...]] = []
+    count = 0
+    for question in questions:
+        size = 2 if question.is_conditional else 1
+        columns.append(tuple(range(count, count + size)))
+        count += size
+    return columns
+
+
+def answer_together(
+    payload: Payload,
+    inquiries: Sequence[Inquiry],
+    options: Options,
+    pool: Runner,
+    watch: Callable[[Inquiry], None],
+    pulse: Pulse | None = None,
+) -> None:
+    """Answer several questions by the same traces. Each answer is exactly that of `answer`: a question is asked until
+    its own rule stops it, and a trace says the same whatever else is asked of it.
+
+    Args:
+        payload: with the questions of all inquiries.
+        inquiries: their tallies contain the results; a trace that fails is stored in `problem`.
+        watch: called for each question after each of its batches.
+    """
+    groups: dict[object, list[Inquiry]] = {}
+    for inquiry in inquiries:
+        if not inquiry.tally.is_finished:
+            # Questions share traces if they have the same numbers of traces before them.
+            key = (inquiry.tally.simulated, _limit(inquiry.question, options))
+            groups.setdefault(key, []).append(inquiry)
+    for group in groups.values():
+        if _run(payload, group, options, pool, watch, pulse) is None:
+            continue
+        # A trace has failed, which need not concern all of them: the others would have ended it before.
+        for inquiry in group:
+            if not inquiry.tally.is_finished:
+                inquiry.problem = _run(payload, [inquiry], options, pool, watch, pulse)
+
+
+def _run(
+    payload: Payload,
+    inquiries: Sequence[Inquiry],
+    options: Options,
+    pool: Runner,
+    watch: Callable[[Inquiry], None],
+    pulse: Pulse | None,
+    first: int = 0,
+    scheduler: int = 0,
+) -> TraceProblem | None:
+    """Run traces until the questions are answered, which have the same number of traces before them.
+
+    Returns:
+        The trace that failed. If there are several questions, its batch is not counted.
+    """
+    open_ = list(inquiries)
+    done = inquiries[0].tally.simulated
+    limit = _limit(inquiries[0].question, options)
+
+    def tasks() -> Iterator[Task]:
+        for start, size in _batches(done, limit):
+            columns = tuple(column for inquiry in open_ for column in inquiry.columns)
+            yield Task(payload, options.seed, first + start, size, options.max_steps, scheduler, columns)
+
+    for task, outcome in pool.outcomes(tasks(), pulse):
+        if outcome.problem is not None and len(inquiries) > 1:
+            return outcome.problem
+        rows = dict(zip(task.questions, outcome.questions, strict=True))
+        for inquiry in tuple(open_):
+            tally, question = inquiry.tally, inquiry.question
+            _add(tally, [rows[column] for column in inquiry.columns], question, options, first)
             if outcome.problem is not None:
-                raise TraceFaultError(outcome.problem)
+                return outcome.problem
             tally.is_finished = _is_enough(tally, question, options)
-            if watch is not None:
-                watch(tally)
+            watch(inquiry)
             if tally.is_finished:
-                break
-        tally.is_finished = True
-    return summary(question, options, tally)
+                open_.remove(inquiry)
+        if not open_:
+            break
+    for inquiry in open_:
+        inquiry.tally.is_finished = True
+    return None
 
 
 def summary(question: Question, options: Options, tally: Tally) -> Answer:
@@ -279,30 +404,44 @@ def wanted_traces(options: Options) -> int | None:
     return options.max_traces if options.method == FIXED else None
 
 
-def _tasks(payload: Payload, options: Options, done: int, first: int, scheduler: int) -> Iterator[Task]:
-    limits = [limit for limit in (options.max_traces, wanted_traces(options)) if limit is not None]
-    limit = min(limits) if limits else None
+def _limit(question: Question, options: Options) -> int | None:
+    """The maximum number of traces; with assumptions, how many of them are accepted is not known before."""
+    wanted = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
+    limits = [limit for limit in (options.max_traces, wanted) if limit is not None]
+    return min(limits) if limits else None
+
+
+def _batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
+    """The first trace and the size of each batch after `done` traces."""
     while limit is None or done < limit:
         size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
         if limit is not None:
             size = min(size, limit - done)
-        yield Task(payload, options.seed, first + done, size, options.max_steps, scheduler)
+        yield done, size
         done += size
 
 
-def _add(tally: Tally, outcome: BatchOutcome, question: Question, options: Options, first: int) -> None:
+def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Options, first: int) -> None:
     ratio = ratio_of(question, options)
-    rows = zip(outcome.verdicts, outcome.ends, outcome.steps, outcome.rewards, strict=True)
-    for verdict, reason, steps, reward in rows:
-        trace = first + tally.traces
-        tally.traces += 1
+    for verdict, reason, steps, activity, reward in _given(rows) if question.is_conditional else _each(rows[0]):
+        trace = first + tally.simulated
         tally.steps += steps
+        if verdict == REJECTED:
+            tally.rejected += 1
+            continue
+        tally.traces += 1
         if verdict == TRUE:
             tally.successes += 1
             if question.is_reward:
                 tally.mean = tally.mean.add(reward)
         elif verdict == UNKNOWN:
             tally.undecided += 1
+        elif reason == End.TIME and question.can_be_late:
+            tally.late += 1
+        if activity == Activity.CLOSED:
+            tally.closed += 1
+        elif activity == Activity.IDLE:
+            tally.idle += 1
         examples = tally.examples[verdict]
         if len(examples) < KEPT:
             examples.append(Seen(trace, steps))
@@ -315,6 +454,23 @@ def _add(tally: Tally, outcome: BatchOutcome, question: Question, options: Optio
             if above is not None:
                 tally.accepted = above is question.threshold.is_lower
                 return
+
+
+def _each(rows: Rows) -> Iterator[tuple[int, int, int, int, float]]:
+    return zip(rows.verdicts, rows.ends, rows.steps, rows.activities, rows.rewards, strict=True)
+
+
+def _given(both: Sequence[Rows]) -> Iterator[tuple[int, int, int, int, float]]:
+    """The traces for a question with assumptions: those that violate them are rejected, those for which they are
+    undecided are undecided."""
+    rows, assumptions = both
+    for row, assumed, end, steps in zip(
+        _each(rows), assumptions.verdicts, assumptions.ends, assumptions.steps, strict=True
+    ):
+        if assumed == TRUE:
+            yield row
+        else:
+            yield (REJECTED if assumed == FALSE else UNKNOWN), end, steps, row[3], 0.0
 
 
 def _add_end(tally: Tally, reason: int, seen: Seen) -> None:
@@ -335,13 +491,18 @@ def ratio_of(question: Question, options: Options) -> Ratio | None:
 
 
 def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
+    if question.is_conditional:
+        if tally.traces == 0 and tally.simulated >= MAX_REJECTED:
+            return True
+        if options.method == OKAMOTO:
+            return tally.traces >= okamoto(options.confidence, options.epsilon)
     if options.method in (OKAMOTO, FIXED):
         return False
     if options.method == SPRT and ratio_of(question, options) is not None:
         return tally.accepted is not None
     if question.is_reward and tally.traces - tally.successes - tally.undecided:
         return True
-    if tally.traces >= NO_MORE_FOR_REWARDS:
+    if tally.simulated >= NO_MORE_FOR_REWARDS:
         return True
     return _is_narrow(tally, question, options) or _is_hopeless(tally, options)
 

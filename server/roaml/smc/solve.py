@@ -14,7 +14,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.smc.explore import ExploredState, Explorer, StateFaultError, TooManyChoicesError
+from roaml.smc.explore import NO_REGISTERS, ExploredState, Explorer, Registers, StateFaultError, TooManyChoicesError
 from roaml.smc.goal import NOT, STUCK
 from roaml.smc.program import AT_END, FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
@@ -55,11 +55,14 @@ class Solution:
         )
 
 
-def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution | None:
+def solve(
+    compiled: Compiled, limit: int = LIMIT, work: int = WORK, ignored: Registers = NO_REGISTERS
+) -> Solution | None:
     """Explore all states.
 
     Args:
         limit: the maximum number of states.
+        ignored: see `Explorer`.
         work: the maximum number of registers and automata, over all states that are reached by all choices.
 
     Returns:
@@ -70,7 +73,7 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
     is_until = len(goal.left) == 1 and goal.right[0] != STUCK and goal.lower[0] != AT_END
     is_solvable = is_until and not goal.is_bounded and not is_reward
     try:
-        graph = _explored(compiled, limit, work, is_solvable)
+        graph = _explored(compiled, limit, work, is_solvable, ignored)
     except (StateFaultError, TooManyChoicesError):
         return None
     if graph is None:
@@ -88,7 +91,7 @@ def solve(compiled: Compiled, limit: int = LIMIT, work: int = WORK) -> Solution 
 
 
 def _explored(
-    compiled: Compiled, limit: int, work: int, stops: bool
+    compiled: Compiled, limit: int, work: int, stops: bool, ignored: Registers
 ) -> tuple[list[int], list[tuple[_Choice, ...]]] | None:
     """The verdict on the goal in each state, and the choices of each.
 
@@ -96,7 +99,8 @@ def _explored(
         stops: whether states after one in which the goal is decided are irrelevant.
     """
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
-    explorer = Explorer(compiled, limit=work // max(1, size))
+    size -= len(ignored.ints) + len(ignored.reals)
+    explorer = Explorer(compiled, work // max(1, size), ignored)
     number: dict[ExploredState, int] = {explorer.initial: 0}
     verdicts = [explorer.verdict(explorer.initial)]
     choices: list[tuple[_Choice, ...]] = []

@@ -25,7 +25,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
         ValueError: it does not have that form, or its numbers contradict each other; the message states where.
     """
     shape = _row(value, "tally")
-    for key in ("traces", "successes", "undecided", "steps"):
+    for key in ("traces", "successes", "undecided", "steps", "rejected", "closed", "idle", "late"):
         _whole(shape.get(key), key)
     for key in ("finished", "revised"):
         _expect(isinstance(shape.get(key), bool), key)
@@ -60,7 +60,10 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
 def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     failures = tally.traces - tally.successes - tally.undecided
     _expect(failures >= 0, "traces")
-    _expect(tally.steps <= tally.traces * options.max_steps, "steps")
+    _expect(tally.rejected == 0 or question.is_conditional, "rejected")
+    _expect(tally.closed + tally.idle <= (tally.traces if question.can_be_vacuous else 0), "idle")
+    _expect(tally.late <= (failures if question.can_be_late else 0), "late")
+    _expect(tally.steps <= tally.simulated * options.max_steps, "steps")
     mean = tally.mean
     _expect(mean.number == (tally.successes if question.is_reward else 0), "mean")
     _expect(math.isfinite(mean.mean) and math.isfinite(mean.squares) and mean.squares >= 0, "mean")
@@ -80,10 +83,10 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
             least: Seen = tally.shortest[verdict]
             first = min(seen, key=lambda each: (each.steps, each.trace))
             _expect(least == first if count <= KEPT else least.steps <= first.steps, "shortest")
-            _expect(least.trace < tally.traces, "shortest")
-        _expect(all(each.trace < tally.traces and each.steps <= options.max_steps for each in seen), "examples")
+            _expect(least.trace < tally.simulated, "shortest")
+        _expect(all(each.trace < tally.simulated and each.steps <= options.max_steps for each in seen), "examples")
     _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
-    _expect(total == tally.steps if tally.traces == len(numbers) else total <= tally.steps, "steps")
+    _expect(total == tally.steps if tally.simulated == len(numbers) else total <= tally.steps, "steps")
 
 
 _VERDICTS = (TRUE, FALSE, UNKNOWN)

@@ -57,7 +57,8 @@ def translate(
         actions=tuple(Action(action) for action in actions),
         properties=tuple(expanded(property_, shapes) for property_ in properties),
     )
-    return observed(model, observed_properties, shapes, network.max_array_size)
+    owners = {automaton.name: automaton.thread_of for automaton in network.automata if automaton.thread_of}
+    return observed(model, observed_properties, shapes, network.max_array_size, owners)
 
 
 def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], network: Network) -> Automaton:

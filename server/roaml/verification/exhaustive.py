@@ -35,6 +35,8 @@ def exact_values(
         UndecidedError: a limit was reached, or the property has no value.
         FaultError: an undefined operation is executed in some state.
     """
+    if asked.question.is_conditional:
+        raise UndecidedError("properties with assumptions are answered by traces only")
     reduced = checker.reduced(asked)
     if reduced is not checker:
         checker, asked = reduced, reduced.asked[0]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from roaml.explicit.path import Path, PathRecorder
 from roaml.explicit.space import Space
 from roaml.smc.choices import Choices
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
@@ -157,7 +158,7 @@ class Result:
         tried: how many schedulers these were chosen from.
         stuck: its traces that got stuck, if any did.
         choices: what is known of other schedulers than the uniform one; None if only uniform choices are asked about.
-        refusal: why there is no answer.
+        refusal: why there is no answer; `fault` is its cause.
         undecided: why all states could not decide it.
         traces: those of `answer`, to walk them again.
     """
@@ -174,6 +175,7 @@ class Result:
     choices: Choices | None = None
     refusal: Refusal | None = None
     undecided: str = ""
+    fault: FaultError | None = field(default=None, repr=False, compare=False)
     traces: Traces | None = field(default=None, repr=False, compare=False)
 
     @property

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from roaml.explicit.space import Limits
@@ -25,7 +25,7 @@ from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
 from roaml.verification.stuck import Look
 from roaml.verification.target import VerificationTarget
-from roaml.views.ends import marks, open_conditions
+from roaml.views.ends import marks, observer_outputs
 
 
 class NoThresholdError(ValueError):
@@ -45,13 +45,13 @@ def checker_of(target: VerificationTarget, properties: Iterable[str] | None = No
     """
     model, ends = target.model, marks(target.model)
     if properties is None:
-        return ModelChecker(model, model.properties, ends, open_=open_conditions(model))
+        return ModelChecker(model, model.properties, ends, outputs=observer_outputs(model))
     names = list(dict.fromkeys(properties))
     asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in model.properties)
     if asks_stuck:
         names.remove(STUCK_PROPERTY)
     chosen = select(model.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
-    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck, open_=open_conditions(model))
+    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck, outputs=observer_outputs(model))
 
 
 def verifier_of(
@@ -140,6 +140,26 @@ class Verifier:
         except FaultError as fault:
             return self.refused(name, fault)
 
+    def verify_all(self, pool: Pool) -> Iterator[Result]:
+        """The results of all properties, in their order. Those that can share traces do.
+
+        Raises:
+            NoThresholdError, WorkersLostError: see `verify`.
+        """
+        asked = self.sharing()
+        results = {}
+        if asked:
+            shared = self.answer_together(asked, pool, [Tally() for _ in asked], lambda *_: None)
+            results = {result.name: result for result in shared}
+        for name in self.names:
+            yield results.get(name) or self.verify(name, pool)
+
+    def sharing(self) -> list[CompiledProperty]:
+        """The properties that can share traces; none if there are fewer than two."""
+        asked = [self.question(name) for name in self.names if name not in self.checker.refused]
+        sharing = [each for each in asked if self.can_share(each)]
+        return sharing if len(sharing) > 1 else []
+
     def answer(
         self,
         asked: CompiledProperty,
@@ -164,10 +184,65 @@ class Verifier:
         self.check_method(asked)
         began = time.monotonic()
         answer = self.checker.answer(asked, self.options, pool, tally, watch, pulse)
-        choices = None
-        if not self.only_uniform and not asked.question.is_stuck:
-            choices = self.checker.choices(asked, answer, pool, pulse)
+        choices = self._choices(asked, answer, pool, pulse)
         return self._judged(asked, answer, choices, time.monotonic() - began)
+
+    def can_share(self, asked: CompiledProperty) -> bool:
+        """Whether a property can be answered by the traces of others: if it is about probabilities, and not about
+        deadlocks."""
+        return not asked.question.is_reward and asked.goal.is_bounded < 2
+
+    def answer_together(
+        self,
+        asked: Sequence[CompiledProperty],
+        pool: Pool,
+        tallies: Sequence[Tally],
+        watch: Callable[[CompiledProperty, Tally], None],
+        pulse: Pulse | None = None,
+    ) -> list[Result]:
+        """The results of properties that can share traces (`can_share`). Each has the answer that `answer` gives.
+
+        Args:
+            tallies: where to go on; they are changed as batches come in.
+            watch: called for each property after each of its batches.
+
+        Raises:
+            NoThresholdError, WorkersLostError: see `answer`.
+        """
+        for each in asked:
+            self.check_method(each)
+        began = time.monotonic()
+        seconds: dict[str, float] = {}
+
+        def watch_time(each: CompiledProperty, tally: Tally) -> None:
+            seconds[each.question.name] = time.monotonic() - began
+            watch(each, tally)
+
+        answers = self.checker.answer_together(asked, self.options, pool, tallies, watch_time, pulse)
+        return [
+            self._result(each, answer, pool, pulse, seconds.get(each.question.name, 0.0))
+            for each, answer in zip(asked, answers, strict=True)
+        ]
+
+    def _result(
+        self, asked: CompiledProperty, answer: Answer | FaultError, pool: Pool, pulse: Pulse | None, seconds: float
+    ) -> Result:
+        """The result of an answer that took some seconds; a refusal if it is a fault."""
+        began = time.monotonic()
+        try:
+            if isinstance(answer, FaultError):
+                raise answer
+            choices = self._choices(asked, answer, pool, pulse)
+        except FaultError as fault:
+            return self.refused(asked.question.name, fault)
+        return self._judged(asked, answer, choices, seconds + time.monotonic() - began)
+
+    def _choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
+        """What is known of other schedulers; `None` if only uniform choices are asked about."""
+        question = asked.question
+        if self.only_uniform or question.is_stuck or question.is_conditional:
+            return None
+        return self.checker.choices(asked, answer, pool, pulse)
 
     def check_method(self, asked: CompiledProperty) -> None:
         """
@@ -186,7 +261,8 @@ class Verifier:
 
     def refused(self, name: str, fault: FaultError) -> Result:
         """The result of a property that cannot be answered."""
-        return Result(name, None, (), 0.0, refusal=refusal(fault, self.target, self.options.seed))
+        why = refusal(fault, self.target, self.options.seed)
+        return Result(name, None, (), 0.0, refusal=why, fault=fault)
 
     def sampled(
         self, asked: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False

@@ -19,11 +19,15 @@ from roaml.scxml.names import (
     TREE_HAS_FINISHED,
     TREE_ROOT_PREFIX,
     WAITING,
+    asked_variable,
     named,
     on_send,
     open_variable,
+    opened_variable,
+    pending_variable,
 )
 from roaml.smc.end import End
+from roaml.smc.goal import ObserverOutputs
 
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
@@ -48,8 +52,19 @@ def _mark(automaton: Automaton, location: str) -> End:
     return End.STUCK if location == RECEIVED and is_event(automaton) else End.QUIET
 
 
-def open_conditions(model: Model) -> Mapping[str, Expression]:
-    """Property -> what says that it is open at the end of time (docs/spec/jani.md#observers)."""
+def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
+    """Property -> the variables of its observer that say more than its formula (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
-    names = {property_.name: open_variable(property_.name) for property_ in model.properties}
-    return {property_: Name(variable) for property_, variable in names.items() if variable in variables}
+
+    def read(variable: str) -> Expression | None:
+        return Name(variable) if variable in variables else None
+
+    return {
+        name: ObserverOutputs(
+            read(open_variable(name)),
+            read(asked_variable(name)),
+            read(opened_variable(name)),
+            can_be_late=pending_variable(name) in variables,
+        )
+        for name in (property_.name for property_ in model.properties)
+    }

@@ -6,13 +6,13 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
-from roaml.model.system import safe_name
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     TIMER_PREFIX,
     is_timer,
+    safe_name,
 )
 
 _FORMS = (
@@ -50,11 +50,26 @@ def said(event: str, who: str, clients: Collection[str], taken: bool = False) ->
         return f"the tick of its timer `{timer}`" if taken else f"its timer `{timer}`"
     if event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX):
         return "the blackboard"
+    text, interface = _form_of(event, clients)
+    return text.format(interface.removeprefix("/")) if text else f"the event `{event}`"
+
+
+def interface_name(event: str, clients: Collection[str]) -> str:
+    """The name of the topic, service or action of an event, with a leading `/`; "" if the event has none.
+
+    Args:
+        clients: the automata of the system.
+    """
+    return _form_of(event, clients)[1]
+
+
+def _form_of(event: str, clients: Collection[str]) -> tuple[str, str]:
+    """The phrase of an event, and the name of its interface; each "" if there is none."""
     name, _, client = event.partition("_client_")
     if client not in clients:
         name = event
     for form, text in _COMPILED:
         match = form.fullmatch(name)
         if match:
-            return text.format(*(group.replace("__", "/") for group in match.groups()))
-    return f"the event `{event}`"
+            return text, "".join("/" + group.replace("__", "/") for group in match.groups())
+    return "", ""

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.model.globals import FIELD_PREFIX
-from roaml.scxml.names import is_length, received_by, sent_by
+from roaml.scxml.names import FIELD_PREFIX, is_length, received_by, sent_by
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
 
 _VALID = ".valid"
@@ -32,6 +32,12 @@ class EventReader:
         self._values = dict(start)
         self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
         self._of_events = {name for name in self._values if self._is_of_event(name)}
+
+    def copied(self) -> EventReader:
+        """A reader that has read the same steps and continues independently."""
+        other = copy.copy(self)
+        other._values = dict(self._values)
+        return other
 
     def read(self, step: TraceStep) -> None:
         """Note what a step changes."""

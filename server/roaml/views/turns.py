@@ -9,22 +9,16 @@ that only pass something on are left out.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.system import builtin_plugins
-from roaml.model.value_types import STATUSES
-from roaml.scxml.names import is_generated, is_length, received_by, sent_by
+from roaml.scxml.names import NODE_AUTOMATON, STATUSES, TREE_EVENT, is_generated, is_length, received_by, sent_by
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
 
-_NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
-_CALL = re.compile(r"bt_\d+_(tick|halt)")
-_ANSWER = re.compile(r"bt_\d+_(halt_)?response")
 _VALID = ".valid"
 _ENDS = ("SUCCESS", "FAILURE")
 
@@ -77,7 +71,7 @@ class Turn:
     @property
     def protocol(self) -> str:
         """The prefix of the events between the tree and this node; "" if it is not a node."""
-        node = _NODE.fullmatch(self.automaton)
+        node = NODE_AUTOMATON.fullmatch(self.automaton)
         return f"bt_{node[1]}_" if node else ""
 
     @property
@@ -91,7 +85,7 @@ class Turn:
     @property
     def is_answered(self) -> bool:
         """Whether it begins with the answer of a child to an inner node."""
-        return self.heard is not None and bool(_ANSWER.fullmatch(self.heard.event))
+        return self.heard is not None and _said(self.heard.event) in ("response", "halt_response")
 
     @property
     def sent(self) -> Iterator[Message]:
@@ -134,7 +128,7 @@ class Message:
 
 def name_of(automaton: str) -> str:
     """The name of an automaton for readers: a node of a tree by its name and number."""
-    node = _NODE.fullmatch(automaton)
+    node = NODE_AUTOMATON.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
 
@@ -215,6 +209,18 @@ class _Reader:
 
 def is_inner(automaton: Automaton) -> bool:
     """Whether it only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
-    node = _NODE.fullmatch(automaton.name)
-    comes_along = node[2] in builtin_plugins() if node else is_generated(automaton.name)
-    return comes_along and any(_CALL.fullmatch(sent_by(edge.action or "")) for edge in automaton.edges)
+    node = NODE_AUTOMATON.fullmatch(automaton.name)
+    comes_along = _is_builtin(node[2]) if node else is_generated(automaton.name)
+    return comes_along and any(_said(sent_by(edge.action or "")) in ("tick", "halt") for edge in automaton.edges)
+
+
+def _is_builtin(plugin: str) -> bool:
+    from roaml.model.system import builtin_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
+
+    return plugin in builtin_plugins()
+
+
+def _said(event: str) -> str:
+    """What an event of the tree says, such as `tick`; "" for other events."""
+    match = TREE_EVENT.fullmatch(event)
+    return match[2] if match else ""

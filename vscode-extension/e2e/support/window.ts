@@ -95,7 +95,7 @@ export class Window {
 
     /** Until the language server runs. */
     async running(): Promise<void> {
-        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 120_000 });
+        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 300_000 });
     }
 
     /** Until something holds that cannot be seen in the page; what it gives. */
@@ -171,7 +171,7 @@ export interface Clip {
 }
 
 /** In milliseconds, for whatever is waited for. */
-export const PATIENCE = 60_000;
+export const PATIENCE = 180_000;
 
 /** Text with the spaces that the editor draws. */
 function plain(text: string): string {

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The forms in which diagnostics are written: one module each, all made from `CheckReport`."""
+"""The formats in which diagnostics are written. Each is a module with a function `render`, made from `CheckReport`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import importlib
 
-from as2fm_lsp.cli.formats import github, gitlab, json, junit, sarif, text
 from as2fm_lsp.cli.formats.report import CheckReport
 
-FORMATS: Mapping[str, Callable[[CheckReport], str]] = {
-    "text": text.render,
-    "json": json.render,
-    "github": github.render,
-    "gitlab": gitlab.render,
-    "sarif": sarif.render,
-    "junit": junit.render,
-}
+FORMATS = ("text", "json", "github", "gitlab", "sarif", "junit")
 
-__all__ = ["FORMATS", "CheckReport"]
+
+def render(report: CheckReport, name: str) -> str:
+    """The report in one of the formats. Only the module of that format is imported."""
+    text = importlib.import_module(f"as2fm_lsp.cli.formats.{name}").render(report)
+    assert isinstance(text, str)
+    return text
+
+
+__all__ = ["FORMATS", "CheckReport", "render"]

@@ -9,9 +9,9 @@ from collections.abc import Iterable
 from roaml.expr.types import BASE_TYPES, UNKNOWN
 from roaml.expr.zero import zero_text
 from roaml.model.name_forms import variable_problem
-from roaml.model.system import safe_name
 from roaml.project.analysis import Analysis
 from roaml.project.paths import full, seen_from, split_name
+from roaml.scxml.names import safe_name
 from roaml.text import SourceFile
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'

@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterator
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.ide.code_actions.inputs import add_input
-from roaml.model.system import System, safe_name
+from roaml.model.system import System
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.paths import folder_of, name_of
+from roaml.scxml.names import safe_name
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:

@@ -31,10 +31,10 @@ from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_
 from roaml.project.workspace import Snapshot
 from roaml.rules.elements.missing_element import MissingChild
 from roaml.rules.files.missing_file import UnusableFile
-from roaml.rules.rule import close_names
 from roaml.rules.support.names import WrongName
 from roaml.rules.systems.input_count import InputCount
 from roaml.rules.trees.blackboard_type_conflict import TypeConflict
+from roaml.suggest import close_names
 from roaml.text import SourceFile, Span, TextEdit
 
 _MAX_FILES = 3

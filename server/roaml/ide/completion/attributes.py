@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
+from roaml.ide.completion import property_files
 from roaml.ide.completion.elements import likely
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.ports import ports_to_add
@@ -39,6 +40,8 @@ def attributes(request: Request, parents: tuple[Typed, ...], each: Typed, *, bar
         if attribute.name in given or (attribute.port and is_node):
             continue
         if is_node and attribute.name == "ID" and element.name not in (*EXPLICIT, *SUBTREES):
+            continue
+        if property_files.is_property_file(request) and not property_files.has_effect(parents, type_, attribute):
             continue
         yield _item(request, subject, attribute, bare=bare)
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
+from roaml.ide.completion import property_files
 from roaml.ide.completion.fields import fields_to_add, sending
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import plugins, port_list
@@ -16,7 +17,7 @@ from roaml.ide.completion.values import candidates
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
-from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType, Grammar
+from roaml.language import BEHAVIOR_TREE, XML_PROPERTIES, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
 from roaml.roles import SymbolKind
@@ -49,6 +50,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     if request.file.grammar is BEHAVIOR_TREE and parent.type.any_child is not None:
         yield from _tree_nodes(request, parents, bare=bare)
         return
+    if bare:
+        yield from property_files.skeletons(request, parents)
     for name, occurrence in parent.type.children.items():
         if not _has_effect(request, parents, name):
             continue
@@ -76,7 +79,11 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
     made = Snippet().text(type_.name)
     subject = Subject(None, type_, parents)
     for attribute in type_.attributes.values():
-        if not _is_wanted(type_, attribute):
+        if request.file.grammar is XML_PROPERTIES:
+            is_wanted = property_files.is_wanted(parents, type_, attribute)
+        else:
+            is_wanted = _is_wanted(type_, attribute)
+        if not is_wanted:
             continue
         choices = attribute.simple.choices
         if len(choices) == 1:

@@ -16,12 +16,14 @@ from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
 from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, StructKind, Type, fits, unwrap, wrap
 from roaml.expr.zero import zero_text
+from roaml.ide.completion import property_files
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
-from roaml.model.value_types import STATUS, STATUSES, bindings, find_handle, interface_part, port_type
+from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
 from roaml.roles import SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
 
@@ -110,6 +112,8 @@ def in_expression(
         return begun.span, [_variable(request, name, type_, None) for name, type_ in variables.items()]
     wanted = _wanted(request, subject, part)
     items = [_variable(request, name, type_, wanted) for name, type_ in variables.items()]
+    if property_files.is_property_file(request):
+        items += property_files.compared_values(request, start)
     items += [
         CompletionItem(
             name,
@@ -163,6 +167,8 @@ def _literal(type_: Type, snippet: Snippet) -> None:
 
 
 def _variables(request: Request) -> Mapping[str, Type]:
+    if property_files.is_property_file(request):
+        return property_files.variables(request)
     if request.machine is None or request.chart is None:
         return {}
     typed = request.analysis.typed_in(request.path, request.system_path)
@@ -182,6 +188,8 @@ def _event_variables(request: Request, part: str) -> Mapping[str, Type]:
 def _variable(request: Request, name: str, type_: Type, wanted: Type | None) -> CompletionItem:
     scope = request.chart.scope if request.chart else ""
     about = variable(request.path, name, scope)
+    if property_files.is_property_file(request):
+        about = Symbol(request.path, SymbolKind.PORT_VARIABLE, name)
     return CompletionItem(name, ItemKind.VARIABLE, detail=str(type_), about=about, rank=_fitting(type_, wanted))
 
 

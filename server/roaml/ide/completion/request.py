@@ -13,6 +13,7 @@ from roaml.ide.names.occurrences import trees_of
 from roaml.ide.syntax import Typed, XmlFile
 from roaml.language import ElementType
 from roaml.model.machine import Chart, Handler, Machine, RosSend
+from roaml.model.property_file import PropertyFile
 from roaml.model.system import System
 from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
@@ -71,6 +72,10 @@ class Request:
     @cached_property
     def machine(self) -> Machine | None:
         return self.analysis.machine(self.path)
+
+    @cached_property
+    def property_file(self) -> PropertyFile | None:
+        return self.analysis.property_file(self.path)
 
     @cached_property
     def environment(self) -> Environment:

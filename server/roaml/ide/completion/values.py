@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, UNKNOWN, Scalar, Type, resolve_type, unwrap
+from roaml.ide.completion import property_files
 from roaml.ide.completion.expressions import in_expression, initial_values
 from roaml.ide.completion.fields import field_names
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
@@ -19,16 +20,20 @@ from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import type_of
-from roaml.model.value_types import STATUSES
 from roaml.roles import SymbolKind
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 _EXPRESSIONS = ("expression", "location")
+_OF_ROS = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
 def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
     """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
     known = subject.type.attributes.get(name)
+    if property_files.is_property_file(request) and (subject.type.name, name) == ("property", "expr"):
+        in_formula = property_files.in_formula(request, span)
+        return in_formula or in_expression(request, subject, name, property_files.formula_start(request, span))
     if known is not None and known.value in _EXPRESSIONS:
         return in_expression(request, subject, name, span.start)
     if (script := in_script(request, subject, name, span)) is not None:
@@ -48,12 +53,18 @@ def candidates(request: Request, subject: Subject, attribute: AttributeType) -> 
         )
         yield CompletionItem(choice.value, ItemKind.VALUE, about=about, deprecated=bool(choice.use))
     for kind in attribute.refers:
-        if kind is SymbolKind.FIELD:
+        if property_files.is_property_file(request):
+            is_field = kind is SymbolKind.FIELD
+            yield from property_files.fields(request, subject) if is_field else ()
+            yield from property_files.referred(request, kind, subject)
+        elif kind is SymbolKind.FIELD:
             yield from field_names(request, subject)
-        else:
+        if kind in _OF_ROS or not property_files.is_property_file(request):
             yield from referred(request, kind, subject)
     if attribute.defines:
         yield from undefined(request, attribute.defines, subject)
+        if attribute.defines is SymbolKind.PORT_VARIABLE:
+            yield from property_files.new_ids(request, subject)
     yield from _of_value(request, subject, attribute.name, attribute.value, attribute.value_type)
 
 
@@ -68,9 +79,14 @@ def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[
 
 def _of_value(request: Request, subject: Subject, name: str, value: str, value_type: str) -> Iterator[CompletionItem]:
     match value:
+        case "type" if property_files.is_property_file(request):
+            yield from property_files.field_type(request, subject)
+            yield from types(request)
         case "type":
             yield from types(request)
         case "ros-type":
+            if property_files.is_property_file(request):
+                yield from property_files.port_types(request, subject)
             yield from ros_types(request, value_type)
         case "constant" if "bound" in name:
             yield from _bounds(request, subject)
@@ -121,7 +137,10 @@ def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
 
 def _constants(request: Request, subject: Subject) -> Iterator[CompletionItem]:
     """Typical initial values of a variable."""
-    yield from initial_values(_data_type(request, subject))
+    if property_files.is_property_file(request):
+        yield from initial_values(property_files.variable_type(request, subject))
+    else:
+        yield from initial_values(_data_type(request, subject))
 
 
 def _bounds(request: Request, subject: Subject) -> Iterator[CompletionItem]:

@@ -10,6 +10,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.describe import machine as describe_machine
 from roaml.ide.describe import ros as describe_ros
 from roaml.ide.describe import system as describe_system
+from roaml.ide.describe import xml_property_file as describe_xml_properties
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 
@@ -44,6 +45,10 @@ def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
             return describe_system.tree(analysis, symbol)
         case SymbolKind.TREE_NODE:
             return describe_system.tree_node(analysis, symbol)
+        case SymbolKind.PROPERTY:
+            return describe_xml_properties.property_(analysis, symbol)
+        case SymbolKind.PORT_VARIABLE:
+            return describe_xml_properties.variable(analysis, symbol)
         case SymbolKind.STRUCT:
             return describe_system.struct(analysis, symbol)
         case SymbolKind.MEMBER:

@@ -13,7 +13,8 @@ from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
 from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
-from roaml.model.value_types import STATUSES
+from roaml.model.value_types import GOAL_STATUSES
+from roaml.scxml.names import STATUSES
 
 _DEPTH = 12
 _LENGTH = 400
@@ -85,9 +86,6 @@ def member(key: Key) -> str:
 
 _STATUS = re.compile(r"bt_\d+_response__status")
 _CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
-_CODES: Mapping[str, str] = {"4": "STATUS_SUCCEEDED", "5": "STATUS_CANCELED", "6": "STATUS_ABORTED"}
-"""`action_msgs/GoalStatus` of ROS 2, the values that results can have."""
-
 _COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
 
 
@@ -108,8 +106,8 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
         every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
         return paragraphs(code(f"{written.text} = {called}") if called else "", f"Statuses of tree nodes: {every}")
     if _CODE.fullmatch(variable):
-        every = ", ".join(f"{value} = {name}" for value, name in _CODES.items())
-        called = _CODES.get(written.text, "")
+        every = ", ".join(f"{value} = {name}" for value, name in GOAL_STATUSES.items())
+        called = next((name for code_, name in GOAL_STATUSES.items() if str(code_) == written.text), "")
         head = code(f"{written.text} = {called}") if called else ""
         return paragraphs(head, f"Codes of action results (`action_msgs/GoalStatus`): {every}")
     return ""

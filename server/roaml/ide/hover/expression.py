@@ -10,7 +10,8 @@ from roaml.expr.types import Struct, Type
 from roaml.ide.describe import language as describe_language
 from roaml.ide.hover.place import Place
 from roaml.model.machine import Handler, Machine
-from roaml.model.value_types import STATUSES, bindings
+from roaml.model.value_types import bindings
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 

@@ -16,11 +16,11 @@ from roaml.ide.names.frames import Piece, Trees
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Form, Occurrence, parameter, tree_node
 from roaml.jani.properties import Property, identifiers
-from roaml.model.globals import FIELD_PREFIX, FindInterface, GlobalVariable
-from roaml.model.system import Channel, System, SystemAutomaton, safe_name, sanitise
+from roaml.model.globals import FindInterface, GlobalVariable
+from roaml.model.system import Channel, System, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, FIELD_PREFIX, safe_name
 from roaml.text import Span
 
 # The events of a service or action -> the part of the interface that they carry.

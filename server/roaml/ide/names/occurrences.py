@@ -11,6 +11,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.names.frames import Piece, Trees
 from roaml.ide.names.in_machine import in_machine
 from roaml.ide.names.in_properties import in_properties, names
+from roaml.ide.names.in_property_file import in_property_file
 from roaml.ide.names.in_structs import in_json, in_xml
 from roaml.ide.names.in_tree import in_tree
 from roaml.ide.names.occurrence import Occurrence
@@ -86,6 +87,11 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
     elif kind is FileKind.PROPERTIES and system is not None:
         properties, _ = analysis.properties(path)
         yield from in_properties(source.text, properties, global_names(analysis, system))
+    elif kind is FileKind.XML_PROPERTIES and (file := analysis.property_file(path)) is not None:
+        linked = analysis.system(system) if system else None
+        table = global_names(analysis, system) if system else {}
+        trees, find = trees_of(analysis, path, system), analysis.environment(system).interface
+        yield from in_property_file(source.text, file, path, owner, linked, trees, table, find)
 
 
 def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, ...]]:

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from roaml.ide.describe.markdown import plain
 from roaml.ide.json_tree import members
 from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolKind
 from roaml.ide.navigation.jani_symbols import jani_symbols
 from roaml.json_syntax import JsonArray, JsonObject, JsonString
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Chart, Data, Declaration, Handler, Machine, Port, State, Thread
+from roaml.model.property_file import Port as PropertyPort
+from roaml.model.property_file import PropertyFile
+from roaml.model.property_sentences import sentence
 from roaml.model.structs import StructDeclaration
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system_file import SystemFile
@@ -36,6 +40,8 @@ def document_symbols(analysis: Analysis, path: str) -> tuple[DocumentSymbol, ...
         return tuple(_struct(each) for each in analysis.struct_declarations(path))
     if kind is FileKind.PROPERTIES:
         return tuple(_properties(analysis, path))
+    if kind is FileKind.XML_PROPERTIES and (file := analysis.property_file(path)):
+        return tuple(_property_file(file))
     if kind is FileKind.JANI_MODEL and (json := analysis.json(path)):
         return tuple(jani_symbols(json[0]))
     return ()
@@ -178,3 +184,25 @@ def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
         if isinstance(name, JsonString) and name.value:
             detail = comment.value if isinstance(comment, JsonString) else ""
             yield DocumentSymbol(name.value, detail, DocumentSymbolKind.PROPERTY, each.span, name.content_span)
+
+
+def _property_file(file: PropertyFile) -> Iterator[DocumentSymbol]:
+    """The sections, with their ports and properties."""
+    for section in file.element.elements:
+        ports = [_property_port(port) for port in file.ports if _is_inside(port.element.span, section.span)]
+        properties = [
+            _symbol(written.element, written.id, DocumentSymbolKind.PROPERTY, plain(sentence(file, written)))
+            for written in file.properties
+            if _is_inside(written.element.span, section.span)
+        ]
+        name = Name(section.name, section.name_span)
+        yield _symbol(section, name, DocumentSymbolKind.SECTION, children=(*ports, *properties))
+
+
+def _property_port(port: PropertyPort) -> DocumentSymbol:
+    variables = (
+        _symbol(variable.element, variable.id, DocumentSymbolKind.VARIABLE, variable.type.text if variable.type else "")
+        for variable in port.variables
+    )
+    detail = port.event.value if port.event is not None else ""
+    return _symbol(port.element, port.name, DocumentSymbolKind.ROS, detail, variables)

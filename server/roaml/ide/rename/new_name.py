@@ -17,17 +17,18 @@ from roaml.ide.names.lookup import SymbolGroup, where
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
+from roaml.model.kinds import FileKind
 from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.system import sanitise
-from roaml.model.value_types import STATUSES
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
-from roaml.scxml.names import is_synchronising
+from roaml.scxml.names import STATUSES, is_synchronising
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
+_PROPERTY = re.compile(r"[\w.-]+\Z")
 _MADE = re.compile(r"(topic_|srv_|action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
 """The beginnings of names that the translation generates."""
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
@@ -51,8 +52,32 @@ def problem(analysis: Analysis, found: SymbolGroup, new: str) -> str:
             trees = (trees_of(analysis, symbol.path, system) for system in analysis.systems_of(symbol.path))
             if any(each.is_taken(symbol, new) for each in trees):
                 return f"a blackboard variable `{new}` already exists"
+        if reason := _in_property_files(analysis, found, symbol, new):
+            return reason
         if handle := _handle_called(analysis, found, symbol, new):
             return f"{_article(handle.kind)} `{new}` already exists in a machine that uses it by its name"
+    return ""
+
+
+_OF_NODES = (SymbolKind.TREE_NODE, SymbolKind.MACHINE, SymbolKind.PLUGIN, SymbolKind.TREE)
+"""Kinds of symbols that paths of nodes in property files name."""
+
+
+def _in_property_files(analysis: Analysis, found: SymbolGroup, symbol: Symbol, new: str) -> str:
+    """Why property files do not allow a name: another property has it, or it would lead a port to another node."""
+    if symbol.kind is SymbolKind.PROPERTY:
+        listed = (each for each in analysis.listed(symbol.path) if each.wanted is FileKind.PROPERTIES and each.usable)
+        properties = (declared.name for each in listed for declared in analysis.properties(each.path)[0])
+        return f"a property `{new}` already exists" if new in properties else ""
+    if symbol.kind not in _OF_NODES:
+        return ""
+    files = {use.path for use in found.uses if analysis.kind(use.path) is FileKind.XML_PROPERTIES}
+    for path in {system for file in files for system in analysis.systems_of(file) if system is not None}:
+        system = analysis.system(path)
+        names = {name for node in system.instances for name in (node.name, node.plugin)} if system else set()
+        names |= {name for use in system.tree_uses for name in (use.name, use.tree)} if system else set()
+        if new in names or "/" in new:
+            return f"a property names nodes of the tree, and another one is called `{new}`"
     return ""
 
 
@@ -102,6 +127,10 @@ def _form(kind: SymbolKind, new: str, found: SymbolGroup) -> str:
         case SymbolKind.BLACKBOARD:
             right = VARIABLE.match(new) and not new.startswith("_") and not new.endswith("_")
             right = right and not is_reserved(new) and new not in ("name", "ID")
+        case SymbolKind.PORT_VARIABLE:
+            right = VARIABLE.match(new) and not is_reserved(new) and new != "Math"
+        case SymbolKind.PROPERTY:
+            right = _PROPERTY.match(new)
         case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             right = _INTERFACE.match(new)
         case SymbolKind.MACHINE | SymbolKind.PLUGIN:

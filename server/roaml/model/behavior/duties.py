@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, ChartConfiguration, Duty
+from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, ChartConfiguration
+from roaml.model.behavior.phases import Duty, DutyKind, Phase
 from roaml.roles import ProtocolPart
 
 Possible: TypeAlias = Callable[[BehaviorStep], bool]
 
-TICK, HALT = Duty("tick", ""), Duty("halt", "")
 _TAKING = {
-    "tick": ProtocolPart.BT_TICK,
-    "halt": ProtocolPart.BT_HALT,
-    "request": ProtocolPart.REQUEST,
-    "goal": ProtocolPart.GOAL,
-    "result": ProtocolPart.THREAD_START,
+    DutyKind.TICK: ProtocolPart.BT_TICK,
+    DutyKind.HALT: ProtocolPart.BT_HALT,
+    DutyKind.REQUEST: ProtocolPart.REQUEST,
+    DutyKind.GOAL: ProtocolPart.GOAL,
+    DutyKind.RESULT: ProtocolPart.THREAD_START,
 }
 
 
@@ -49,7 +49,7 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
 
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
     """If there are several goals at once, it is unknown which one an answer is for."""
-    if configuration.state == NOWHERE or configuration.phase(duty.kind, duty.handle) == "several":
+    if configuration.state == NOWHERE or configuration.answering(duty) is Phase.SEVERAL:
         return False
     return configuration.owes(duty)
 
@@ -60,9 +60,9 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
     waiting = frozenset(
         n
         for n, c in enumerate(behavior.configurations)
-        if c.state != NOWHERE and not c.owes(duty) and c.tree not in ("ticked", "halting")
+        if c.state != NOWHERE and not c.owes(duty) and c.tree not in (Phase.TICKED, Phase.HALTING)
     )
-    taking = {step.source for step in behavior.steps if step.event and step.event.part == _TAKING[duty.kind]}
+    taking = {step.source for step in behavior.steps if step.event and step.event.part is _TAKING[duty.kind]}
     known = {n for n, c in enumerate(behavior.configurations) if c.state == NOWHERE}
     between = [
         step
@@ -101,7 +101,7 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
     going_on = _back({step.source for step in following if step.source != step.target}, inside)
     if going_on >= lost:
         going_on, following = set(), []  # it never ends: the step that leads there is reported
-    takers = (s for s in behavior.chart.states if any(h.trigger == _TAKING[duty.kind] for h in s.handlers))
+    takers = (s for s in behavior.chart.states if any(h.trigger is _TAKING[duty.kind] for h in s.handlers))
     ready = {state.id.value for state in takers if state.id}
     early: set[int] = set()
     for step in entering(behavior, lost):
@@ -131,7 +131,7 @@ def is_suspicious(behavior: Behavior) -> bool:
         duties = {
             Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, ProtocolPart.GOAL)
         }
-        asked = [duty for duty in duties if duty.kind in ("tick", "halt")]
+        asked = [duty for duty in duties if duty.kind.is_of_tree]
         known[behavior] = (
             any(step.faults for step in behavior.steps)
             or any(unfinished(behavior, duty) for duty in duties)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
-A configuration is a state, what is owed and awaited there (`phases`), and what is known about values. A step handles an
+A configuration is a state, what is owed and awaited there (`phases`), the goals whose ids
+variables hold (`ids`), and what is known about values. A step handles an
 event, or none, executes everything in the transition (docs/spec/machines.md#onentry) and ends in a configuration. The
 history decides which events may come: a response only after its request, a tick only when the last one is answered.
 
@@ -18,9 +19,26 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary, assert_never
 from roaml.expr.format import format_expr
 from roaml.expr.tree import Expr, Name, access_path
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Domain, Knowledge, is_literal, variables_in
+from roaml.model.behavior.phases import (
+    ANY_ID,
+    HALT,
+    OWED,
+    TICK,
+    Duty,
+    DutyKind,
+    GoalStatus,
+    HeldId,
+    HeldIds,
+    Phase,
+    Phases,
+    ProtocolEvent,
+    Subject,
+    phase_in,
+)
 from roaml.model.machine import (
     Assign,
     CallChild,
@@ -39,8 +57,9 @@ from roaml.model.machine import (
     statements,
 )
 from roaml.model.syntax import Expression
-from roaml.model.value_types import STATUSES, find_handle
+from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
+from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 MOST_CONFIGURATIONS = 4000
@@ -51,20 +70,25 @@ NOWHERE = "?"
 """Represents an unknown state, in which anything may happen."""
 
 
-class ProtocolEvent(NamedTuple):
-    """An event that a machine receives or sends: the part of an interface or of the tree protocol, with its name in the
-    schema, and the handle or the name of the event ("" for the tree)."""
-
-    part: ProtocolPart
-    name: str
-
-
-class Duty(NamedTuple):
-    """Something that must be answered exactly once: "tick", "halt", "request", "goal" (accepted or rejected) or
-    "result" (of an accepted goal). `handle` is that of the server, "" for the tree."""
-
-    kind: str
-    handle: str
+class FaultKind(Vocabulary):
+    UNASKED = "unasked"
+    """Nothing waits for the answer: it has been given, or was not asked for."""
+    WRONG_KIND = "wrong-kind"
+    """A tick that is answered like a halt, or a halt like a tick."""
+    UNSTORED = "unstored"
+    """A goal id that was never stored."""
+    FOREIGN = "foreign"
+    """A value that is not the id of a goal."""
+    OTHER = "other"
+    """The id of a goal of another action."""
+    EARLIER = "earlier"
+    """The id of an earlier goal in place of the one that has just come."""
+    REJECTED = "rejected"
+    """A result for a goal that was rejected."""
+    UNDECIDED = "undecided"
+    """A result for a goal that has not been accepted."""
+    THREAD = "thread"
+    """A thread that does not exist."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,49 +96,52 @@ class Fault:
     """Something that must not be sent at this point of a path.
 
     Attributes:
-        kind: "unasked" (nothing waits for the answer: it has been given, or was not asked for), "wrong-kind" (a tick
-            that is answered like a halt, or a halt like a tick), "unstored" (a goal id that was never stored),
-            "foreign" (a value that is not the id of a goal), "other" (the id of a goal of another action), "earlier"
-            (the id of an earlier goal in place of the one that has just come), "rejected" or "undecided" (a result for
-            such a goal), or "thread" (a thread that does not exist).
         duty: what is answered.
         statement: what sends it.
         certain: no condition on the way decides on it.
-        source: for "foreign" the expression that the variable was given, for "earlier" a variable that holds the id of
+        source: for `FOREIGN` the expression that the variable was given, for `EARLIER` a variable that holds the id of
             the goal that has come, if there is one.
     """
 
-    kind: str
+    kind: FaultKind
     duty: Duty
     statement: Statement
     certain: bool
     source: str = ""
 
 
-Phases = tuple[tuple[tuple[str, str], str], ...]
-
-
 @dataclass(frozen=True, slots=True)
 class ChartConfiguration:
     state: str
     phases: Phases = ()
+    ids: HeldIds = ()
     knowledge: Knowledge = NOTHING
 
-    def phase(self, kind: str, handle: str = "") -> str:
-        return next((value for key, value in self.phases if key == (kind, handle)), "")
+    def phase(self, subject: Subject, handle: str = "") -> Phase | None:
+        return phase_in(self.phases, subject, handle)
 
     @property
-    def tree(self) -> str:
-        """The status of a plugin: "" (never ticked), "ticked", "halting", "running" or "ended"."""
-        return self.phase("tree")
+    def tree(self) -> Phase | None:
+        """The status of a plugin: `TICKED`, `HALTING`, `RUNNING` or `ENDED`; `None` if it was never ticked."""
+        return phase_in(self.phases, Subject.TREE, "")
+
+    def answering(self, duty: Duty) -> Phase | None:
+        """The phase of the answer to a request or goal; `None` if no answer is owed."""
+        subject = OWED.get(duty.kind)
+        return None if subject is None else phase_in(self.phases, subject, duty.handle)
 
     def owes(self, duty: Duty) -> bool:
         match duty.kind:
-            case "tick":
-                return self.tree == "ticked"
-            case "halt":
-                return self.tree == "halting"
-        return bool(self.phase(duty.kind, duty.handle))
+            case DutyKind.TICK:
+                return self.tree is Phase.TICKED
+            case DutyKind.HALT:
+                return self.tree is Phase.HALTING
+            case DutyKind.REQUEST | DutyKind.GOAL | DutyKind.RESULT:
+                return self.answering(duty) is not None
+            case DutyKind.THREAD:
+                return False
+            case _:
+                return assert_never(duty.kind)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -194,29 +221,49 @@ class _Path(NamedTuple):
     """One way through the bodies of a step."""
 
     phases: Phases
+    ids: HeldIds
     knowledge: Knowledge
     sent: tuple[ProtocolEvent, ...] = ()
     faults: tuple[Fault, ...] = ()
     certain: bool = True
 
-    def phase(self, kind: str, handle: str = "") -> str:
-        return next((value for key, value in self.phases if key == (kind, handle)), "")
+    def phase(self, subject: Subject, handle: str = "") -> Phase | None:
+        return phase_in(self.phases, subject, handle)
 
-    def at(self, kind: str, handle: str, phase: str) -> _Path:
-        others = [entry for entry in self.phases if entry[0] != (kind, handle)]
-        return self._replace(phases=tuple(sorted((*others, ((kind, handle), phase)) if phase else others)))
+    @property
+    def tree(self) -> Phase | None:
+        return phase_in(self.phases, Subject.TREE, "")
 
-    def wrong(self, kind: str, duty: Duty, statement: Statement, source: str = "") -> _Path:
+    def at(self, subject: Subject, handle: str, phase: Phase | None) -> _Path:
+        key = (subject, handle)
+        phases = [entry for entry in self.phases if entry[0] != key]
+        if phase is not None:
+            phases.append((key, phase))
+            phases.sort()
+        return self._replace(phases=tuple(phases))
+
+    def wrong(self, kind: FaultKind, duty: Duty, statement: Statement, source: str = "") -> _Path:
         return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
 
-    def variable_with(self, held: str) -> str:
-        """A variable that holds the id of a goal in this phase; "" if there is none."""
-        return next((variable for (kind, variable), id_ in self.phases if kind == "id" and id_ == held), "")
+    def held(self, variable: str) -> HeldId | None:
+        """What a variable for the id of a goal holds; `None` if no id was stored in it."""
+        return next((held for name, held in self.ids if name == variable), None)
 
-    def with_ids(self, before: str, after: str) -> _Path:
-        """With another phase for each variable that holds the id of a goal in this phase."""
-        changed = ((key, after if key[0] == "id" and held == before else held) for key, held in self.phases)
-        return self._replace(phases=tuple(changed))
+    def holding(self, variable: str, held: HeldId | None) -> _Path:
+        ids = [entry for entry in self.ids if entry[0] != variable]
+        if held is not None:
+            ids.append((variable, held))
+            ids.sort()
+        return self._replace(ids=tuple(ids))
+
+    def variable_with(self, held: HeldId) -> str:
+        """A variable that holds this; "" if there is none."""
+        return next((variable for variable, other in self.ids if other == held), "")
+
+    def with_ids(self, handle: str, before: GoalStatus, after: GoalStatus) -> _Path:
+        """With another status of the goals of a server that have this status."""
+        old, new = HeldId(before, handle), HeldId(after, handle)
+        return self._replace(ids=tuple((variable, new if held == old else held) for variable, held in self.ids))
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
@@ -249,7 +296,7 @@ class _Group(NamedTuple):
     state: State
     event: ProtocolEvent | None
     handlers: tuple[Handler, ...]
-    touched: frozenset[tuple[str, str]]
+    touched: frozenset[tuple[Subject, str]]
 
 
 _Found = tuple[str, _Path, Handler, int, bool]
@@ -267,10 +314,23 @@ _ANSWERABLE = (
 )
 """Events that are lost if no condition holds, and that a client or parent waits for."""
 _CODES = (4, 5, 6)
-_ANSWERED = {ProtocolPart.RESPONSE: "response", ProtocolPart.RESULT: "outcome", ProtocolPart.GOAL_RESPONSE: "decision"}
+_ANSWERED = {
+    ProtocolPart.RESPONSE: Subject.RESPONSE,
+    ProtocolPart.RESULT: Subject.OUTCOME,
+    ProtocolPart.GOAL_RESPONSE: Subject.DECISION,
+}
 """What a client waits for, by the event that it receives."""
-_ARRIVED = {ProtocolPart.GOAL: "asked", ProtocolPart.THREAD_START: "accepted"}
-"""What the id of a goal is that an event brings."""
+_ARRIVED = {ProtocolPart.GOAL: GoalStatus.ASKED, ProtocolPart.THREAD_START: GoalStatus.ACCEPTED}
+"""The status of the goal whose id an event brings."""
+_DECIDED = (GoalStatus.ACCEPTED, GoalStatus.EARLIER, GoalStatus.REJECTED, GoalStatus.FINISHED)
+_WRONG_GOAL = {
+    GoalStatus.ASKED: FaultKind.UNDECIDED,
+    GoalStatus.EARLIER: FaultKind.EARLIER,
+    GoalStatus.REJECTED: FaultKind.REJECTED,
+    GoalStatus.FINISHED: FaultKind.UNASKED,
+}
+"""The fault of naming a goal of this status in a result, in feedback or when a thread is started."""
+_OF_INTERFACES = tuple(subject for subject in Subject if subject not in (Subject.TREE, Subject.CHILD))
 
 
 @dataclass(eq=False)
@@ -305,10 +365,10 @@ class _Explorer:
         self.declarations: dict[Handler | RosSend, Declaration | None] = {}
         self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
         self.groups: dict[str, list[_Group]] = {}
-        self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, Knowledge], list[_Found]] = {}
+        self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, HeldIds, Knowledge], list[_Found]] = {}
         self.found: list[_Found] = []
-        self.known_here: dict[tuple[str, Phases], set[Knowledge]] = {}
-        self.goal_here = "any"  # the meaning of `_action.goal_id` in the current step
+        self.known_here: dict[tuple[str, Phases, HeldIds], set[Knowledge]] = {}
+        self.goal_here = ANY_ID  # the meaning of `_action.goal_id` in the current step
 
     def declaration(self, user: Handler | RosSend) -> Declaration | None:
         if user not in self.declarations:
@@ -435,11 +495,11 @@ class _Explorer:
         at_start: list[ProtocolEvent] = []
         try:
             entry = self.states[initial].entry
-            path = _Path((), self._initial())
+            path = _Path((), (), self._initial())
             paths = self._bodies([entry.statements if entry else ()], [path])
             for each in paths:
                 at_start += each.sent
-                self._number(ChartConfiguration(initial, each.phases, self._kept(each.knowledge)))
+                self._number(ChartConfiguration(initial, each.phases, each.ids, self._kept(each.knowledge)))
             starts = len(self.numbers)
             done = 0
             while done < len(self.numbers):
@@ -471,7 +531,7 @@ class _Explorer:
         known = self.numbers.get(configuration)
         if known is not None:
             return known
-        place = (configuration.state, configuration.phases)
+        place = (configuration.state, configuration.phases, configuration.ids)
         here = self.known_here.setdefault(place, set())
         if len(here) >= MOST_KNOWN and configuration.knowledge != NOTHING:
             self.approximate = True
@@ -504,12 +564,12 @@ class _Explorer:
 
     def _touched(
         self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
-    ) -> frozenset[tuple[str, str]]:
+    ) -> frozenset[tuple[Subject, str]]:
         """The phases that the steps of a group may read or change."""
-        found: set[tuple[str, str]] = {("tree", ""), ("child", "")}
+        found: set[tuple[Subject, str]] = {(Subject.TREE, ""), (Subject.CHILD, "")}
         if event is not None:
             handle = event.name
-            found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "outcome", "decision")}
+            found |= {(subject, handle) for subject in _OF_INTERFACES}
         bodies = [state.exit.statements if state.exit else ()]
         for handler in handlers:
             for target in handler.targets:
@@ -519,7 +579,7 @@ class _Explorer:
             if isinstance(statement, RosSend):
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
-                found |= {(kind, handle) for kind in ("request", "goal", "result", "response", "decision")}
+                found |= {(subject, handle) for subject in _OF_INTERFACES if subject is not Subject.OUTCOME}
         return frozenset(found)
 
     def event(self, handler: Handler) -> ProtocolEvent | None:
@@ -540,29 +600,31 @@ class _Explorer:
     def _may_come(self, configuration: ChartConfiguration, event: ProtocolEvent) -> bool:
         match event.part:
             case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return configuration.tree not in ("ticked", "halting")
+                return configuration.tree not in (Phase.TICKED, Phase.HALTING)
             case ProtocolPart.CHILD_STATUS:
-                return configuration.phase("child") in ("ticked", "several")
+                return configuration.phase(Subject.CHILD) in (Phase.TICKED, Phase.SEVERAL)
             case ProtocolPart.CHILD_HALTED:
-                return configuration.phase("child") in ("halted", "several")
-            case ProtocolPart.REQUEST | ProtocolPart.GOAL:
-                return not configuration.phase(event.part.value, event.name)
+                return configuration.phase(Subject.CHILD) in (Phase.HALTED, Phase.SEVERAL)
+            case ProtocolPart.REQUEST:
+                return configuration.phase(Subject.REQUEST, event.name) is None
+            case ProtocolPart.GOAL:
+                return configuration.phase(Subject.GOAL, event.name) is None
             case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
-                return bool(configuration.phase(_ANSWERED[event.part], event.name))
+                return configuration.phase(_ANSWERED[event.part], event.name) is not None
         return True
 
     def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
         """The result depends on few phases only, so it is shared by many configurations."""
-        taken = self._received(_Path(configuration.phases, configuration.knowledge), group.event)
-        inside = tuple(e for e in taken.phases if e[0] in group.touched or e[0][0] == "id")
-        key = (group.state, group.event, inside, taken.knowledge)
+        taken = self._received(_Path(configuration.phases, configuration.ids, configuration.knowledge), group.event)
+        inside = tuple(entry for entry in taken.phases if entry[0] in group.touched)
+        key = (group.state, group.event, inside, taken.ids, taken.knowledge)
         if key not in self.reactions:
             self.found = self.reactions[key] = []
             self._decide(group, taken._replace(phases=inside))
-        outside = tuple(e for e in taken.phases if not (e[0] in group.touched or e[0][0] == "id"))
+        outside = tuple(entry for entry in taken.phases if entry[0] not in group.touched)
         for state, path, handler, choice, ignored in self.reactions[key]:
             phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
-            target = self._number(ChartConfiguration(state, phases, path.knowledge))
+            target = self._number(ChartConfiguration(state, phases, path.ids, path.knowledge))
             step = (number, target, group.event, handler, choice, ignored, path.sent, path.faults, path.certain)
             if step not in self.steps:
                 self.steps[step] = BehaviorStep(*step)
@@ -609,14 +671,14 @@ class _Explorer:
     def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
         """A goal is accepted, so that its result is awaited, or rejected."""
         assert group.event is not None
-        for choice, phase in ((0, "awaited"), (1, "")):
-            self._execute(group, handler, [taken.at("outcome", group.event.name, phase)], choice)
+        for choice, phase in ((0, Phase.AWAITED), (1, None)):
+            self._execute(group, handler, [taken.at(Subject.OUTCOME, group.event.name, phase)], choice)
 
     def _execute(self, group: _Group, handler: Handler, paths: list[_Path], only: int | None = None) -> None:
         state, event = group.state, group.event
         leave = state.exit.statements if state.exit else ()
         arrived = _ARRIVED.get(event.part) if event else None
-        self.goal_here = f"{arrived} {event.name}" if event and arrived else "any"
+        self.goal_here = HeldId(arrived, event.name) if event and arrived else ANY_ID
         for choice, target in enumerate(handler.targets):
             if only is not None and choice != only:
                 continue
@@ -628,7 +690,7 @@ class _Explorer:
                 after = name if entered else NOWHERE
                 done = path._replace(knowledge=known)
                 if event is not None and event.part is ProtocolPart.GOAL:  # the earlier goal is an accepted one again
-                    done = done.with_ids(f"earlier {event.name}", f"accepted {event.name}")
+                    done = done.with_ids(event.name, GoalStatus.EARLIER, GoalStatus.ACCEPTED)
                 self.found.append((after, done, handler, choice, False))
 
     def _received(self, path: _Path, event: ProtocolEvent | None) -> _Path:
@@ -637,21 +699,22 @@ class _Explorer:
             return path
         match event.part:
             case ProtocolPart.BT_TICK:
-                return path.at("tree", "", "ticked")
+                return path.at(Subject.TREE, "", Phase.TICKED)
             case ProtocolPart.BT_HALT:
-                return path.at("tree", "", "halting")
+                return path.at(Subject.TREE, "", Phase.HALTING)
             case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
-                return path if path.phase("child") == "several" else path.at("child", "", "")
+                return path if path.phase(Subject.CHILD) is Phase.SEVERAL else path.at(Subject.CHILD, "", None)
             case ProtocolPart.REQUEST:
-                return path.at("request", event.name, "due")
+                return path.at(Subject.REQUEST, event.name, Phase.DUE)
             case ProtocolPart.GOAL:
-                path = path.with_ids(f"accepted {event.name}", f"earlier {event.name}")
-                return path.at("goal", event.name, "due")
+                path = path.with_ids(event.name, GoalStatus.ACCEPTED, GoalStatus.EARLIER)
+                return path.at(Subject.GOAL, event.name, Phase.DUE)
             case ProtocolPart.THREAD_START:
-                return path.at("result", event.name, "due")
+                return path.at(Subject.RESULT, event.name, Phase.DUE)
             case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
-                kind = _ANSWERED[event.part]
-                return path if path.phase(kind, event.name) == "several" else path.at(kind, event.name, "")
+                subject = _ANSWERED[event.part]
+                several = path.phase(subject, event.name) is Phase.SEVERAL
+                return path if several else path.at(subject, event.name, None)
         return path
 
     # ------------------------------------------------------------- statements
@@ -697,11 +760,11 @@ class _Explorer:
                     ),
                 )
             case CallChild():
-                busy, called = path.phase("child"), "halted" if statement.halts else "ticked"
+                busy, called = path.phase(Subject.CHILD), Phase.HALTED if statement.halts else Phase.TICKED
                 sent = self._sent(
                     path, ProtocolEvent(ProtocolPart.CHILD_HALT if statement.halts else ProtocolPart.CHILD_TICK, "")
                 )
-                return (sent.at("child", "", "several" if busy else called),)
+                return (sent.at(Subject.CHILD, "", Phase.SEVERAL if busy else called),)
             case RosSend():
                 return (self._communicate(statement, path),)
         return (path,)
@@ -716,25 +779,27 @@ class _Explorer:
         value = statement.value.tree if isinstance(statement.value, Expression) else None
         root = (access_path(location) or ("",))[0]
         if root in self.goal_ids:
-            path = path.at("id", root, self._stored(location, value, path))
+            path = path.holding(root, self._stored(location, value, path))
         if root not in self.relevant:
             return (path,)
         return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
-    def _stored(self, location: Expr, value: Expr | None, path: _Path) -> str:
-        """The goal whose id a variable holds after an assignment."""
+    def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
+        """What a variable for the id of a goal holds after an assignment; `None` for a constant."""
         if not isinstance(location, Name) or value is None:
-            return "any"
+            return ANY_ID
         if access_path(value) == ("_action", "goal_id"):
-            server = self.goal_here.removeprefix("asked ")
-            decided = server != self.goal_here and not path.phase("goal", server)
-            return "any" if decided else self.goal_here
+            goal = self.goal_here
+            is_decided = goal.status is GoalStatus.ASKED and path.phase(Subject.GOAL, goal.of) is None
+            return ANY_ID if is_decided else goal
         if isinstance(value, Name) and value.name in self.goal_ids:
-            return path.phase("id", value.name)
+            return path.held(value.name)
         if self.facts.value(NOTHING, value) is not None:
-            return ""
+            return None
         roots = variables_in((value,))
-        return f"foreign {format_expr(value)}" if roots and roots.isdisjoint(self.may_be_ids) else "any"
+        if roots and roots.isdisjoint(self.may_be_ids):
+            return HeldId(GoalStatus.FOREIGN, format_expr(value))
+        return ANY_ID
 
     def _if(self, statement: If, path: _Path) -> Iterable[_Path]:
         if not self.fine:
@@ -761,7 +826,6 @@ class _Explorer:
         return [after._replace(certain=False) for after in found]
 
     def _status(self, statement: ReturnStatus, path: _Path) -> Iterable[_Path]:
-        duty = Duty("tick", "")
         word = statement.status.value if statement.status else ""
         if word in STATUSES:
             answers: tuple[str, ...] = (word,)
@@ -770,19 +834,27 @@ class _Explorer:
             answers = tuple(name for name, number in STATUSES.items() if number == value)
         self.statuses[statement].update(answers)
         path = self._sent(path, ProtocolEvent(ProtocolPart.BT_STATUS, ""))
-        if path.phase("tree") == "ticked":
-            phases = {"running" if answer == "RUNNING" else "ended" for answer in answers} or {"running", "ended"}
-            return [path.at("tree", "", phase) for phase in sorted(phases)]
-        if path.phase("tree") == "halting":
-            return (path.wrong("wrong-kind", Duty("halt", ""), statement),)
-        return (path.wrong("unasked", duty, statement),)
+        if path.tree is Phase.TICKED:
+            phases = [
+                phase
+                for phase, is_answer in (
+                    (Phase.ENDED, any(answer != "RUNNING" for answer in answers)),
+                    (Phase.RUNNING, "RUNNING" in answers),
+                )
+                if is_answer or not answers
+            ]
+            return [path.at(Subject.TREE, "", phase) for phase in phases]
+        if path.tree is Phase.HALTING:
+            return (path.wrong(FaultKind.WRONG_KIND, HALT, statement),)
+        return (path.wrong(FaultKind.UNASKED, TICK, statement),)
 
     def _halted(self, statement: ReturnHalted, path: _Path) -> _Path:
         path = self._sent(path, ProtocolEvent(ProtocolPart.BT_HALTED, ""))
-        if path.phase("tree") == "halting":
-            return path.at("tree", "", "ended")
-        kind = "wrong-kind" if path.phase("tree") == "ticked" else "unasked"
-        return path.wrong(kind, Duty("tick" if kind == "wrong-kind" else "halt", ""), statement)
+        if path.tree is Phase.HALTING:
+            return path.at(Subject.TREE, "", Phase.ENDED)
+        if path.tree is Phase.TICKED:
+            return path.wrong(FaultKind.WRONG_KIND, TICK, statement)
+        return path.wrong(FaultKind.UNASKED, HALT, statement)
 
     def _communicate(self, statement: RosSend, path: _Path) -> _Path:
         declaration = self.declaration(statement)
@@ -792,81 +864,89 @@ class _Explorer:
         path = self._sent(path, ProtocolEvent(part, handle))
         match part:
             case ProtocolPart.REQUEST:
-                return path.at("response", handle, "several" if path.phase("response", handle) else "awaited")
+                return self._awaiting(path, Subject.RESPONSE, handle)
             case ProtocolPart.GOAL:
-                return path.at("decision", handle, "several" if path.phase("decision", handle) else "awaited")
+                return self._awaiting(path, Subject.DECISION, handle)
             case ProtocolPart.RESPONSE:
-                if path.phase("request", handle):
-                    return path.at("request", handle, "")
-                return path.wrong("unasked", Duty("request", handle), statement)
+                if path.phase(Subject.REQUEST, handle):
+                    return path.at(Subject.REQUEST, handle, None)
+                return path.wrong(FaultKind.UNASKED, Duty(DutyKind.REQUEST, handle), statement)
             case ProtocolPart.GOAL_ACCEPTED | ProtocolPart.GOAL_REJECTED:
                 return self._decided(statement, path, handle, part is ProtocolPart.GOAL_ACCEPTED)
             case ProtocolPart.RESULT:
                 return self._finished(statement, path, handle)
             case ProtocolPart.FEEDBACK:
-                return self._checked_id(
-                    statement, path, handle, Duty("result", handle), ("asked", "accepted", "earlier")
-                )
+                goals = (GoalStatus.ASKED, GoalStatus.ACCEPTED, GoalStatus.EARLIER)
+                return self._checked_id(statement, path, Duty(DutyKind.RESULT, handle), goals)
             case ProtocolPart.THREAD_START:
-                path = self._checked_id(statement, path, handle, Duty("result", handle), ("asked", "accepted"))
+                duty = Duty(DutyKind.RESULT, handle)
+                path = self._checked_id(statement, path, duty, (GoalStatus.ASKED, GoalStatus.ACCEPTED))
                 return self._started(statement, path, handle)
         return path
 
     def _decided(self, statement: RosSend, path: _Path, handle: str, accepts: bool) -> _Path:
-        duty = Duty("goal", handle)
-        is_due = bool(path.phase("goal", handle))
-        decided = () if is_due else ("accepted", "earlier", "rejected", "finished")
-        path = self._checked_id(statement, path, handle, duty, ("asked", *decided))
-        if any(fault.statement is statement and fault.kind == "other" for fault in path.faults):
+        duty = Duty(DutyKind.GOAL, handle)
+        is_due = path.phase(Subject.GOAL, handle) is not None
+        goals = (GoalStatus.ASKED,) if is_due else (GoalStatus.ASKED, *_DECIDED)
+        path = self._checked_id(statement, path, duty, goals)
+        if any(fault.statement is statement and fault.kind is FaultKind.OTHER for fault in path.faults):
             return path
         if not is_due:
-            return path.wrong("unasked", duty, statement)
-        path = path.at("goal", handle, "")
-        path = path.with_ids(f"asked {handle}", f"{'accepted' if accepts else 'rejected'} {handle}")
+            return path.wrong(FaultKind.UNASKED, duty, statement)
+        path = path.at(Subject.GOAL, handle, None)
+        path = path.with_ids(handle, GoalStatus.ASKED, GoalStatus.ACCEPTED if accepts else GoalStatus.REJECTED)
         if accepts and handle not in self.threaded:
-            path = path.at("result", handle, "several" if path.phase("result", handle) else "due")
+            path = path.at(Subject.RESULT, handle, Phase.SEVERAL if path.phase(Subject.RESULT, handle) else Phase.DUE)
         return path
 
     def _finished(self, statement: RosSend, path: _Path, handle: str) -> _Path:
-        duty = Duty("result", handle)
+        duty = Duty(DutyKind.RESULT, handle)
         before = len(path.faults)
-        path = self._checked_id(statement, path, handle, duty, ("accepted", "earlier"))
+        goals = (GoalStatus.ACCEPTED, GoalStatus.EARLIER)
+        path = self._checked_id(statement, path, duty, goals)
         variable = statement.goal_id.tree if statement.goal_id else None
-        ended = (f"accepted {handle}", f"earlier {handle}")
-        if isinstance(variable, Name) and path.phase("id", variable.name) in ended:
-            path = path.at("id", variable.name, f"finished {handle}")
+        if isinstance(variable, Name):
+            held = path.held(variable.name)
+            if held is not None and held.of == handle and held.status in goals:
+                path = path.holding(variable.name, HeldId(GoalStatus.FINISHED, handle))
         if len(path.faults) > before:
-            return path.at("result", handle, "")  # it is already reported that this ends no goal
+            return path.at(Subject.RESULT, handle, None)  # it is already reported that this ends no goal
         if handle in self.threaded and not self.thread:
             return path
-        match path.phase("result", handle):
-            case "due":
-                return path.at("result", handle, "")
-            case "":
-                return path.wrong("unasked", duty, statement)
+        match path.phase(Subject.RESULT, handle):
+            case Phase.DUE:
+                return path.at(Subject.RESULT, handle, None)
+            case None:
+                return path.wrong(FaultKind.UNASKED, duty, statement)
         return path
 
-    def _checked_id(self, statement: RosSend, path: _Path, handle: str, duty: Duty, wanted: tuple[str, ...]) -> _Path:
-        """A goal must be named by the id with which it arrived."""
+    def _awaiting(self, path: _Path, subject: Subject, handle: str) -> _Path:
+        return path.at(subject, handle, Phase.SEVERAL if path.phase(subject, handle) else Phase.AWAITED)
+
+    def _checked_id(self, statement: RosSend, path: _Path, duty: Duty, goals: tuple[GoalStatus, ...]) -> _Path:
+        """A goal must be named by the id with which it arrived.
+
+        Args:
+            goals: the statuses of the goals that may be named.
+        """
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:
             return path
-        held = path.phase("id", tree.name)
-        if held == "any":
+        held = path.held(tree.name)
+        if held is None:
+            return path.wrong(FaultKind.UNSTORED, duty, statement)
+        if held.status is GoalStatus.ANY:
             return path
-        if not held:
-            return path.wrong("unstored", duty, statement)
-        status, _, server = held.partition(" ")
-        if status == "foreign":
-            return path.wrong("foreign", duty, statement, server)
-        if server != handle:
-            return path.wrong("other", duty, statement)
-        if status not in wanted:
-            if duty.kind == "goal":
-                return path.wrong("earlier", duty, statement, path.variable_with(f"asked {handle}"))
-            kind = {"asked": "undecided", "finished": "unasked"}.get(status, status)
-            return path.wrong(kind, duty, statement)
-        return path
+        if held.status is GoalStatus.FOREIGN:
+            return path.wrong(FaultKind.FOREIGN, duty, statement, held.of)
+        if held.of != duty.handle:
+            return path.wrong(FaultKind.OTHER, duty, statement)
+        if held.status in goals:
+            return path
+        if duty.kind is DutyKind.GOAL:
+            asked = HeldId(GoalStatus.ASKED, duty.handle)
+            return path.wrong(FaultKind.EARLIER, duty, statement, path.variable_with(asked))
+        return path.wrong(_WRONG_GOAL[held.status], duty, statement)
 
     def _started(self, statement: RosSend, path: _Path, handle: str) -> _Path:
         count = self.counts.get(handle)
@@ -880,4 +960,4 @@ class _Explorer:
         else:
             wrong = values.high != float("inf") and values.high >= count
             wrong = wrong or values.low >= count
-        return path.wrong("thread", Duty("thread", handle), statement) if wrong else path
+        return path.wrong(FaultKind.THREAD, Duty(DutyKind.THREAD, handle), statement) if wrong else path

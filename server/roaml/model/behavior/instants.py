@@ -14,13 +14,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
-from roaml.model.behavior.explore import BehaviorStep, ProtocolEvent
+from roaml.model.behavior.explore import BehaviorStep
+from roaml.model.behavior.phases import DutyKind, ProtocolEvent
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import SENDS
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart, SymbolKind
 
-_PROMISED = {ProtocolPart.RESPONSE: "request", ProtocolPart.GOAL_RESPONSE: "goal", ProtocolPart.RESULT: "result"}
+_PROMISED = {
+    ProtocolPart.RESPONSE: DutyKind.REQUEST,
+    ProtocolPart.GOAL_RESPONSE: DutyKind.GOAL,
+    ProtocolPart.RESULT: DutyKind.RESULT,
+}
 """The events that a client receives, with the duty of the server that they answer."""
 _KINDS = {
     ProtocolPart.MESSAGE: (SymbolKind.SUBSCRIBER,),

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, Duty, ProtocolEvent, explore
+from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, explore
+from roaml.model.behavior.phases import Duty, DutyKind, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
@@ -30,6 +31,13 @@ REPEATED = (
     ProtocolPart.THREAD_START,
     ProtocolPart.THREAD_FREE,
 )
+_DUTIES = {
+    ProtocolPart.REQUEST: (DutyKind.REQUEST,),
+    ProtocolPart.GOAL: (DutyKind.GOAL, DutyKind.RESULT),
+    ProtocolPart.THREAD_START: (DutyKind.RESULT,),
+}
+"""The duties of a server that an event brings."""
+_ASKED_BY = {DutyKind.REQUEST: ProtocolPart.REQUEST, DutyKind.GOAL: ProtocolPart.GOAL}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +45,7 @@ class Promise:
     """An answer of a server that does not come at once.
 
     Attributes:
-        duty: "request", "goal" or "result".
+        duty: a request, a goal or a result.
         state: where the machine waits; `scope` distinguishes the threads of a file.
         taken: whether the request has been received; otherwise the machine does not even handle it there.
         busy: whether the result of an earlier goal is still owed there.
@@ -117,23 +125,23 @@ class _Summary:
         """The duties of the machine as a server."""
         found: dict[Duty, None] = {}
         for event in self.events:
-            if event.part in (ProtocolPart.REQUEST, ProtocolPart.GOAL):
-                found[Duty(event.part.value, event.name)] = None
-            if event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START):
-                found[Duty("result", event.name)] = None
+            for kind in _DUTIES.get(event.part, ()):
+                found[Duty(kind, event.name)] = None
         return list(found)
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
         """The places where an answer is owed, and where a request is not even handled."""
-        taking, configurations = ProtocolEvent(ProtocolPart(duty.kind), duty.handle), self.behavior.configurations
+        configurations = self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
         answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
         needs = self._needs(on_the_way, answers)
         for number, alternatives in needs.items():
-            if configurations[number].phase(duty.kind, duty.handle) != "several":
+            if configurations[number].answering(duty) is not Phase.SEVERAL:
                 yield self._promise(duty, number, True, alternatives)
-        if duty.kind != "result":
+        asked_by = _ASKED_BY.get(duty.kind)
+        if asked_by is not None:
+            taking = ProtocolEvent(asked_by, duty.handle)
             takes = [replace(edge, event=0) for edge in self.edges if edge.taken == taking]
             idle = [edge for edge in self.edges if not owing[edge.source] and not owing[edge.target]]
             for number, alternatives in self._needs([*idle, *takes], takes).items():
@@ -141,7 +149,7 @@ class _Summary:
 
     def _promise(self, duty: Duty, number: int, taken: bool, alternatives: tuple[int, ...]) -> Promise:
         configuration = self.behavior.configurations[number]
-        busy = not taken and bool(configuration.phase("result", duty.handle))
+        busy = not taken and configuration.phase(Subject.RESULT, duty.handle) is not None
         scope = self.behavior.chart.scope
         return Promise(duty, configuration.state, scope, taken, busy, frozenset(map(self._set, alternatives)))
 

@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.model.behavior.duties import HALT, TICK, distances, entering, unfinished
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, ProtocolEvent
+from roaml.model.behavior.duties import distances, entering, unfinished
+from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.behavior.instants import EventDelay, Instants, channel_of, is_readable
+from roaml.model.behavior.phases import HALT, TICK, Duty, DutyKind, ProtocolEvent
 from roaml.model.machine import Handler
 from roaml.model.system import System, SystemAutomaton
 from roaml.roles import ProtocolPart, SymbolKind
@@ -88,12 +89,12 @@ def _finding(
     context: MachineContext, system: System, handler: Handler, duty: Duty, delay: EventDelay, automaton: SystemAutomaton
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
-    message = f"the answer to a {duty.kind} waits for {_named(system, automaton, delay.event)}"
+    message = f"the answer to a {duty.kind.value} waits for {_named(system, automaton, delay.event)}"
     message += f", which takes time: {reason}" if reason else ""
     what = "return RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
     if _not_taken(delay):
         what = "handle the request in that state as well"
-    message += f"; the clock waits until the {duty.kind} is answered, so both wait for ever; {what}"
+    message += f"; the clock waits until the {duty.kind.value} is answered, so both wait for ever; {what}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
@@ -112,7 +113,7 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
             name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
             doing, state = _DOING[delay.event.part], delay.promise.state
             if not delay.promise.taken:
-                question = "request for" if delay.promise.duty.kind == "request" else "goal for"
+                question = "request for" if delay.promise.duty.kind is DutyKind.REQUEST else "goal for"
                 yield f"`{name}` does not handle the {question} {channel} in its state `{state}` before {what}"
             else:
                 yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {what}"

@@ -9,9 +9,9 @@ from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import Unknown, is_kind
 from roaml.model.machine import Chart, ReturnStatus
 from roaml.model.syntax import Name
-from roaml.model.value_types import STATUSES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
+from roaml.scxml.names import STATUSES
 
 NUMBERS = {str(number): status for status, number in STATUSES.items()}
 

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, Fault, ProtocolEvent
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind
+from roaml.model.behavior.phases import OWED, Duty, DutyKind, ProtocolEvent
 from roaml.model.machine import Handler, If, ReturnHalted, ReturnStatus, RosSend, Statement, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
@@ -15,7 +16,13 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import SENT, answered_in, behaviors, place, plugins
 from roaml.text import TextEdit
 
-KINDS = ("unasked", "wrong-kind")
+KINDS = (FaultKind.UNASKED, FaultKind.WRONG_KIND)
+_ASKED_BY = {
+    DutyKind.REQUEST: (ProtocolPart.REQUEST,),
+    DutyKind.GOAL: (ProtocolPart.GOAL,),
+    DutyKind.RESULT: (ProtocolPart.GOAL, ProtocolPart.THREAD_START),
+}
+"""The events that a duty answers."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -34,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault, in_tree: bool) -> bool:
     if fault.kind not in KINDS:
         return False
-    if fault.duty.kind in ("tick", "halt"):
+    if fault.duty.kind.is_of_tree:
         if not in_tree or behavior.chart is not context.machine.chart:
             return False
         takes = ProtocolPart.BT_TICK if isinstance(fault.statement, ReturnStatus) else ProtocolPart.BT_HALT
@@ -42,20 +49,20 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
             return False  # the missing handler is reported instead
     elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
         return False
-    elif fault.duty.kind == "request" and _owes_another(behavior, step, fault.duty):
+    elif fault.duty.kind is DutyKind.REQUEST and _owes_another(behavior, step, fault.duty):
         return False  # the unanswered request is reported instead
     return not behavior.approximate or _twice(step, fault)
 
 
 def _is_asked(behavior: Behavior, duty: Duty) -> bool:
     """Whether this chart handles the events that the duty answers."""
-    parts = (ProtocolPart.GOAL, ProtocolPart.THREAD_START) if duty.kind == "result" else (ProtocolPart(duty.kind),)
+    parts = _ASKED_BY[duty.kind]
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
 
 def _owes_another(behavior: Behavior, step: BehaviorStep, duty: Duty) -> bool:
-    phases = behavior.configurations[step.target].phases
-    return any(kind == duty.kind and handle != duty.handle for (kind, handle), _ in phases)
+    subject, phases = OWED[duty.kind], behavior.configurations[step.target].phases
+    return any(other is subject and handle != duty.handle for (other, handle), _ in phases)
 
 
 def _twice(step: BehaviorStep, fault: Fault) -> bool:
@@ -65,13 +72,13 @@ def _twice(step: BehaviorStep, fault: Fault) -> bool:
 
 def _answers(fault: Fault) -> set[ProtocolEvent]:
     """The events that answer the duty of a fault."""
-    if fault.duty.kind == "goal":
+    if fault.duty.kind is DutyKind.GOAL:
         parts = {ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED}
-    elif fault.duty.kind in ("tick", "halt"):
+    elif fault.duty.kind.is_of_tree:
         parts = {ProtocolPart.BT_STATUS, ProtocolPart.BT_HALTED}
     else:
         parts = {SENT[fault.duty.kind]}
-    handle = "" if fault.duty.kind in ("tick", "halt") else fault.duty.handle
+    handle = "" if fault.duty.kind.is_of_tree else fault.duty.handle
     return {ProtocolEvent(part, handle) for part in parts}
 
 
@@ -90,10 +97,10 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
 
 def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statement | None) -> str:
     what, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
-    if fault.kind == "wrong-kind":
+    if fault.kind is FaultKind.WRONG_KIND:
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
         return f"a {what} is answered with `<{tag}>`, but its parent waits for another answer; send `<{right}>` instead"
-    how = {"result": "ended", "goal": "accepted or rejected"}.get(fault.duty.kind, "answered")
+    how = {DutyKind.RESULT: "ended", DutyKind.GOAL: "accepted or rejected"}.get(fault.duty.kind, "answered")
     tail = f"the second answer is used as the answer to the next {what}; send only one of them"
     if first is None:
         if _twice(step, fault):
@@ -111,7 +118,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
     """The statement that has answered the question before, in the same step or in the nearest step that leads to it."""
-    if fault.kind == "wrong-kind":
+    if fault.kind is FaultKind.WRONG_KIND:
         return None
     events = _answers(fault)
     earlier = _executed_before(behavior, step, fault.statement)
@@ -193,12 +200,18 @@ def _where(behavior: Behavior, statement: Statement) -> str:
     return "before"
 
 
-_QUESTION = {"tick": "tick", "halt": "halt", "request": "request", "goal": "goal", "result": "goal"}
+_QUESTION = {
+    DutyKind.TICK: "tick",
+    DutyKind.HALT: "halt",
+    DutyKind.REQUEST: "request",
+    DutyKind.GOAL: "goal",
+    DutyKind.RESULT: "goal",
+}
 
 
 def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterator[Fix]:
     element = fault.statement.element
-    if fault.kind == "wrong-kind":
+    if fault.kind is FaultKind.WRONG_KIND:
         right = (
             "<bt_return_halted />"
             if isinstance(fault.statement, ReturnStatus)

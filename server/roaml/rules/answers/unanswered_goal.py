@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty
+from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
@@ -24,9 +25,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if s.event and s.event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
         }
         for name in sorted(asked):
-            for kind in ("goal", "result"):
+            for kind in (DutyKind.GOAL, DutyKind.RESULT):
                 duty = Duty(kind, name)
-                if kind == "result" and name not in awaited:
+                if kind is DutyKind.RESULT and name not in awaited:
                     continue
                 if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
                     yield from _missed(context, behavior, duty)
@@ -49,7 +50,7 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator
 
 
 def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
-    tag, ends = f"<{step.handler.element.name}>", duty.kind == "result"
+    tag, ends = f"<{step.handler.element.name}>", duty.kind is DutyKind.RESULT
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
         what = "events are dropped while this condition does not hold, so a goal"

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import halts, last_in
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import HALT
 from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.phases import HALT, Phase
 from roaml.model.machine import State
 from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart
@@ -85,7 +85,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
             )
             message += "clock waits until it is answered; add a `<bt_halt>`"
         else:
-            how = "while the plugin is running " if waiting.standing == "running" else ""
+            how = "while the plugin is running " if waiting.standing is Phase.RUNNING else ""
             message = f"a halt that arrives {how}in the state `{waiting.name}` is never handled, so the tree waits for "
             message += "ever; add a `<bt_halt>`"
         fixes = _add_handler(context, waiting.state)

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import last_in
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty
+from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
@@ -26,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if step.event and step.event.part is ProtocolPart.REQUEST
         }
         for name, handler in asked.items():
-            duty = Duty("request", name)
+            duty = Duty(DutyKind.REQUEST, name)
             if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
                 yield from _missed(context, behavior, duty, handler)
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import TICK
 from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.phases import TICK, Phase
 from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -83,7 +83,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
                 f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "
             )
             message += "add a `<bt_tick>`"
-        severity = Severity.WARNING if waiting.needs_time or waiting.standing == "ended" else None
+        severity = Severity.WARNING if waiting.needs_time or waiting.standing is Phase.ENDED else None
         fixes = _take(context, waiting.state.element)
         yield RULE.at(waiting.span, message, *fixes, severity=severity)
 

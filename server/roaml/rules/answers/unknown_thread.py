@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.behavior.explore import BehaviorStep, Fault
+from roaml.model.behavior.explore import BehaviorStep, Fault, FaultKind
 from roaml.model.machine import RosSend, Statement
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place
@@ -18,7 +18,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         told: set[Statement] = set()
         for step in behavior.steps:
             for fault in step.faults:
-                if fault.kind == "thread" and fault.statement not in told and isinstance(fault.statement, RosSend):
+                if (
+                    fault.kind is FaultKind.THREAD
+                    and fault.statement not in told
+                    and isinstance(fault.statement, RosSend)
+                ):
                     told.add(fault.statement)
                     yield _finding(context, step, fault, fault.statement)
 

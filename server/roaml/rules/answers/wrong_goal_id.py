@@ -9,8 +9,9 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import first_in
 from roaml.expr.infer import constant
 from roaml.expr.tree import access_path
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, Fault
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind
 from roaml.model.behavior.knowledge import variables_in
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Assign, Chart, If, RosSend, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
@@ -22,12 +23,14 @@ from roaml.rules.support.interfaces import declared
 from roaml.text import TextEdit
 
 _WHY = {
-    "rejected": "the goal whose id is in `{id}` was rejected; store the id of the accepted goal in another variable",
-    "earlier": "`{id}` holds the id of an earlier goal, not of the one that has just arrived; {advice}",
-    "undecided": "the goal whose id is in `{id}` has not been accepted; accept it first",
-    "other": "`{id}` holds the id of a goal of another action; use the `goal_id` that the goal arrived with",
-    "foreign": "`{id}` is set to `{source}`, which is not the id of a goal; {advice}",
-    "unstored": "no goal id was stored in `{id}` before; store `_action.goal_id` in it where the goal is handled",
+    FaultKind.REJECTED: "the goal whose id is in `{id}` was rejected; store the id of the accepted goal in another "
+    "variable",
+    FaultKind.EARLIER: "`{id}` holds the id of an earlier goal, not of the one that has just arrived; {advice}",
+    FaultKind.UNDECIDED: "the goal whose id is in `{id}` has not been accepted; accept it first",
+    FaultKind.OTHER: "`{id}` holds the id of a goal of another action; use the `goal_id` that the goal arrived with",
+    FaultKind.FOREIGN: "`{id}` is set to `{source}`, which is not the id of a goal; {advice}",
+    FaultKind.UNSTORED: "no goal id was stored in `{id}` before; store `_action.goal_id` in it where the goal is "
+    "handled",
 }
 """Reasons by the kind of fault. If several kinds apply to one element, the first is reported: it is the most
 specific."""
@@ -36,10 +39,10 @@ specific."""
 def check(context: MachineContext) -> Iterator[Finding]:
     """A goal has the id that it arrived with; an answer with another id reaches another client, or none."""
     for behavior in behaviors(context):
-        told: set[tuple[str, str]] = set()
+        told: set[tuple[str, FaultKind]] = set()
         for step, fault in _faults(behavior).values():
             statement = fault.statement
-            if fault.kind == "undecided" and not is_spelled(context, Duty("goal", fault.duty.handle)):
+            if fault.kind is FaultKind.UNDECIDED and not is_spelled(context, Duty(DutyKind.GOAL, fault.duty.handle)):
                 continue
             assert isinstance(statement, RosSend)
             assert statement.goal_id is not None
@@ -66,7 +69,7 @@ def _faults(behavior: Behavior) -> dict[Statement, tuple[BehaviorStep, Fault]]:
 
 def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend, variable: str) -> Finding:
     advice = "use the variable in which `_action.goal_id` is stored"
-    if fault.kind == "earlier":
+    if fault.kind is FaultKind.EARLIER:
         advice = (
             f"use `{fault.source}` as `goal_id`"
             if fault.source
@@ -80,9 +83,9 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
 
 def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Iterator[Fix]:
     assert statement.goal_id is not None
-    if fault.kind == "unstored":
+    if fault.kind is FaultKind.UNSTORED:
         yield from _store(context, step, statement.goal_id.text.strip())
-    elif fault.kind == "earlier" and fault.source:
+    elif fault.kind is FaultKind.EARLIER and fault.source:
         edit = TextEdit(statement.goal_id.span, fault.source)
         yield Fix(f"Use `{fault.source}` as `goal_id`", (edit,), preferred=False)
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Expr, Name, walk
-from roaml.model.behavior.explore import ProtocolEvent
 from roaml.model.behavior.instants import comes_again
+from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.machine import CallChild, Handler, RosSend, Send, Statement, statements
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse, find_handle

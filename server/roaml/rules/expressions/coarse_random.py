@@ -12,8 +12,8 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Binary, Call, Expr, Member, Name, Unary, children, is_draw, walk
 from roaml.model.machine import Assign, Chart
+from roaml.model.parameters import DEFAULT_RANDOM_VALUES, MAX_RANDOM_VALUES
 from roaml.model.syntax import Expression
-from roaml.model.system_file import DEFAULT_RANDOM_VALUES, MAX_RANDOM_VALUES
 from roaml.rules.rule import MachineContext, Rule
 
 ROUNDING = ("floor", "ceil")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.model.system_file import NANOSECONDS, duration
+from roaml.model.parameters import NANOSECONDS, duration
 from roaml.rules.rule import MachineContext, Rule
 
 

@@ -10,8 +10,9 @@ from typing import NamedTuple
 from roaml.diagnostics import Related
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
-from roaml.model.behavior.explore import Behavior, BehaviorStep, Duty, explore
+from roaml.model.behavior.explore import Behavior, BehaviorStep, FaultKind, explore
 from roaml.model.behavior.instants import Instants, is_readable
+from roaml.model.behavior.phases import Duty, DutyKind, Phase
 from roaml.model.machine import Handler, Machine, RosSend, State, Statement
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.value_types import find_handle
@@ -24,12 +25,13 @@ from roaml.text import Span
 from roaml.xml_syntax import Element
 
 SENT = {
-    "tick": ProtocolPart.BT_STATUS,
-    "halt": ProtocolPart.BT_HALTED,
-    "request": ProtocolPart.RESPONSE,
-    "result": ProtocolPart.RESULT,
+    DutyKind.TICK: ProtocolPart.BT_STATUS,
+    DutyKind.HALT: ProtocolPart.BT_HALTED,
+    DutyKind.REQUEST: ProtocolPart.RESPONSE,
+    DutyKind.RESULT: ProtocolPart.RESULT,
 }
 """The events that answer a duty; a goal is accepted or rejected."""
+_HANDLED_BY = {DutyKind.TICK: (ProtocolPart.BT_TICK, "bt_tick"), DutyKind.HALT: (ProtocolPart.BT_HALT, "bt_halt")}
 ELEMENTS = {
     ProtocolPart.BT_STATUS: ("bt_return_status",),
     ProtocolPart.BT_HALTED: ("bt_return_halted",),
@@ -87,7 +89,7 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):
-        wrong = any(fault.kind == "wrong-kind" and fault.duty == duty for fault in step.faults)
+        wrong = any(fault.kind is FaultKind.WRONG_KIND and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
             steps.setdefault(step.handler, []).append(step)
     for handler, found in steps.items():
@@ -206,14 +208,14 @@ class Deaf(NamedTuple):
 
     Attributes:
         name, span: the identifier of the state.
-        standing: the status of the node: "" (not yet ticked), "running" or "ended".
+        standing: the status of the node: `RUNNING`, `ENDED`, or `None` if it has not been ticked yet.
         needs_time: the state is left, but only after time has passed.
     """
 
     state: State
     name: str
     span: Span
-    standing: str
+    standing: Phase | None
     needs_time: bool
 
 
@@ -235,16 +237,16 @@ def deaf(
 
 def deaf_states(
     context: MachineContext, behavior: Behavior, automaton: SystemAutomaton, duty: Duty, possible: Possible = always
-) -> Iterator[tuple[State, str]]:
-    """The states in which a tick or halt may arrive and is not handled, with the status of the node there: "" (not yet
-    ticked), "running" or "ended"."""
+) -> Iterator[tuple[State, Phase | None]]:
+    """The states in which a tick or halt may arrive and is not handled, with the status of the node there: `RUNNING`,
+    `ENDED`, or `None` if it has not been ticked yet."""
     assert context.system is not None
-    takes, tag = ProtocolPart(f"bt-{duty.kind}"), f"bt_{duty.kind}"
+    takes, tag = _HANDLED_BY[duty.kind]
     deaf = [state for state in behavior.chart.states if not any(h.trigger is takes for h in state.handlers)]
     if not deaf:
         return
     may_come = _coming(context.system, automaton, duty)
-    found: dict[str, str] = {}
+    found: dict[str, Phase | None] = {}
     for number in untaken(behavior, duty, possible):
         configuration = behavior.configurations[number]
         if configuration.tree in may_come:
@@ -269,10 +271,10 @@ def _is_for_errors(behavior: Behavior, state: State) -> bool:
     return bool(entering) and all(step.handler.cond is not None or not step.certain for step in entering)
 
 
-def _coming(system: System, automaton: SystemAutomaton, duty: Duty) -> frozenset[str]:
+def _coming(system: System, automaton: SystemAutomaton, duty: Duty) -> frozenset[Phase | None]:
     """The statuses that a node may have when a tick or halt arrives."""
-    if duty.kind == "tick":
+    if duty.kind is DutyKind.TICK:
         again = is_ticked_again(system, automaton)
-        return frozenset(("", "running", "ended") if again else ("", "running"))
-    at_rest = ("", "ended") if is_halted(system, automaton, running=False) else ()
-    return frozenset((*at_rest, *(("running",) if is_halted(system, automaton, running=True) else ())))
+        return frozenset((None, Phase.RUNNING, Phase.ENDED) if again else (None, Phase.RUNNING))
+    at_rest = (None, Phase.ENDED) if is_halted(system, automaton, running=False) else ()
+    return frozenset((*at_rest, *((Phase.RUNNING,) if is_halted(system, automaton, running=True) else ())))

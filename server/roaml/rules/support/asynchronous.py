@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from roaml.diagnostics import Fix
 from roaml.edit.elements import after, first_in, last_in
 from roaml.model.machine import Handler, ReturnStatus, State, statements
-from roaml.model.value_types import STATUSES
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, unused
+from roaml.scxml.names import STATUSES
 from roaml.text import Edit, TextEdit, computed
 
 RUNNING = '<bt_return_status status="RUNNING" />'

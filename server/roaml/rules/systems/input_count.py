@@ -27,6 +27,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
         related = (Related(trees[0].input.element.name_span, "the first one"),)
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
+    yield from _property_files(context)
     section = context.file.element.find("behavior_tree")
     wanted = [f.wanted for f in context.files if f.input.section == "behavior_tree"]
     # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
@@ -34,6 +35,23 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if section is not None and not unread and wanted and all(kind is FileKind.MACHINE for kind in wanted):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
         yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))
+
+
+def _property_files(context: SystemContext) -> Iterator[Finding]:
+    """The property files that are listed again: each of their properties would exist twice."""
+    first: dict[str, ListedFile] = {}
+    for listed in context.files:
+        if listed.wanted not in _PROPERTY_FILES or not listed.path:
+            continue
+        original = first.setdefault(listed.path, listed)
+        if original is not listed and listed.input.src is not None:
+            related = (Related(original.span, "the first one"),)
+            fix = remove(context.document, listed.input.element, "Remove this `<input>`", safe=True)
+            message = f"`{listed.input.src.value}` is listed twice, so each of its properties would exist twice"
+            yield RULE.at(listed.span, message, fix, related=related)
+
+
+_PROPERTY_FILES = (FileKind.PROPERTIES, FileKind.XML_PROPERTIES)
 
 
 def _remove(context: SystemContext, listed: ListedFile) -> Fix:

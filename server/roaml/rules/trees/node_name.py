@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.system import safe_name
 from roaml.model.tree import nodes
 from roaml.rules.rule import Rule, TreeContext
+from roaml.scxml.names import safe_name
 from roaml.text import TextEdit
 
 IDENTIFIER = re.compile(r"[A-Za-z0-9_.-]+\Z")

@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.system import builtin_plugins, safe_name
+from roaml.model.system import builtin_plugins
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.rules.support.names import WrongName
+from roaml.scxml.names import safe_name
 from roaml.text import TextEdit
 
 

@@ -14,10 +14,11 @@ from roaml.expr.types import BOOL, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
-from roaml.model.value_types import STATUSES, TypedValue, ValueUse
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
+from roaml.scxml.names import STATUSES
 
 LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
 NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")

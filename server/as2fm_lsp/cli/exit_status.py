@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The exit statuses of the command line."""
+
+from __future__ import annotations
+
+CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
+"""Nothing found; errors found; usage error; internal error."""

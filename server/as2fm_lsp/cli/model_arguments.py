@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments of the sub-commands that run a model, and reading the model that they name."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.formats import CheckReport
+from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.output import takes_color
+from as2fm_lsp.cli.times import time_of
+from roaml import api
+from roaml.diagnostics import Diagnostic
+from roaml.jani.node import Origin
+from roaml.model.parameters import Overrides
+from roaml.project.configuration import find_settings
+from roaml.project.settings import Settings, ament_prefixes
+from roaml.smc.fault import FaultError
+from roaml.text import SourceFile
+from roaml.verification.target import VerificationTarget
+
+
+class UsageError(ValueError):
+    """Wrong arguments; the message contains the reason."""
+
+
+def add_model_arguments(parser: ArgumentParser) -> None:
+    """Add the options that say what the model is; `main` is not among them."""
+    add = parser.add_argument
+    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
+        "MODEL.jani declares without one; may be repeated")  # fmt: skip
+    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+
+
+def settings_of(path: str) -> Settings:
+    """The settings for a file.
+
+    Raises:
+        UsageError: the configuration has errors.
+    """
+    settings, problems = find_settings(os.path.abspath(path))
+    if problems:
+        raise UsageError(problems[0])
+    return replace(settings, ament_prefixes=ament_prefixes())
+
+
+def check_model_arguments(options: argparse.Namespace) -> None:
+    """
+    Raises:
+        UsageError: an option does not fit the kind of the model.
+    """
+    if options.main.endswith(".jani"):
+        if options.max_time is not None:
+            raise UsageError("--max-time needs a system; a JANI model has no such parameter")
+    elif options.constant:
+        raise UsageError("--constant needs a JANI model; a system has no constants")
+
+
+def read_target(options: argparse.Namespace, settings: Settings) -> VerificationTarget:
+    """The model that the arguments name.
+
+    Raises:
+        api.PathError, api.ConstantError, api.ModelError, api.JaniError: as `api.target`.
+    """
+    overrides = Overrides(options.max_time, None)
+    return api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
+
+
+def error_report(error: api.ModelError | api.JaniError) -> CheckReport:
+    """The diagnostics of a model with errors, for standard error."""
+    if isinstance(error, api.ModelError):
+        return report_of(error.result.diagnostics, error.result.source, len(error.result.files))
+    source = error.source
+    return report_of(error.diagnostics, lambda _: source, 1)
+
+
+def report_of(diagnostics: Iterable[Diagnostic], source_of: Callable[[str], SourceFile], count: int) -> CheckReport:
+    """Diagnostics of `count` files, for standard error."""
+    entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
+    return CheckReport(entries, count, color=takes_color(sys.stderr))
+
+
+def line_of(target: VerificationTarget, origin: Origin | None) -> str:
+    """File and line of an origin; "" if they are not known."""
+    place = target.place(origin)
+    return "" if place is None else f"{shown_path(place.path)}:{place.line}"
+
+
+def fault_text(target: VerificationTarget, fault: FaultError) -> str:
+    """What is wrong in a model that cannot be run any further, with its place."""
+    place = line_of(target, fault.origin)
+    return f"{place}: {fault.message}" if place else fault.message

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the adapter can do, as the answer to `initialize`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from roaml.debugging.breakpoints import Filter
+
+_FILTERS = {
+    Filter.VIOLATED: ("A property is violated", "A property is decided, and does not hold in this run", True),
+    Filter.SATISFIED: ("A property is satisfied", "A property is decided, and holds in this run", False),
+    Filter.FAILURE: ("A node fails", "A node of the behavior tree returns FAILURE", False),
+    Filter.CHANCE: ("Chance decides", "The next step is drawn by probabilities of the model", False),
+    Filter.END: ("Nothing is possible any more", "No step changes anything: the run is at its end", True),
+    Filter.TIME: ("Time passes", "The time of the model has advanced", False),
+}
+
+CAPABILITIES: dict[str, Any] = {
+    "supportsConfigurationDoneRequest": True,
+    "supportsFunctionBreakpoints": True,
+    "supportsConditionalBreakpoints": True,
+    "supportsHitConditionalBreakpoints": True,
+    "supportsEvaluateForHovers": True,
+    "supportsStepBack": True,
+    "supportsRestartFrame": True,
+    "supportsRestartRequest": True,
+    "supportsExceptionInfoRequest": True,
+    "supportTerminateDebuggee": True,
+    "supportsDelayedStackTraceLoading": True,
+    "supportsLoadedSourcesRequest": True,
+    "supportsLogPoints": True,
+    "supportsTerminateRequest": True,
+    "supportsDataBreakpoints": True,
+    "supportsCancelRequest": True,
+    "supportsBreakpointLocationsRequest": True,
+    "supportsExceptionFilterOptions": True,
+    "exceptionBreakpointFilters": [
+        {
+            "filter": filter_.value,
+            "label": label,
+            "description": description,
+            "default": is_default,
+            "supportsCondition": True,
+            "conditionDescription": "an expression, such as `Arm.holding == false`",
+        }
+        for filter_, (label, description, is_default) in _FILTERS.items()
+    ],
+}

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading the model of a `launch` request, and making the run that it asks for."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from as2fm_lsp.debug.arguments import Arguments, RequestError
+from roaml import api
+from roaml.debugging.debugger import Debugger, Log
+from roaml.debugging.sources import Sources
+from roaml.debugging.start import Start, StartError, start
+from roaml.diagnostics import Diagnostic
+from roaml.disk import NotReadableError, required
+from roaml.model.parameters import Overrides, duration
+from roaml.project.configuration import find_settings
+from roaml.project.settings import ament_prefixes
+from roaml.simulation import RunError, SavedSession
+from roaml.smc.fault import FaultError
+from roaml.text import SourceFile
+
+MAX_SAVED = 1 << 26
+"""The maximum size of a saved session in bytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Launch:
+    """The arguments of `launch`.
+
+    Attributes:
+        program: the system file, or a JANI model.
+        stops_on_entry: whether the run stops at its start.
+        max_time: overrides the time limit of the system, in ns.
+        constants: `NAME=VALUE` for constants of a JANI model.
+    """
+
+    program: str
+    start: Start
+    stops_on_entry: bool
+    max_time: int | None
+    constants: tuple[str, ...]
+    ros_paths: tuple[str, ...]
+
+
+def launch_of(arguments: Arguments) -> Launch:
+    """
+    Raises:
+        RequestError: an argument is missing or has a wrong type.
+    """
+    program = os.path.abspath(arguments.text("program", None))
+    against, in_favour = arguments.natural("against", 0), arguments.natural("inFavor", 0)
+    if against and in_favour:
+        raise RequestError("`against` and `inFavor` exclude each other")
+    saved = arguments.text("session")
+    max_time = arguments.text("maxTime")
+    nanoseconds = duration(max_time) if max_time else None
+    if max_time and nanoseconds is None:
+        raise RequestError(f'`maxTime` is `{max_time}`, which is not a duration such as "10 s"')
+    begin = Start(
+        arguments.text("property"),
+        arguments.natural("seed", 0),
+        arguments.natural("trace", 0),
+        against or in_favour,
+        "passed" if in_favour else "failed",
+        _saved(os.path.join(os.path.dirname(program), saved)) if saved else None,
+    )
+    constants = arguments.object("constants").members
+    return Launch(
+        program,
+        begin,
+        arguments.flag("stopOnEntry", not begin.nth),
+        nanoseconds,
+        tuple(f"{name}={_constant(value)}" for name, value in constants.items()),
+        tuple(arguments.texts("rosPath")),
+    )
+
+
+def _constant(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _saved(path: str) -> SavedSession:
+    try:
+        return SavedSession.from_json(required(path, MAX_SAVED).decode("utf-8"))
+    except NotReadableError as error:
+        raise RequestError(str(error)) from None
+    except ValueError as error:
+        raise RequestError(f"{path}: {error}") from None
+
+
+def load(launch: Launch, log: Log, is_cancelled: Callable[[], bool]) -> Debugger:
+    """The debugger for a `launch` request.
+
+    Raises:
+        RequestError: the model cannot be run, or the run does not exist.
+    """
+    try:
+        return start(_sources(launch), launch.start, log, is_cancelled)
+    except api.ModelError as error:
+        raise RequestError(_first(error.result.diagnostics, error.result.source)) from None
+    except api.JaniError as error:
+        source = error.source
+        raise RequestError(_first(error.diagnostics, lambda _: source)) from None
+    except (StartError, RunError, api.PathError, api.PropertyError, api.ConstantError) as error:
+        raise RequestError(str(error)) from None
+    except FaultError as fault:
+        raise RequestError(f"the model cannot be run: {fault.message}") from None
+
+
+def _sources(launch: Launch) -> Sources:
+    path = launch.program
+    settings, problems = find_settings(path)
+    if problems:
+        raise RequestError(problems[0])
+    settings = replace(settings, ament_prefixes=ament_prefixes())
+    if path.endswith(".jani"):
+        return Sources(api.target(path, launch.ros_paths, settings, constants=launch.constants))
+    system = api.load(path, launch.ros_paths, settings, overrides=Overrides(launch.max_time, None))
+    return Sources(api.as_target(system), system.analysis)
+
+
+def _first(diagnostics: tuple[Diagnostic, ...], source_of: Callable[[str], SourceFile]) -> str:
+    first = diagnostics[0]
+    line = source_of(first.path).lines.position(first.span.start).line + 1
+    more = f" ({len(diagnostics) - 1} more)" if len(diagnostics) > 1 else ""
+    return f"{first.path}:{line}: {first.message}{more}"

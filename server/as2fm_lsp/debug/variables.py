@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Variables in the terms of the protocol: references to what a client may open, valid while the run is stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from roaml.debugging.breakpoints import Variable
+from roaml.debugging.scopes import Entry
+from roaml.debugging.values import SEPARATOR, Value, shown, type_of
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A variable with its value at the previous stop; `None` if it had none."""
+
+    entry: Entry
+    before: Value | None
+
+
+class References:
+    """Numbers for scopes, structs and arrays."""
+
+    def __init__(self) -> None:
+        self._children: list[Sequence[Shown]] = []
+
+    def add(self, children: Sequence[Shown]) -> int:
+        """A new reference."""
+        self._children.append(children)
+        return len(self._children)
+
+    def children(self, reference: int) -> Sequence[Shown] | None:
+        """What is behind a reference; `None` if there is no such reference."""
+        return self._children[reference - 1] if 1 <= reference <= len(self._children) else None
+
+    def of_value(self, value: Value, entry: Entry, before: Value | None) -> int:
+        """A reference for the parts of a value; 0 if it has none."""
+        if isinstance(value, (dict, list)) and value:
+            return self.add(tuple(_parts(value, entry, before)))
+        return 0
+
+    def variable(self, shown_: Shown) -> dict[str, Any]:
+        """A `Variable` of the protocol. A value that has changed since the previous stop has the attribute `changed`,
+        and its type says what it was."""
+        entry, before = shown_.entry, shown_.before
+        has_changed = before is not None and before != entry.value
+        attributes = ["readOnly", *(["changed"] if has_changed else [])]
+        type_ = entry.type or type_of(entry.value)
+        variable: dict[str, Any] = {
+            "name": entry.name,
+            "value": shown(entry.value),
+            "type": f"{type_}, was {shown(before)}" if has_changed and before is not None else type_,
+            "variablesReference": self.of_value(entry.value, entry, before),
+            "presentationHint": {"attributes": attributes},
+        }
+        if entry.expression:
+            variable["evaluateName"] = entry.expression
+        if isinstance(entry.value, list):
+            variable["indexedVariables"] = len(entry.value)
+        elif isinstance(entry.value, dict):
+            variable["namedVariables"] = len(entry.value)
+        return variable
+
+
+def _parts(value: dict[str, Value] | list[Value], entry: Entry, before: Value | None) -> Iterable[Shown]:
+    if isinstance(value, dict):
+        for name, member in value.items():
+            old = before.get(name) if isinstance(before, dict) else None
+            expression = f"{entry.expression}.{name}" if entry.expression else ""
+            owner = entry.variable
+            variable = None if owner is None else Variable(owner.instance, f"{owner.name}{SEPARATOR}{name}")
+            yield Shown(Entry(name, member, "", expression, variable), old)
+        return
+    for number, element in enumerate(value):
+        old = before[number] if isinstance(before, list) and number < len(before) else None
+        expression = f"{entry.expression}[{number}]" if entry.expression else ""
+        yield Shown(Entry(f"[{number}]", element, "", expression), old)

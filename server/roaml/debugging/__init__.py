@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Debugging a run: breakpoints, stacks, variables and expressions in the terms of the sources.
+
+A debugger is at a position of a run (`roaml.simulation`). It shows the statement that is executed next, which the seed
+or a choice by hand determines, so that a breakpoint stops before its line is executed. The package does not depend on
+files, editors or protocols.
+"""

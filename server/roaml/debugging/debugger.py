@@ -1,0 +1,432 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run that is moved to breakpoints, forwards and backwards.
+
+A continued run is moved in small portions (`Debugger.advance`), so that a caller can interrupt it. Both directions stop
+at the same positions: a breakpoint at which a run stops forwards also stops it backwards, in the same state.
+"""
+
+from __future__ import annotations
+
+import enum
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+from roaml.debugging.breakpoints import Breakpoint, Breakpoints, Filter, Matcher, Places, logged
+from roaml.debugging.evaluate import Scope
+from roaml.debugging.frames import TREE_THREAD, Frame, Stacks, Thread, node_of, threads
+from roaml.debugging.scopes import Values
+from roaml.debugging.sources import Sources
+from roaml.jani.node import Origin
+from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
+from roaml.simulation.choices import Choice, Outcome
+from roaml.simulation.session import Session, ends_tick
+from roaml.simulation.verdicts import Decided, Verdicts
+from roaml.smc.fault import FaultError
+from roaml.smc.record import TraceStep
+
+MAX_STEPS = 200_000
+"""The maximum number of steps of one movement; then the run stops, and can be continued."""
+PORTION_S = 0.02
+"""The time after which a movement lets its caller look for requests."""
+
+
+class Unit(enum.Enum):
+    """How far a movement goes unless a breakpoint stops it."""
+
+    STEP = "step"
+    TURN = "turn"
+    TICK = "tick"
+    END = "end"
+
+
+class Reason(enum.Enum):
+    """Why a run has stopped, in DAP's words where it has some."""
+
+    ENTRY = "entry"
+    STEP = "step"
+    PAUSE = "pause"
+    BREAKPOINT = "breakpoint"
+    FUNCTION_BREAKPOINT = "function breakpoint"
+    DATA_BREAKPOINT = "data breakpoint"
+    EXCEPTION = "exception"
+    GOTO = "goto"
+    END = "end of the run"
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """
+    Attributes:
+        thread: the number of the thread that does the next step, or that has reached the breakpoint.
+        text: what has happened, if the reason alone does not say it.
+        breakpoints: the numbers of the breakpoints that were reached.
+        filter: what has happened, if the reason is an exception.
+    """
+
+    reason: Reason
+    thread: int
+    text: str = ""
+    breakpoints: tuple[int, ...] = ()
+    filter: str = ""
+
+
+@dataclass(slots=True)
+class _Movement:
+    unit: Unit
+    forwards: bool
+    position: int
+    steps: int = 0
+    is_first: bool = True
+
+
+Log = Callable[[str, "Origin | None"], None]
+
+
+class Debugger:
+    """A session with breakpoints.
+
+    Args:
+        log: receives the messages of log points.
+
+    Attributes:
+        fault: why the next step cannot be taken: the model executes an undefined operation.
+    """
+
+    def __init__(self, session: Session, sources: Sources, verdicts: Verdicts, log: Log) -> None:
+        self.session = session
+        self.sources = sources
+        self.breakpoints = Breakpoints()
+        self._verdicts = verdicts
+        self._log = log
+        self.fault: FaultError | None = None
+        self._movement: _Movement | None = None
+        self._matcher: Matcher | None = None
+        self._looked_at = -1
+        self._upcoming: TraceStep | None = None
+        self._values: Values | None = None
+        self._stacks: Stacks | None = None
+        self._thread = self.threads[0].number if self.threads else TREE_THREAD
+        self.before: Values | None = None
+        self._follow()
+
+    @cached_property
+    def places(self) -> Places:
+        return Places(self.session, self.sources)
+
+    @cached_property
+    def threads(self) -> tuple[Thread, ...]:
+        return threads(self.session, self.sources)
+
+    @cached_property
+    def _threads_of(self) -> dict[int, int]:
+        return {thread.instance: thread.number for thread in self.threads if thread.instance >= 0}
+
+    def breakpoints_changed(self) -> None:
+        """To be called after `breakpoints` has changed."""
+        self._matcher = None
+
+    # ------------------------------------------------------------ the state
+
+    def upcoming(self) -> TraceStep | None:
+        """The next step; `None` at the end of the run, and if the step fails (`fault`)."""
+        if self._looked_at != self.session.position:
+            self._looked_at = self.session.position
+            self._values = self._stacks = None
+            self.fault = None
+            try:
+                self._upcoming = self.session.upcoming()
+            except FaultError as fault:
+                self._upcoming, self.fault = None, fault
+        return self._upcoming
+
+    @property
+    def values(self) -> Values:
+        upcoming = self.upcoming()
+        if self._values is None:
+            session = self.session
+            verdicts = self._verdicts.verdicts(session.position)
+            self._values = Values(session, self.sources, session.state(), upcoming, verdicts)
+        return self._values
+
+    @property
+    def stacks(self) -> Stacks:
+        upcoming = self.upcoming()
+        if self._stacks is None:
+            self._stacks = Stacks(self.session, self.sources, self.session.state(), upcoming)
+        return self._stacks
+
+    def stack(self, thread: int) -> list[Frame]:
+        """The frames of a thread; empty if there is no such thread."""
+        return next((self.stacks.stack(each) for each in self.threads if each.number == thread), [])
+
+    def scope(self, instance: int) -> Scope:
+        """The names of expressions for an instance."""
+        return self.values.names(Frame(0, "", None, instance, 0, "statement"))
+
+    @property
+    def verdicts(self) -> dict[str, str]:
+        return self._verdicts.verdicts(self.session.position)
+
+    # ------------------------------------------------------------ moving
+
+    def begin(self, unit: Unit, *, forwards: bool = True, stops_here: bool = False) -> None:
+        """Begin a movement, which `advance` continues.
+
+        Args:
+            stops_here: whether a breakpoint on the next step stops at once.
+        """
+        self._remember()
+        self._movement = _Movement(unit, forwards, self.session.position, is_first=not stops_here)
+
+    def interrupt(self) -> Stop:
+        """End the movement here."""
+        self._settle()
+        return self._stop(Reason.PAUSE)
+
+    def _settle(self) -> None:
+        """Go to where the movement is."""
+        movement, self._movement = self._movement, None
+        if movement is not None and not movement.forwards:
+            self.session.jump(movement.position)
+
+    @property
+    def is_moving(self) -> bool:
+        return self._movement is not None
+
+    def advance(self, portion: float = PORTION_S) -> Stop | None:
+        """Continue the movement for some time, in s; returns `None` if it is not at its end yet."""
+        movement = self._movement
+        if movement is None:
+            return None
+        deadline = time.monotonic() + portion
+        stop = None
+        while stop is None and time.monotonic() < deadline:
+            stop = self._forwards(movement) if movement.forwards else self._backwards(movement)
+            movement.is_first = False
+            movement.steps += 1
+            if stop is None and movement.steps >= MAX_STEPS:
+                self._settle()
+                stop = self._stop(Reason.PAUSE, f"{MAX_STEPS:,} steps were taken without reaching a breakpoint")
+        if stop is not None:
+            self._movement = None
+        return stop
+
+    def _forwards(self, movement: _Movement) -> Stop | None:
+        try:
+            step = self.session.step()
+        except FaultError as fault:
+            self._looked_at, self._upcoming, self.fault = self.session.position, None, fault
+            self._values = self._stacks = None
+            return self._stop(Reason.EXCEPTION, fault.message, filter_="fault")
+        if step is None:
+            return self._end()
+        decided = self._follow()
+        matcher = self._match()
+        if not movement.is_first and (hits := matcher.before(step)):
+            self.session.back()
+            reached = self._reached(hits)
+            if reached:
+                return self._stop_at(reached)
+            self.session.step()
+        reached = self._reached(matcher.after(step, decided))
+        if reached:
+            return self._stop_at(reached)
+        return self._stop(Reason.STEP) if self._is_far_enough(movement.unit, step) else None
+
+    def _backwards(self, movement: _Movement) -> Stop | None:
+        """Look at the step before `movement.position`; the session itself only moves where it may stop."""
+        if movement.position == 0:
+            self.session.jump(0)
+            return self._stop(Reason.ENTRY, "this is the start of the run")
+        step = self.session.steps[movement.position - 1]
+        matcher = self._match()
+        if not movement.is_first and (hits := matcher.after(step, self._verdicts.at(movement.position))):
+            self.session.jump(movement.position)
+            if reached := self._reached(hits):
+                return self._stop_at(reached)
+        movement.position -= 1
+        if hits := matcher.before(step):
+            self.session.jump(movement.position)
+            if reached := self._reached(hits):
+                return self._stop_at(reached)
+        if movement.unit is Unit.STEP:
+            self.session.jump(movement.position)
+            return self._stop(Reason.STEP)
+        return None
+
+    def _is_far_enough(self, unit: Unit, step: TraceStep) -> bool:
+        match unit:
+            case Unit.STEP:
+                return True
+            case Unit.TURN:
+                return self.session.ends_turn(step)
+            case Unit.TICK:
+                return ends_tick(step)
+            case Unit.END:
+                return False
+
+    def go_to(self, position: int) -> Stop:
+        """Go to a position; takes new steps if the run is shorter."""
+        self._remember()
+        try:
+            self.session.jump(position)
+        except FaultError:
+            self.upcoming()
+        self._follow()
+        return self._stop(Reason.GOTO)
+
+    def choose(self, choice: Choice, outcome: Outcome | None) -> Stop:
+        """Take a step by hand; other steps that followed here are discarded."""
+        self._remember()
+        position = self.session.position
+        self.session.step(choice, outcome)
+        self._verdicts.discard(position)
+        self._looked_at = -1
+        decided = self._follow()
+        after = self._reached(self._match().after(self.session.steps[position], decided))
+        return self._stop_at(after) if after else self._stop(Reason.STEP)
+
+    def restart_frame(self, frame: Frame) -> Stop:
+        """Go back to where a frame began: a handler received its event, a state was entered, a node was ticked."""
+        steps = self.session.steps
+        position = self.session.position
+        tick = f"bt_{frame.node}_tick"
+        for index in range(position - 1, -1, -1):
+            step = steps[index]
+            if frame.role == "node":
+                if received_by(step.action or "") == tick:
+                    return self.go_to(index)
+                continue
+            for part in step.parts:
+                if part.instance != frame.instance:
+                    continue
+                is_handler = frame.role in ("handler", "statement") and received_by(step.action or "")
+                if is_handler:
+                    return self.go_to(index)
+                if frame.role == "state" and self._enters(part.source, part.destination.location, part.instance):
+                    return self.go_to(index + 1)
+        return self.go_to(0)
+
+    def _enters(self, source: str, destination: str, instance: int) -> bool:
+        return destination != source and self.session.is_resting(instance, destination)
+
+    def restart(self) -> None:
+        """Go back to the start."""
+        self._remember()
+        self.session.jump(0)
+        self.breakpoints.reset()
+
+    def replace(self, session: Session, verdicts: Verdicts) -> None:
+        """Continue with another session of the same model."""
+        self.session, self._verdicts = session, verdicts
+        self.__dict__.pop("places", None)
+        self._matcher, self._looked_at, self.before = None, -1, None
+        self._follow()
+
+    # ------------------------------------------------------------ parts
+
+    def _remember(self) -> None:
+        self.before = self.values
+
+    def _follow(self) -> list[Decided]:
+        session = self.session
+        return self._verdicts.follow(session.decisions, session.position, session.end is not None)
+
+    def _match(self) -> Matcher:
+        if self._matcher is None:
+            self._matcher = Matcher(self.session, self.sources, self.places, self.breakpoints)
+        return self._matcher
+
+    def _reached(self, hits: Iterable[tuple[Breakpoint, int]]) -> list[tuple[Breakpoint, int]]:
+        """The breakpoints that stop the run in the current state; messages of log points are logged."""
+        reached = []
+        for breakpoint_, instance in dict.fromkeys(hits):
+            needs_scope = breakpoint_.condition is not None or breakpoint_.message
+            scope: Scope = self.scope(instance) if needs_scope else _nothing
+            if not breakpoint_.is_met(scope) or not breakpoint_.stops():
+                continue
+            if breakpoint_.message:
+                part = next(
+                    (p for p in (self._upcoming.parts if self._upcoming else ()) if p.instance == instance), None
+                )
+                self._log(logged(breakpoint_.message, scope), part.edge.origin if part else None)
+            else:
+                reached.append((breakpoint_, instance))
+        return reached
+
+    def _end(self) -> Stop:
+        end = self.session.end
+        text = "no step is possible" if end is None else end.text
+        breakpoint_ = self._match().end
+        if breakpoint_ is not None:
+            return self._stop(Reason.EXCEPTION, text, filter_=Filter.END.value)
+        return self._stop(Reason.END, text)
+
+    def _stop_at(self, reached: list[tuple[Breakpoint, int]]) -> Stop:
+        breakpoints = self.breakpoints
+        instance = reached[0][1]
+        numbers = tuple(breakpoint_.number for breakpoint_, _ in reached if breakpoint_.number)
+        first = reached[0][0]
+        for filter_, breakpoint_ in breakpoints.filters.items():
+            if breakpoint_ is first:
+                return self._stop(Reason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
+        reason = Reason.BREAKPOINT
+        if any(breakpoint_ is first for _, breakpoint_ in breakpoints.names):
+            reason = Reason.FUNCTION_BREAKPOINT
+        elif any(breakpoint_ is first for _, breakpoint_ in breakpoints.variables):
+            reason = Reason.DATA_BREAKPOINT
+        return self._stop(reason, first.name, numbers, "", instance)
+
+    def _text(self, filter_: Filter) -> str:
+        decided = self._verdicts.at(self.session.position)
+        match filter_:
+            case Filter.VIOLATED:
+                names = [each.name for each in decided if each.verdict == "failed"]
+                return f"violated: {', '.join(names)}"
+            case Filter.SATISFIED:
+                names = [each.name for each in decided if each.verdict == "passed"]
+                return f"satisfied: {', '.join(names)}"
+            case Filter.FAILURE:
+                step = self.session.steps[self.session.position - 1]
+                number = sent_by(step.action or "").split("_")[1]
+                node = self.sources.nodes.get(int(number))
+                return f"{node.plugin if node else 'node'} (bt_{number}) fails"
+            case Filter.CHANCE:
+                return "the next step is decided by chance"
+            case Filter.TIME:
+                return f"time passes to {self.session.time:g} s"
+            case Filter.END:
+                return "no step changes anything any more"
+
+    def _stop(
+        self,
+        reason: Reason,
+        text: str = "",
+        breakpoints: tuple[int, ...] = (),
+        filter_: str = "",
+        instance: int = -1,
+    ) -> Stop:
+        self._thread = self._thread_at(instance)
+        return Stop(reason, self._thread, text, breakpoints, filter_)
+
+    def entry(self) -> Stop:
+        """The stop at the start of the run."""
+        return self._stop(Reason.ENTRY)
+
+    def _thread_at(self, instance: int) -> int:
+        """The thread of an instance, otherwise that of the first one that takes part in the next step."""
+        upcoming = self.upcoming()
+        actors = [] if upcoming is None else [part.instance for part in self.session.actors(upcoming)]
+        for actor in (instance, *actors):
+            if actor in self._threads_of:
+                return self._threads_of[actor]
+            name = self.session.automata[actor] if actor >= 0 else ""
+            if self.sources.nodes and (node_of(name) or name.startswith(TREE_ROOT_PREFIX)):
+                return TREE_THREAD
+        return self._thread
+
+
+def _nothing(_: str) -> None:
+    return None

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Threads and stacks: where each machine and the tree are, and what they execute next.
+
+A thread is a state machine, or the tree with all its nodes. A stack begins with the statement that is executed next.
+The frames of a machine are the statement, its handler and its state; the frames of the tree are the nodes that are
+being ticked, the innermost first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.debugging.sources import Sources
+from roaml.jani.node import Origin
+from roaml.scxml.names import NODE_AUTOMATON, received_by
+from roaml.simulation.session import Session
+from roaml.simulation.state import MachineState, NodeState, NodeStatus, SystemState
+from roaml.simulation.words import who
+from roaml.smc.record import AutomatonStep, TraceStep
+from roaml.views.event_words import said
+
+TREE_THREAD = 1
+FIRST_MACHINE_THREAD = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """A machine, or the tree; `instance` is -1 for the tree."""
+
+    number: int
+    name: str
+    instance: int
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """
+    Attributes:
+        origin: the statement, handler, state or node.
+        instance: the automaton whose variables the frame shows; -1 if it has none.
+        node: the number of the node of the tree; 0 for a machine.
+        role: `statement`, `handler`, `state` or `node`.
+    """
+
+    thread: int
+    name: str
+    origin: Origin | None
+    instance: int
+    node: int
+    role: str
+
+
+def threads(session: Session, sources: Sources) -> tuple[Thread, ...]:
+    """The threads of a system, in the order of its machines, the tree first."""
+    found = [Thread(TREE_THREAD, "tree", -1)] if sources.nodes else []
+    number = FIRST_MACHINE_THREAD
+    for instance, automaton in enumerate(session.automata_of_model):
+        if session.is_machine(instance) and not _is_node(automaton.name, sources):
+            found.append(Thread(number, who(automaton.name), instance))
+            number += 1
+    return tuple(found)
+
+
+def _is_node(automaton: str, sources: Sources) -> bool:
+    return bool(sources.nodes) and NODE_AUTOMATON.fullmatch(automaton) is not None
+
+
+def node_of(automaton: str) -> int:
+    """The number of the node of the tree that an automaton executes; 0 for other automata."""
+    match = NODE_AUTOMATON.fullmatch(automaton)
+    return int(match[1]) if match else 0
+
+
+class Stacks:
+    """The stacks at the position of a session.
+
+    Args:
+        upcoming: the step that is taken next; `None` if there is none.
+    """
+
+    def __init__(self, session: Session, sources: Sources, state: SystemState, upcoming: TraceStep | None) -> None:
+        self._session = session
+        self._sources = sources
+        self._locations = session.locations()
+        self._state = state
+        self._instances = {automaton.name: number for number, automaton in enumerate(session.automata_of_model)}
+        self._machines = {machine.automaton: machine for machine in state.machines}
+        self._action = "" if upcoming is None else upcoming.action or ""
+        actors = [] if upcoming is None else session.actors(upcoming)
+        self._parts: Mapping[int, AutomatonStep] = {part.instance: part for part in actors}
+
+    def stack(self, thread: Thread) -> list[Frame]:
+        """The frames of a thread, the innermost first."""
+        if thread.instance >= 0:
+            automaton = self._session.automata_of_model[thread.instance].name
+            return list(self._machine_frames(thread.number, self._machines[automaton], thread.instance, 0))
+        return list(self._tree_frames(thread.number))
+
+    def _machine_frames(self, thread: int, machine: MachineState, instance: int, node: int) -> Iterator[Frame]:
+        automaton = self._session.automata_of_model[instance]
+        location = self._locations[instance]
+        part = self._parts.get(instance)
+        received = received_by(self._action) if part is not None else ""
+        handler, event = machine.handler, machine.event
+        if not self._session.is_resting(instance, location):
+            edge = part.edge if part is not None else next(e for e in automaton.edges if e.source == location)
+            name = self._sources.tag(edge.origin) or f"{edge.action or location}"
+            yield Frame(thread, f"{machine.name}: {name}", edge.origin, instance, node, "statement")
+        elif received and part is not None:
+            handler, event = part.edge.origin, received
+        else:
+            handler, event = None, ""
+        states = self._sources.states(automaton)
+        if handler is not None and handler != states.get(machine.state):
+            text = said(event, machine.name, self._session.automata, taken=True)
+            yield Frame(thread, f"{machine.name}: {text}", handler, instance, node, "handler")
+        origin = states.get(machine.state, machine.origin)
+        yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, "state")
+
+    def _tree_frames(self, thread: int) -> Iterator[Frame]:
+        statuses = {node.number: node for node in self._state.nodes}
+        active = self._active_node(statuses)
+        instance = self._instances.get(self._sources.nodes[active].automaton, -1) if active else -1
+        if instance >= 0 and self._session.is_machine(instance):
+            machine = self._machines[self._sources.nodes[active].automaton]
+            if instance in self._parts or not self._session.is_resting(instance, self._locations[instance]):
+                yield from self._machine_frames(thread, machine, instance, active)
+        number: int | None = active
+        while number:
+            node = self._sources.nodes[number]
+            status = statuses[number].status.value if number in statuses else NodeStatus.IDLE.value
+            name = f"{node.name} (bt_{number})" if node.name == node.plugin else f"{node.name} : {node.plugin}"
+            origin = self._sources.node_origins.get(number)
+            yield Frame(thread, f"{name}: {status}", origin, self._instances.get(node.automaton, -1), number, "node")
+            number = node.parent
+
+    def _active_node(self, statuses: Mapping[int, NodeState]) -> int:
+        """The node that executes the next step, otherwise the innermost one that is being ticked, or the root."""
+        for part in self._parts.values():
+            number = node_of(part.automaton)
+            if number in self._sources.nodes:
+                return number
+        ticked = [n for n, node in statuses.items() if node.status is NodeStatus.TICKED and n in self._sources.nodes]
+        return max(ticked, key=self._depth, default=min(self._sources.nodes, default=0))
+
+    def _depth(self, number: int) -> int:
+        depth = 0
+        parent = self._sources.nodes[number].parent
+        while parent is not None:
+            depth += 1
+            parent = self._sources.nodes[parent].parent
+        return depth

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The variables that a frame shows, and the names that its expressions can use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.debugging.breakpoints import Variable
+from roaml.debugging.evaluate import Scope
+from roaml.debugging.frames import Frame
+from roaml.debugging.sources import Sources
+from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
+from roaml.model.expand import PortConstant
+from roaml.scxml.names import BLACKBOARD, FIELD_PREFIX, TREE_EVENT, is_length, is_timer, received_by
+from roaml.simulation.session import Session
+from roaml.simulation.state import SystemState
+from roaml.simulation.words import STATUS_NAMES
+from roaml.smc.record import Plain, TraceStep
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A named value of a scope.
+
+    Attributes:
+        type: the declared type, for readers.
+        expression: evaluates to the value; "" if no expression does.
+        variable: what a data breakpoint on it watches; `None` if it cannot have one.
+    """
+
+    name: str
+    value: Value
+    type: str = ""
+    expression: str = ""
+    variable: Variable | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ScopeEntries:
+    """A scope of a frame; `hint` is its kind in DAP's words."""
+
+    name: str
+    entries: tuple[Entry, ...]
+    hint: str = ""
+
+
+class Values:
+    """All values at the position of a session."""
+
+    def __init__(
+        self,
+        session: Session,
+        sources: Sources,
+        state: SystemState,
+        upcoming: TraceStep | None,
+        verdicts: Mapping[str, str],
+    ) -> None:
+        self._session = session
+        self._sources = sources
+        self._state = state
+        self._verdicts = verdicts
+        self._received = "" if upcoming is None else received_by(upcoming.action or "")
+        self._receivers = [] if upcoming is None else [part.instance for part in session.actors(upcoming)]
+        self._stored: dict[int, dict[str, Plain]] = {}
+        for (instance, name), value in session.values():
+            self._stored.setdefault(instance, {})[name] = value
+        self._instances = {automaton.name: number for number, automaton in enumerate(session.automata_of_model)}
+
+    # ------------------------------------------------------------ scopes
+
+    def scopes(self, frame: Frame) -> list[ScopeEntries]:
+        """The scopes of a frame that contain something."""
+        found = []
+        if frame.instance >= 0:
+            found.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
+            message = self.message(frame.instance)
+            if message:
+                entries = (Entry(name, value, type_of(value), name) for name, value in message.items())
+                found.append(ScopeEntries("Message", tuple(entries), "arguments"))
+        if frame.node:
+            found.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
+        return [scope for scope in (*found, *self.shared_scopes()) if scope.entries]
+
+    def shared_scopes(self) -> Iterator[ScopeEntries]:
+        """The scopes that all frames have."""
+        yield ScopeEntries("Blackboard", tuple(self._blackboard()), "globals")
+        yield ScopeEntries("Tree", tuple(self._nodes()), "globals")
+        yield ScopeEntries("Messages", tuple(self._messages()), "globals")
+        yield ScopeEntries("Global variables", tuple(self._shared()), "globals")
+        yield ScopeEntries("Time", tuple(self._time()), "globals")
+        yield ScopeEntries("Properties", tuple(self._properties()), "globals")
+
+    def _own(self, instance: int) -> Iterator[Entry]:
+        stored = self._stored.get(instance, {})
+        automaton = self._session.automata_of_model[instance]
+        types = self._sources.variable_types(automaton)
+        shown: set[str] = set()
+        for name, type_ in types.items():
+            value = typed_value(name, type_, stored)
+            if value is not None and _is_stored(name, stored):
+                shown |= {
+                    each for each in stored if each == name or each.startswith((f"{name}{SEPARATOR}", f"{name}."))
+                }
+                yield Entry(name, value, str(type_), name, Variable(instance, name))
+        for name, value in untyped_values({n: v for n, v in stored.items() if n not in shown}).items():
+            yield Entry(name, value, type_of(value), name, Variable(instance, name))
+
+    def _ports(self, node: int) -> Iterator[Entry]:
+        for key, port in self._sources.nodes[node].ports:
+            if isinstance(port, PortConstant):
+                yield Entry(key, port.text, "constant")
+            else:
+                value = self._blackboard_values().get(port.variable)
+                text = f"{{{port.variable}}}"
+                yield Entry(key, text if value is None else value, f"blackboard entry {port.variable}")
+
+    def _blackboard_values(self) -> dict[str, Value]:
+        stored = self._stored.get(self._instances.get(BLACKBOARD, -2), {})
+        return untyped_values(stored)
+
+    def _blackboard(self) -> Iterator[Entry]:
+        instance = self._instances.get(BLACKBOARD, -2)
+        for name, value in self._blackboard_values().items():
+            yield Entry(name, value, type_of(value), name, Variable(instance, name))
+
+    def _nodes(self) -> Iterator[Entry]:
+        for node in self._state.nodes:
+            yield Entry(f"{node.type} (bt_{node.number})", node.status.value, "status", f"bt_{node.number}")
+
+    def _messages(self) -> Iterator[Entry]:
+        for event in self._state.events:
+            parameters: Value = self._parameters(event.event)
+            waiting = ", not received yet" if event.is_waiting else ""
+            yield Entry(event.text, parameters, f"sent by {event.sender} in step {event.step}{waiting}")
+
+    def _shared(self) -> Iterator[Entry]:
+        stored = self._stored.get(-1, {})
+        own = {name: v for name, v in stored.items() if name in self._state.shared or is_length(name)}
+        for name, value in untyped_values(own).items():
+            if name in self._state.shared:
+                yield Entry(name, value, type_of(value), name, Variable(-1, name))
+
+    def _time(self) -> Iterator[Entry]:
+        yield Entry("step", self._session.position, "number of steps", "step")
+        if self._state.time is not None:
+            yield Entry("time", self._state.time, "s", "time")
+
+    def _properties(self) -> Iterator[Entry]:
+        for name, verdict in self._verdicts.items():
+            yield Entry(name, verdict, "verdict")
+
+    # ------------------------------------------------------------ messages
+
+    def message(self, instance: int) -> dict[str, Value]:
+        """The event variables of the handler that an instance executes, or is about to execute
+        (docs/spec/machines.md#event-variables)."""
+        name = self._session.automata_of_model[instance].name
+        machine = next((machine for machine in self._state.machines if machine.automaton == name), None)
+        event = self._received if instance in self._receivers else ""
+        if machine is not None and machine.event:
+            event = machine.event
+        if not event or is_timer(event):
+            return {}
+        return _event_variables(event, self._parameters(event))
+
+    def _parameters(self, event: str) -> dict[str, Value]:
+        """The parameters with which an event was sent last, as structs."""
+        stored = self._stored.get(-1, {})
+        types = self._sources.event_parameters.get(event, {})
+        values: dict[str, Value] = {}
+        prefix = f"{event}{SEPARATOR}"
+        for name, type_ in types.items():
+            value = typed_value(prefix + name, type_, stored)
+            if value is not None:
+                values[name.removeprefix(FIELD_PREFIX)] = value
+        if not types:
+            own = {name.removeprefix(prefix): value for name, value in stored.items() if name.startswith(prefix)}
+            values = {name.removeprefix(FIELD_PREFIX): value for name, value in untyped_values(own).items()}
+        return nested(values)
+
+    # ------------------------------------------------------------ expressions
+
+    def names(self, frame: Frame | None) -> Scope:
+        """The value of each name that an expression can use: first those of the frame, then those of the system."""
+        known: dict[str, Value] = {status: status for status in STATUS_NAMES.values()}
+        for entry in self._time():
+            known[entry.name] = entry.value
+        for machine in self._state.machines:
+            instance = self._instances[machine.automaton]
+            known[machine.name] = {**{e.name: e.value for e in self._own(instance)}, "state": machine.state}
+        known |= {entry.name: entry.value for entry in self._shared()}
+        known |= {f"bt_{node.number}": node.status.value for node in self._state.nodes}
+        known |= self._blackboard_values()
+        if frame is not None and frame.instance >= 0:
+            known |= self.message(frame.instance)
+            known |= {entry.name: entry.value for entry in self._own(frame.instance)}
+        shared = self._stored.get(-1, {})
+        own = known.get
+
+        def value(name: str) -> Value | None:
+            found = own(name)
+            if found is not None or name not in shared:
+                return found
+            plain = shared[name]
+            return plain if not isinstance(plain, list) else untyped_values({name: plain}).get(name)
+
+        return value
+
+
+def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
+    return name in stored or any(each.startswith(f"{name}{SEPARATOR}") for each in stored)
+
+
+def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:
+    handle = {name: parameters.pop(name) for name in ("goal_id",) if name in parameters}
+    if TREE_EVENT.fullmatch(event):
+        status = parameters.get("status")
+        return {"_bt": {"status": STATUS_NAMES.get(status, "")}} if isinstance(status, int) else {}
+    if event.startswith("topic_"):
+        return {"_msg": parameters}
+    name = event.partition("_client_")[0]
+    if event.startswith("srv_"):
+        return {"_res" if name.endswith("_response") else "_req": parameters}
+    if event.startswith("action_"):
+        action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
+        if "_result" in name:
+            code = {"code": parameters.pop("code")} if "code" in parameters else {}
+            return {**action, "_wrapped_result": {**code, "result": parameters}}
+        if "_feedback" in name:
+            return {**action, "_feedback": parameters}
+        return {**action, "_goal": parameters} if parameters else action
+    return {"_event": {"data": {**handle, **parameters}}} if parameters or handle else {}

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the parts of a run are written: machines, states, nodes of the tree, properties."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from roaml.expr.types import Type
+from roaml.jani.model import Automaton
+from roaml.jani.node import Origin
+from roaml.model.expand import Instance, node_at
+from roaml.project.analysis import Analysis
+from roaml.text import Location
+from roaml.verification.target import LineColumn, VerificationTarget
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The sources of a model.
+
+    Attributes:
+        analysis: the models behind a system; `None` for a JANI file.
+    """
+
+    target: VerificationTarget
+    analysis: Analysis | None = None
+
+    def place(self, origin: Origin | None) -> LineColumn | None:
+        return self.target.place(origin)
+
+    @cached_property
+    def nodes(self) -> Mapping[int, Instance]:
+        """The nodes of the tree, by their numbers."""
+        system = None if self.analysis is None else self.analysis.system(self.target.path)
+        return {} if system is None else {instance.number: instance for instance in system.instances}
+
+    @cached_property
+    def node_origins(self) -> Mapping[int, Origin]:
+        """The element of each node in the file of its tree."""
+        origins = {}
+        for number, instance in self.nodes.items():
+            file = None if self.analysis is None else self.analysis.tree(instance.source.path)
+            node = None if file is None else node_at(file, instance.source)
+            if node is not None:
+                origins[number] = Location(instance.source.path, node.element.span)
+        return origins
+
+    @cached_property
+    def property_origins(self) -> Mapping[str, Origin]:
+        return {each.name: each.origin for each in self.target.model.properties if each.origin is not None}
+
+    def states(self, automaton: Automaton) -> Mapping[str, Origin]:
+        """The element of each state of a machine, by the name of the state; empty if the machine has no file."""
+        path = "" if automaton.origin is None else automaton.origin.path
+        machine = None if self.analysis is None else self.analysis.machine(path)
+        if machine is None:
+            return {}
+        return {
+            state.id.value: Location(path, state.element.span)
+            for chart in tuple(machine.charts)[::-1]
+            for state in chart.states
+            if state.id is not None
+        }
+
+    def variable_types(self, automaton: Automaton) -> Mapping[str, Type]:
+        """The types of the variables of a machine; empty if the machine has no file."""
+        path = "" if automaton.origin is None else automaton.origin.path
+        if self.analysis is None or self.analysis.machine(path) is None:
+            return {}
+        typed = self.analysis.typed_in(path, self.target.path)
+        return {name: type_ for scope in tuple(typed.variables.values())[::-1] for name, type_ in scope.items()}
+
+    @cached_property
+    def event_parameters(self) -> Mapping[str, Mapping[str, Type]]:
+        """The parameters of each event, with their types."""
+        return {} if self.analysis is None else self.analysis.event_parameters(self.target.path)
+
+    def tag(self, origin: Origin | None) -> str:
+        """The element at a place, such as `<assign>`; "" if there is none."""
+        source = None if origin is None else self.target.source_of(origin.path)
+        if origin is None or source is None:
+            return ""
+        text = source.text[origin.span.start : origin.span.start + MAX_TAG]
+        name = text[1:].split(None, 1)[0].split(">")[0].rstrip("/") if text.startswith("<") and len(text) > 1 else ""
+        return f"<{name}>" if name else ""
+
+
+MAX_TAG = 80
+"""The maximum number of characters of an element's start that are read for its name."""

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The run that is debugged: by seed and trace, saved, or the n-th trace that speaks against or for a property."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from roaml.debugging.debugger import Debugger, Log
+from roaml.debugging.sources import Sources
+from roaml.simulation.session import SavedSession, Session
+from roaml.simulation.verdicts import Verdicts
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.record import Recorder, Recording
+from roaml.verification.verifier import checker_of
+
+MAX_TRACES = 100_000
+"""The maximum number of traces that are simulated to find one with a verdict."""
+MAX_TRACE_STEPS = 1_000_000
+
+
+class StartError(ValueError):
+    """The run does not exist; the message contains the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Which run is debugged.
+
+    Attributes:
+        property: the name of the property; "" for the first one.
+        nth: the number, from 1, of the trace among those with `verdict`; 0 for the trace of number `trace`.
+        verdict: `failed` for traces that speak against the property, `passed` for those in favour.
+        saved: the session to continue; it overrides the others.
+    """
+
+    property: str = ""
+    seed: int = 0
+    trace: int = 0
+    nth: int = 0
+    verdict: str = "failed"
+    saved: SavedSession | None = None
+
+
+def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], bool] = lambda: False) -> Debugger:
+    """A debugger at the start of a run, or at the position of the saved session.
+
+    Raises:
+        StartError: there is no such trace, or `is_cancelled` was true while it was searched for.
+        PropertyError: the model has no such property.
+        FaultError: the model cannot be run.
+        RunError: the saved decisions are not possible in the model.
+    """
+    name = begin.property if begin.saved is None else begin.saved.property
+    checker = checker_of(sources.target, None)
+    asked = _asked(checker, sources, name) if name else next(iter(checker.asked), checker.stuck)
+    seed, trace = begin.seed, begin.trace
+    if begin.nth and begin.saved is None:
+        recorder = Recorder(checker, asked, seed, MAX_TRACE_STEPS)
+        trace = _nth(recorder, begin, asked.question.name, is_cancelled)
+    session = Session(checker, asked, seed, trace, sources.target.clock, begin.saved)
+    return Debugger(session, sources, Verdicts(checker, session.seed, session.trace), log)
+
+
+def _asked(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
+    if name in checker.refused:
+        raise checker.refused[name]
+    asked = next((each for each in checker.asked if each.question.name == name), None)
+    if asked is not None:
+        return asked
+    checker_of(sources.target, [name])  # raises an error if there is no such property
+    return checker.stuck
+
+
+def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[], bool]) -> int:
+    verdict = FALSE if begin.verdict == "failed" else TRUE
+    missing = begin.nth
+    for trace in range(MAX_TRACES):
+        recording = Recording(trace)
+        recorder.rush(recording)
+        missing -= recording.verdict == verdict
+        if missing == 0:
+            return trace
+        if is_cancelled():
+            raise StartError("the search for a trace was cancelled")
+    count = begin.nth - missing
+    what = "in which `{}` does not hold" if verdict == FALSE else "in which `{}` holds"
+    raise StartError(f"{count} of {MAX_TRACES:,} traces with seed {begin.seed} are traces {what.format(name)}; "
+        f"there is no number {begin.nth}; use another seed")  # fmt: skip

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Descriptions for property files in XML, as Markdown: properties as sentences, and the variables of ports."""
+
+from __future__ import annotations
+
+from roaml.diagnostics import Symbol
+from roaml.ide.describe.markdown import code, name, paragraphs
+from roaml.ide.names.lookup import thing
+from roaml.model.property_file import (
+    ACCEPTED,
+    EVENT,
+    GOAL_ID,
+    RESULT_CODE,
+    Port,
+    PortVariable,
+    PropertyFile,
+    WrittenProperty,
+)
+from roaml.model.property_sentences import event_clause, formula, quoted, sentence
+from roaml.project.analysis import Analysis
+
+
+def property_(analysis: Analysis, symbol: Symbol) -> str:
+    """A property by its symbol: its sentence, with the formula below."""
+    for place in thing(analysis, (symbol,)).definitions:
+        file = analysis.property_file(place.path)
+        for written in file.properties if file is not None else ():
+            if file is not None and written.id is not None and written.id.span == place.span:
+                return described(file, written)
+    return ""
+
+
+def described(file: PropertyFile, written: WrittenProperty) -> str:
+    text = formula(written)
+    return paragraphs(sentence(file, written), code(text) if text else "")
+
+
+def variable(analysis: Analysis, symbol: Symbol) -> str:
+    """A variable of a port: its type, and when it has which value."""
+    file = analysis.property_file(symbol.path)
+    for port, declared in file.variables if file is not None else ():
+        if declared.id is not None and declared.id.value == symbol.name:
+            return paragraphs(code(f"{symbol.name} : {_type(declared)}"), _value(port, declared))
+    return paragraphs(code(symbol.name), "No port has a variable with this name")
+
+
+def _type(declared: PortVariable) -> str:
+    if declared.kind in (GOAL_ID, RESULT_CODE):
+        return "int32"
+    return "bool" if declared.kind in (EVENT, ACCEPTED) else declared.type.text if declared.type else "?"
+
+
+def _value(port: Port, declared: PortVariable) -> str:
+    happens = str(event_clause(port))
+    if declared.kind == EVENT:
+        return f"True in the step in which {happens}, false in all others"
+    what = {
+        GOAL_ID: "The number of the goal",
+        RESULT_CODE: "The code of the result",
+        ACCEPTED: "Whether the goal was accepted",
+    }.get(declared.kind, f"The value of {quoted(declared.field.value if declared.field else '')}")
+    before = f"; {name(declared.initial.text)} before" if declared.initial is not None else ""
+    return f"{what} at the last time that {happens}{before}"

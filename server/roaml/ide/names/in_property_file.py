@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The names in property files in XML: those of properties and variables, and what ports name in the system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from roaml.diagnostics import Symbol
+from roaml.expr.tree import Name as NameExpr
+from roaml.expr.tree import walk
+from roaml.expr.types import Struct, Type, unwrap
+from roaml.ide.names.frames import Frame, Piece, Trees
+from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
+from roaml.interfaces.registry import split_type_name
+from roaml.interfaces.types import Kind
+from roaml.model.expand import Instance
+from roaml.model.property_file import ACTION, NODE, PLAIN, SERVICE, TOPIC, Port, PortVariable, PropertyFile
+from roaml.model.property_ports import INTERFACE_KINDS, part_of
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Name
+from roaml.model.system import System, SystemAutomaton, sanitise
+from roaml.model.tree_paths import nodes_called, parts_above
+from roaml.roles import SymbolKind
+from roaml.text import Span
+
+FindInterface = Callable[[str, str], InterfaceType | None]
+
+SYMBOL_KINDS = {TOPIC: SymbolKind.TOPIC, SERVICE: SymbolKind.SERVICE, ACTION: SymbolKind.ACTION}
+
+
+def in_property_file(
+    text: str,
+    file: PropertyFile,
+    path: str,
+    owner: str,
+    system: System | None,
+    trees: Trees,
+    table: Mapping[str, tuple[Piece, ...]],
+    find: FindInterface,
+) -> Iterator[Occurrence]:
+    """
+    Args:
+        owner: the system file, or `path` if the file is looked at alone.
+        table: the names of the global variables of the translation -> their parts.
+    """
+    names = _PropertyFile(text, file, path, owner, system, trees, table, find)
+    return (occurrence for occurrence in names.all() if occurrence.span.start < occurrence.span.end)
+
+
+class _PropertyFile:
+    def __init__(
+        self,
+        text: str,
+        file: PropertyFile,
+        path: str,
+        owner: str,
+        system: System | None,
+        trees: Trees,
+        table: Mapping[str, tuple[Piece, ...]],
+        find: FindInterface,
+    ) -> None:
+        self.text = text
+        self.file = file
+        self.path = path
+        self.owner = owner
+        self.system = system
+        self.trees = trees
+        self.table = table
+        self.find = find
+
+    def all(self) -> Iterator[Occurrence]:
+        for port in self.file.ports:
+            if port.name is not None:
+                yield from self.port(port, port.name)
+            for choice in (port.origin, port.target):
+                yield from self.automaton(choice)
+            for variable in port.variables:
+                if variable.id is not None:
+                    yield self.variable(variable.id.span, variable.id.value, defines=True)
+                yield from self.field(port, variable)
+        for written in self.file.properties:
+            if written.id is not None:
+                yield Occurrence(written.id.span, Symbol(self.owner, SymbolKind.PROPERTY, written.id.value), True)
+            for condition in written.expressions:
+                for node in walk(condition.tree):
+                    if isinstance(node, NameExpr) and self.text[node.span.start : node.span.end] == node.name:
+                        yield self.variable(node.span, node.name)
+
+    def variable(self, span: Span, name: str, *, defines: bool = False) -> Occurrence:
+        access = Access.WRITE if defines else Access.READ
+        return Occurrence(span, Symbol(self.path, SymbolKind.PORT_VARIABLE, name), defines, access)
+
+    # ----------------------------------------------------------------- ports
+
+    def port(self, port: Port, name: Name) -> Iterator[Occurrence]:
+        if len(name.value) != name.span.end - name.span.start:
+            return  # written with entities
+        if port.kind == NODE:
+            yield from self.node(name)
+        elif port.kind == PLAIN:
+            yield from self.pieces(self.table.get(f"{name.value}.valid", ()), name.span)
+        else:
+            kind = SYMBOL_KINDS[port.kind]
+            is_topic = kind is SymbolKind.TOPIC
+            symbol = Symbol(self.owner, kind, sanitise(name.value) if is_topic else name.value)
+            yield Occurrence(without_slash(name) if is_topic else name.span, symbol, access=Access.READ)
+            if port.type is not None:
+                interface: Kind = INTERFACE_KINDS[port.kind]
+                parts = split_type_name(port.type.value, interface)
+                if parts is not None:
+                    symbol = Symbol("", SymbolKind.ROS_TYPE, "/".join(parts), interface)
+                    yield Occurrence(port.type.span, symbol)
+
+    def pieces(self, pieces: tuple[Piece, ...], span: Span, skipped: int = 0) -> Iterator[Occurrence]:
+        """The parts of a name of the translation that is written at `span`, without its first characters."""
+        start = span.start - skipped
+        for written, symbol, form in pieces:
+            if symbol is not None and span.start <= start and start + len(written) <= span.end:
+                yield Occurrence(Span(start, start + len(written)), symbol, access=Access.READ, form=form)
+            start += len(written)
+
+    def node(self, name: Name) -> Iterator[Occurrence]:
+        """The nodes and trees on a path."""
+        matches = nodes_called(self.system, name.value) if self.system is not None else ()
+        if len(matches) != 1 or self.system is None:
+            return
+        *path, last = name.value.split("/")
+        start = name.span.start
+        above = zip(
+            (part.names for part in parts_above(self.system, matches[0])),
+            self.around(self.system, matches[0]),
+            strict=True,
+        )
+        for text in path:
+            names, symbols = next((names, symbols) for names, symbols in above if text in names)
+            yield Occurrence(Span(start, start + len(text)), symbols[names.index(text)])
+            start += len(text) + 1
+        symbol = self.symbol_of(self.system.by_instance[matches[0].number])
+        yield Occurrence(Span(start, start + len(last)), symbol, access=Access.READ)
+
+    def around(self, system: System, instance: Instance) -> list[tuple[Symbol, ...]]:
+        """The symbols of the names in `parts_above`."""
+        found: list[tuple[Symbol, ...]] = []
+        frame = self.frame_of(instance)
+        while True:
+            parent = system.by_instance.get(instance.parent) if instance.parent is not None else None
+            around = parent.instance if parent is not None else None
+            outermost = self.frame_of(around) if around is not None else None
+            while frame is not None and frame is not outermost:
+                symbols = tuple(self.names_of(frame))
+                found += [symbols] if symbols else []
+                frame = frame.outer
+            if parent is None or around is None:
+                return found[::-1]
+            found.append((self.symbol_of(parent),))
+            instance = around
+
+    def frame_of(self, instance: Instance) -> Frame | None:
+        return self.trees.nodes[instance.number][0] if instance.number in self.trees.nodes else None
+
+    def names_of(self, frame: Frame) -> Iterator[Symbol]:
+        """The names of a use of a tree: that of the `<SubTree>`, if it has one, and that of the tree."""
+        use, id_ = frame.expanded.use, frame.expanded.tree.id
+        if use is not None and frame.expanded.name != id_:
+            yield tree_node(use.path, use.tree, use.position, frame.expanded.name)
+        if id_:
+            yield self.trees.tree_symbol(frame.path, id_)
+
+    def symbol_of(self, automaton: SystemAutomaton) -> Symbol:
+        """What the name of a node of the tree is: its own, or that of its plugin."""
+        assert automaton.instance is not None
+        _, node = self.trees.nodes.get(automaton.instance.number, (None, None))
+        source = automaton.instance.source
+        if node is not None and node.name is not None and node.name.value == automaton.instance.name:
+            return tree_node(source.path, source.tree, source.position, node.name.value)
+        if automaton.path:
+            return Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name)
+        return Symbol("", SymbolKind.PLUGIN, automaton.outline.name)
+
+    # ------------------------------------------------------ machines, fields
+
+    def automaton(self, name: Name | None) -> Iterator[Occurrence]:
+        if name is None or self.system is None:
+            return
+        for automaton in self.system.automata:
+            if automaton.instance is not None and name.value == automaton.instance.name:
+                yield Occurrence(name.span, self.symbol_of(automaton))
+            elif automaton.path and name.value == automaton.outline.name:
+                yield Occurrence(name.span, Symbol(automaton.path, SymbolKind.MACHINE, name.value))
+
+    def field(self, port: Port, variable: PortVariable) -> Iterator[Occurrence]:
+        name = variable.field
+        if name is None or len(name.value) != name.span.end - name.span.start:
+            return
+        if port.kind == PLAIN and port.name is not None:
+            pieces = self.table.get(f"{port.name.value}__{name.value}", ())
+            yield from self.pieces(pieces, name.span, len(port.name.value) + 2)
+            return
+        start = name.span.start
+        owner: Type | None = part_of(port, self.find)
+        for text in name.value.split("."):
+            inner, _ = unwrap(owner) if owner is not None else (None, ())
+            member = inner.member(text) if isinstance(inner, Struct) else None
+            if not isinstance(inner, Struct) or member is None:
+                return
+            symbol = Symbol("", SymbolKind.FIELD, text, inner.name)
+            yield Occurrence(Span(start, start + len(text)), symbol, access=Access.READ)
+            start, owner = start + len(text) + 1, member

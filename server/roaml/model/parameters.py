@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of a system (docs/spec/systems.md#parameters)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+DEFAULT_MAX_ARRAY_SIZE = 100
+DEFAULT_TICK_RATE = 1.0
+DEFAULT_RANDOM_VALUES = 100
+MAX_RANDOM_VALUES = 10_000
+"""Each value is a destination of an edge in JANI."""
+NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """How the system is translated.
+
+    Attributes:
+        max_time: the bound of the clock in ns; None if it is not given or no number.
+        tick_rate: of the behavior tree, in Hz.
+        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
+    """
+
+    max_time: int | None = None
+    max_array_size: int = DEFAULT_MAX_ARRAY_SIZE
+    tick_rate: float = DEFAULT_TICK_RATE
+    tick_if_not_running: bool = False
+    random_values: int = DEFAULT_RANDOM_VALUES
+
+
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """Parameters that replace those of a system file, where they are given; see `Parameters`."""
+
+    max_time: int | None = None
+    max_array_size: int | None = None
+
+    def applied(self, parameters: Parameters) -> Parameters:
+        max_time = parameters.max_time if self.max_time is None else self.max_time
+        size = parameters.max_array_size if self.max_array_size is None else self.max_array_size
+        return replace(parameters, max_time=max_time, max_array_size=size)
+
+
+NO_OVERRIDES = Overrides()
+
+
+def duration(text: str) -> int | None:
+    """The duration in `text`, in ns; `None` if `text` is not a duration such as `100 s` or `250ms`."""
+    number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
+    unit = text.strip().removeprefix(number)
+    value = integer(number.strip())
+    return value * NANOSECONDS[unit] if value and unit in NANOSECONDS else None
+
+
+def integer(text: str) -> int | None:
+    return int(text[:18]) if text.isascii() and text.isdigit() else None

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The properties in a property file in XML as English sentences: the same everywhere that a property is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.expr.tree import Name as NameExpr
+from roaml.model.property_file import (
+    ACTION,
+    ASSUMES,
+    EVENT,
+    NODE,
+    SERVICE,
+    TOPIC,
+    Port,
+    PropertyFile,
+    WrittenProperty,
+)
+from roaml.model.syntax import Expression, Name
+from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, ScopeKind
+from roaml.observers.sentences import Clause, Times, formula_sentence, pattern_formula, pattern_sentence
+
+
+def sentence(file: PropertyFile, written: WrittenProperty) -> str:
+    """What a property requires, in one sentence with the names in backquotes; "" if it has neither a pattern nor a
+    formula."""
+    text = _sentence(file, written)
+    return f"Assumed: {text[:1].lower()}{text[1:]}" if text and written.section == ASSUMES else text
+
+
+def sentences(file: PropertyFile) -> Mapping[str, str]:
+    """The sentence of each property, by the name of the property."""
+    return {written.id.value: sentence(file, written) for written in file.properties if written.id is not None}
+
+
+def formula(written: WrittenProperty) -> str:
+    """A property as a formula in one line; "" if it has neither a pattern nor a formula."""
+    if written.formula is not None:
+        return " ".join(written.formula.source.text.split())
+    pattern, kind = pattern_of(written), scope_of(written)
+    if pattern is None:
+        return ""
+    conditions = {name: f"({text})" if " " in text else text for name, text in _conditions(written)}
+    return pattern_formula(pattern, kind or ScopeKind.GLOBALLY, conditions, _times(written))
+
+
+def pattern_of(written: WrittenProperty) -> Pattern | None:
+    return next((p for p in Pattern if written.pattern is not None and written.pattern.value == p.value), None)
+
+
+def scope_of(written: WrittenProperty) -> ScopeKind | None:
+    type_ = written.scopes[0].type if written.scopes else None
+    return next((kind for kind in ScopeKind if type_ is not None and type_.value == kind.value), None)
+
+
+def _conditions(written: WrittenProperty) -> Iterator[tuple[str, str]]:
+    for name, condition in conditions_of(written).items():
+        yield name, " ".join(condition.text.split())
+
+
+def conditions_of(written: WrittenProperty) -> dict[str, Expression]:
+    """The conditions of a pattern and its scope, by the names of the inputs of its observer."""
+    conditions = dict(zip((LEFT, RIGHT), written.conditions, strict=False))
+    scope = written.scopes[0] if written.scopes else None
+    if scope is not None and scope.event is not None:
+        conditions[OPEN] = scope.event
+    if scope is not None and scope.until is not None:
+        conditions[CLOSE] = scope.until
+    return conditions
+
+
+def _sentence(file: PropertyFile, written: WrittenProperty) -> str:
+    ports = {variable.id.value: port for port, variable in file.variables if variable.id and variable.kind == EVENT}
+    if written.formula is not None and written.formula.notation.formula is not None:
+        clauses = {atom.text.strip(): clause(atom, ports) for atom in written.formula.atoms}
+        return formula_sentence(written.formula.notation.formula, clauses)
+    pattern = pattern_of(written)
+    if pattern is None:
+        return ""
+    clauses = {name: clause(condition, ports) for name, condition in conditions_of(written).items()}
+    return pattern_sentence(pattern, scope_of(written) or ScopeKind.GLOBALLY, clauses, _times(written))
+
+
+def clause(condition: Expression, ports: Mapping[str, Port]) -> Clause:
+    """A condition as a clause: an event variable alone says what is sent, other conditions hold.
+
+    Args:
+        ports: the ports of the event variables, by their ids.
+    """
+    tree = condition.tree
+    port = ports.get(tree.name) if isinstance(tree, NameExpr) else None
+    if port is not None and port.name is not None:
+        return event_clause(port)
+    return Clause(quoted(condition.text), "holds")
+
+
+def quoted(text: str) -> str:
+    """A name or condition in backquotes, which also is Markdown that no text can leave."""
+    return f"`{' '.join(text.split()).replace('`', chr(39)) or '…'}`"
+
+
+def event_clause(port: Port) -> Clause:
+    """What happens when the event of a port is sent."""
+    name = quoted(port.name.value) if port.name is not None else "…"
+    by = f" by {quoted(port.origin.value)}" if port.origin is not None else ""
+    to = f" to {quoted(port.target.value)}" if port.target is not None else ""
+    event = port.event.value if port.event is not None else ""
+    if port.kind == TOPIC:
+        return _is("a message", f"published on {name}{by}")
+    if port.kind == SERVICE:
+        return _is(f"a response of {name}", f"sent{to}") if event == "response" else _is(name, f"called{by}")
+    if port.kind == ACTION:
+        match event:
+            case "goal_response":
+                return _is(f"a goal{by} for {name}", "accepted or rejected")
+            case "feedback" | "result":
+                return _is(f"{'feedback' if event == 'feedback' else 'a result'} of {name}", f"sent{to}")
+        return _is("a goal", f"sent to {name}{by}")
+    if port.kind == NODE:
+        return Clause(name, "answers") if event == "response" else _is(name, "halted" if event == "halt" else "ticked")
+    return _is(name, f"sent{by}{to}")
+
+
+def _is(subject: str, participle: str) -> Clause:
+    return Clause(subject, participle, "is")
+
+
+def _times(written: WrittenProperty) -> Times:
+    if not written.intervals:
+        return Times()
+    interval = written.intervals[0]
+    unit = interval.unit.value if interval.unit is not None else ""
+
+    def with_unit(number: Name | None) -> str:
+        return f"{number.value} {unit}".strip() if number is not None else ""
+
+    return Times(with_unit(interval.after), with_unit(interval.time or interval.within))

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run decides about several properties, besides the one of its session."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roaml.simulation.run import Decision
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.kernel import Kernel
+from roaml.smc.model import ModelChecker
+from roaml.smc.program import FAULTY, UNKNOWN
+from roaml.smc.record import VERDICTS
+
+
+class Decided(NamedTuple):
+    """A property is decided in the state after `position` steps; `verdict` is `passed` or `failed`."""
+
+    name: str
+    position: int
+    verdict: str
+
+
+class Verdicts:
+    """Follows a run, and notes where each property is decided."""
+
+    def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
+        self._followers = [_PropertyFollower(checker, asked, seed, trace) for asked in checker.asked]
+
+    def follow(self, decisions: Sequence[Decision | None], position: int, has_ended: bool) -> list[Decided]:
+        """Follow the run up to a position; returns the properties that are decided exactly there.
+
+        Args:
+            decisions: those of the steps of the run.
+            has_ended: whether no step changes anything there.
+        """
+        for follower in self._followers:
+            follower.follow(decisions, position, has_ended)
+        return self.at(position)
+
+    def at(self, position: int) -> list[Decided]:
+        """The properties that are decided exactly at a position that has been followed."""
+        decided = [follower.decided for follower in self._followers]
+        return [each for each in decided if each is not None and each.position == position]
+
+    def discard(self, position: int) -> None:
+        """Forget the run after `position`, because other steps follow."""
+        for follower in self._followers:
+            follower.discard(position)
+
+    def verdicts(self, position: int) -> dict[str, str]:
+        """The verdict of each property at a position that has been followed."""
+        return {follower.name: follower.verdict(position) for follower in self._followers}
+
+
+class _PropertyFollower:
+    def __init__(self, checker: ModelChecker, asked: CompiledProperty, seed: int, trace: int) -> None:
+        compiled = checker.compiled(asked)
+        self.name = asked.question.name
+        self.decided: Decided | None = None
+        self._kernel = Kernel(compiled.program, compiled.goal)
+        self._seed, self._trace = seed, trace
+        self._begin()
+
+    def _begin(self) -> None:
+        self._position = 0
+        self.decided = None
+        self._note(self._kernel.begin(self._seed, self._trace))
+
+    def discard(self, position: int) -> None:
+        if self._position > position and not (self.decided and self.decided.position <= position):
+            self._begin()
+
+    def follow(self, decisions: Sequence[Decision | None], position: int, has_ended: bool) -> None:
+        while self.decided is None and self._position < position:
+            decision = decisions[self._position]
+            if decision is None:
+                until = self._position + 1
+                while until < position and decisions[until] is None:
+                    until += 1
+                status = self._kernel.advance(until)
+                self._position = self._kernel.outcome()[0] if status != UNKNOWN else until
+            else:
+                self._kernel.go(decision.vector, list(decision.picks), list(decision.ways))
+                status = self._kernel.look()
+                self._position += 1
+            self._note(status)
+        if has_ended and self.decided is None and self._kernel.ended():
+            self._note(self._kernel.close())
+
+    def _note(self, status: int) -> None:
+        if status not in (UNKNOWN, FAULTY):
+            self.decided = Decided(self.name, self._position, VERDICTS[status])
+
+    def verdict(self, position: int) -> str:
+        is_known = self.decided is not None and self.decided.position <= position
+        return self.decided.verdict if self.decided is not None and is_known else VERDICTS[UNKNOWN]

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The values that an observer reads: those of its property's variables, and the conditions over them
+(docs/spec/jani.md#observers).
+
+A variable is read where the translation stores the parameter of its event. If several events, one sender or a constant
+decide on the value, the observer has a variable of its own, the copy, and assigns it when an event is sent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.expr.transform import map_children
+from roaml.expr.tree import Boolean, Conditional, Expr, Name, Number
+from roaml.expr.types import is_kind
+from roaml.jani.expressions import Expression, Integer, LValue
+from roaml.jani.model import Variable
+from roaml.jani.semantics import evaluate
+from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
+from roaml.text import Location, Span
+from roaml.to_jani.assignments import stored_in
+from roaml.to_jani.shapes import ArrayShape, jani_type, shape_of, zero
+from roaml.to_jani.values import JaniScope, Listed, elements_as, lengths_as
+
+_NOWHERE = Span(0, 0)
+_CONSTANTS = JaniScope({}, "", {})
+
+
+@dataclass(frozen=True, slots=True)
+class _Copy:
+    """A variable of the observer."""
+
+    name: str
+    shape: ArrayShape
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedValues:
+    """
+    Attributes:
+        values: the value of each variable that has one, by its id, as an expression over global variables.
+        copies: the copies, by the ids of the variables.
+        shapes: of the global variables, copies included.
+        declared: the declarations of the copies.
+    """
+
+    property: ObservedProperty
+    values: Mapping[str, Expr]
+    copies: Mapping[str, _Copy]
+    shapes: Mapping[str, ArrayShape]
+    declared: tuple[Variable, ...]
+
+    def conditions(self, true_events: frozenset[str]) -> dict[str, Expression]:
+        """The conditions of the property in the letter in which these event variables are true."""
+        scope = JaniScope(self.shapes, "", {})
+
+        def value(name: Name) -> Expr:
+            return self.values.get(name.name) or Boolean(name.span, name.name in true_events)
+
+        return {name: scope.scalar(_replaced(condition, value)) for name, condition in self.property.conditions.items()}
+
+    def at_start(self) -> dict[str, bool]:
+        """Whether the conditions of the property are true at the start of the trace."""
+        initial = {variable.id: variable.initial for port in self.property.ports for variable in port.variables}
+
+        def value(name: Name) -> Expr:
+            return initial.get(name.name) or Boolean(name.span, False)
+
+        return {
+            name: bool(evaluate(_CONSTANTS.scalar(_replaced(condition, value)), {}))
+            for name, condition in self.property.conditions.items()
+        }
+
+    def assigned_on(self, event: PortEvent, variable: ObservedVariable) -> Iterator[tuple[LValue, Expression]]:
+        """What is assigned to the copy of a variable when an event is sent; nothing if it has no copy."""
+        copy = self.copies.get(variable.id)
+        if copy is not None:
+            value = self._sent(event, variable)
+            yield from stored_in(copy.name, copy.shape, value, JaniScope(self.shapes, "", {}))
+
+    def _sent(self, event: PortEvent, variable: ObservedVariable) -> Expr:
+        constant = dict(event.constants).get(variable.kind)
+        if constant is not None:
+            return Boolean(_NOWHERE, constant) if isinstance(constant, bool) else Number(_NOWHERE, constant, False)
+        parameter = f"{event.name}__{variable.parameter}"
+        if parameter in self.shapes:
+            return Name(_NOWHERE, parameter)
+        # No sender sets the field.
+        return Boolean(_NOWHERE, False) if is_kind(variable.type, "bool") else Number(_NOWHERE, 0, False)
+
+
+def observed_values(
+    property_: ObservedProperty, prefix: str, shapes: Mapping[str, ArrayShape], size: int
+) -> ObservedValues:
+    """
+    Args:
+        prefix: that of the names of the observer's variables.
+        shapes: of the global variables of the model.
+        size: the capacity of arrays that are sent.
+    """
+    values: dict[str, Expr] = {}
+    copies: dict[str, _Copy] = {}
+    declared: list[Variable] = []
+    for port in property_.ports:
+        for variable in port.variables:
+            if variable.initial is None:
+                continue
+            shape = shape_of(variable.type, size, sent=True)
+            value = _stored(port, variable, variable.initial, shape, shapes)
+            if value is None:
+                copy = _Copy(f"{prefix}__{variable.id}", shape)
+                copies[variable.id] = copy
+                declared += _declared(copy, variable.initial, property_.origin)
+                value = Name(_NOWHERE, copy.name)
+            values[variable.id] = value
+    known = {**shapes, **{copy.name: copy.shape for copy in copies.values()}}
+    return ObservedValues(property_, values, copies, known, tuple(declared))
+
+
+def _stored(
+    port: ObservedPort, variable: ObservedVariable, initial: Expr, shape: ArrayShape, shapes: Mapping[str, ArrayShape]
+) -> Expr | None:
+    """The value of a variable where the translation stores it; `None` if the observer needs a copy."""
+    if len(port.events) != 1 or not variable.parameter:
+        return None
+    (event,) = port.events
+    parameter = f"{event.name}__{variable.parameter}"
+    if event.sender or event.constants or parameter not in shapes:
+        return None
+    value = Name(_NOWHERE, parameter)
+    if _is_zero(initial, shape):
+        return value
+    return Conditional(_NOWHERE, Name(_NOWHERE, f"{event.name}.valid"), value, initial)
+
+
+def _declared(copy: _Copy, initial: Expr, origin: Location) -> Iterator[Variable]:
+    array = _CONSTANTS.array(initial)
+    value = _CONSTANTS.scalar(initial) if array is None else elements_as(array, copy.shape)
+    yield Variable(copy.name, jani_type(copy.shape), value, origin=origin)
+    for dimension, (name, shape) in enumerate(copy.shape.lengths(copy.name), 1):
+        lengths = Integer(0) if array is None else lengths_as(array, copy.shape, dimension)
+        yield Variable(name, jani_type(shape), lengths, origin=origin)
+
+
+def _is_zero(initial: Expr, shape: ArrayShape) -> bool:
+    """Whether a variable that is not assigned yet has this value."""
+    array = _CONSTANTS.array(initial)
+    if array is not None:
+        return isinstance(array, Listed) and not array.elements
+    return bool(evaluate(_CONSTANTS.scalar(initial), {}) == evaluate(zero(shape), {}))
+
+
+def _replaced(expr: Expr, value: Callable[[Name], Expr]) -> Expr:
+    """The expression with values in place of its names."""
+    return value(expr) if isinstance(expr, Name) else map_children(expr, lambda child: _replaced(child, value))
