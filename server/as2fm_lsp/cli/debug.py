@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
-from as2fm_lsp.cli.check import CLEAN
+from as2fm_lsp.cli.exit_status import CLEAN
 
 EXAMPLES = """\
 An editor starts this program; docs/debugging.md describes the configuration. The arguments of `launch` are:
