@@ -14,7 +14,7 @@ from roaml import explicit
 from roaml.explicit import codes, solver
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search, plain_solver
-from roaml.explicit.space import LimitError, Limits, Space, explore
+from roaml.explicit.space import LimitError, Space, StateLimits, explore
 from roaml.explicit.values import NoValueError, values_of
 from roaml.smc.explore import Explorer, StateFaultError
 from roaml.smc.model import ModelChecker
@@ -22,9 +22,9 @@ from roaml.smc.program import FALSE, TRUE
 from roaml.smc.record import SHORTEST, Recording
 
 
-def space_of(written: Json, limits: Limits | None = None, modules: Any = None) -> Space:
+def space_of(written: Json, limits: StateLimits | None = None, modules: Any = None) -> Space:
     checker = ModelChecker(model(written))
-    return explore(checker, checker.asked[0], limits or Limits(), modules=modules)
+    return explore(checker, checker.asked[0], limits or StateLimits(), modules=modules)
 
 
 def plainly(written: Json) -> Space:
@@ -121,9 +121,9 @@ def test_real_numbers_are_states() -> None:
 
 def test_limits_end_a_search() -> None:
     with pytest.raises(LimitError, match=r"^stopped at 1,000 states: there are more than 1,000 \(--max-states\)$"):
-        space_of(counting(5000), Limits(states=1000))
+        space_of(counting(5000), StateLimits(states=1000))
     with pytest.raises(LimitError, match=r"stopped at [\d,]+ states: they occupy .* GiB \(--max-memory\)"):
-        space_of(counting(5000), Limits(bytes=20_000))
+        space_of(counting(5000), StateLimits(bytes=20_000))
 
 
 def test_a_state_with_too_many_combinations_ends_a_search() -> None:
@@ -134,7 +134,7 @@ def test_a_state_with_too_many_combinations_ends_a_search() -> None:
     parts[1:] = [automaton(f"m{n}", "s t", [edge("s", way(to), action="a") for to in "stt"]) for n in range(1, 9)]
     written = document(*parts, variables=[variable("x")], syncs=[["a"] * 9], properties=goals)
     with pytest.raises(LimitError, match=r"one of them has more than 5,000 combinations of edges"):
-        space_of(written, Limits(combinations=5000))
+        space_of(written, StateLimits(combinations=5000))
 
 
 def test_undefined_operations_are_in_a_state() -> None:

@@ -39,7 +39,7 @@ from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.explicit.space import MAX_STATES, Limits
+from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
@@ -250,7 +250,7 @@ class _Verification:
 
     def _exhaustive(self, asked: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
-        limits = Limits(self.options.max_states or MAX_STATES, self.options.max_memory)
+        limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
         try:
             return self.verifier.exhaustive(
                 asked, limits, lambda states, done: bar.states(asked.question, states, done)

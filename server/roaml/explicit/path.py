@@ -14,7 +14,7 @@ from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import Recorder, Recording, TraceStep
 
 
-class Choice(NamedTuple):
+class PathStep(NamedTuple):
     """A step: the vector, and for each of its slots that do something the edge and the destination."""
 
     vector: int
@@ -27,7 +27,7 @@ class Path:
     """The steps to a state, and what is known of the goal there."""
 
     state: int
-    steps: tuple[Choice, ...]
+    steps: tuple[PathStep, ...]
     verdict: int
 
 
@@ -39,14 +39,14 @@ def shortest(space: Space, verdict: int) -> Path | None:
     return Path(state, tuple(path_to(space, state)), verdict)
 
 
-def path_to(space: Space, state: int) -> list[Choice]:
+def path_to(space: Space, state: int) -> list[PathStep]:
     """The steps by which a state was reached first."""
     search = space.search
     steps = []
     while (parent := search.parent_of(state)) >= 0:
         choice = search.steps_to(parent, state)
         assert choice is not None
-        steps.append(Choice(*choice))
+        steps.append(PathStep(*choice))
         state = parent
     return steps[::-1]
 

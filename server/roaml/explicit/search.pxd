@@ -17,7 +17,7 @@ cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
 cdef int STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK
 
 @cython.final
-cdef class Search:
+cdef class StateSearch:
     cdef Kernel kernel
     cdef int[::1] way_start, way_cell, settled, cell_watch
     cdef int places, first_real, variables, leaves, counter, cells
@@ -87,7 +87,7 @@ cdef class Search:
     @cython.locals(steps=i64, label=int, lasting=int, leaf=int, verdict=int, lower=i64, status=int)
     cdef int _judged(self) noexcept
     cdef int _combined(self) noexcept
-    @cython.locals(label=int, leads_on=int, combinations=i64, exit_reward=double, i=int, vector=int, count=int,
+    @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int,
                    weight=double, k=int, j=int)
     cdef void _expand(self, i64 state) except *
     @cython.locals(reason=int, added=int, leaf=int)

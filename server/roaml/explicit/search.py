@@ -54,7 +54,7 @@ def compiled() -> bool:
     return not __file__.endswith(".py")
 
 
-class Search:
+class StateSearch:
     """The states that have been reached, and the choices of those that have been expanded.
 
     Args:
@@ -659,7 +659,7 @@ class Search:
             return
         leads_on = 0
         if label & STATUS == UNKNOWN and (self.most_depth < 0 or self.depth < self.most_depth):
-            combinations = 0
+            combinations = 0.0
             exit_reward = 0.0
             if self.kernel.exit_reward >= 0:
                 self.kernel.reward = 0.0
@@ -672,6 +672,17 @@ class Search:
                     self.status = FAULT
                     self.problem = state
                     return
+                many = 1.0
+                for j in range(count):
+                    most = 0
+                    for k in range(self.edge_from[j], self.edge_from[j + 1]):
+                        most += self.kernel.way_start[self.edges[k] + 1] - self.kernel.way_start[self.edges[k]]
+                    many *= most
+                if combinations + many > self.most_choices:
+                    self.status = CHOICES
+                    self.problem = state
+                    return
+                combinations += many
                 weight = 1.0
                 for k in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
                     weight *= self.kernel.ready[self.kernel.all_slot[k]]
@@ -680,9 +691,6 @@ class Search:
                     self.picks[j] = self.edge_from[j]
                 while True:
                     leads_on |= self._choose(vector, count, state, weight, exit_reward)
-                    combinations += self.branches
-                    if combinations > self.most_choices:
-                        self.status = CHOICES
                     if self.status != PART:
                         self.problem = state
                         return
@@ -815,9 +823,6 @@ class Search:
                 chance *= self.chance[self.ways[j]]
             if chance > 0.0:
                 self.branches += 1
-                if self.branches > self.most_choices:
-                    self.status = CHOICES
-                    return 0
                 successor = self._successor(vector, count, state)
                 if successor < 0:
                     return 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Probabilities and expected rewards in a `Search`, enclosed from below and above.
+"""Probabilities and expected rewards in a `StateSearch`, enclosed from below and above.
 
 - Plain Python; Cython compiles it with the types in `solver.pxd`.
 - Strongly connected components are solved in reverse topological order (Tarjan 1972, without recursion).

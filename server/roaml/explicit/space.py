@@ -29,7 +29,7 @@ MOST_COMBINATIONS = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class StateLimits:
     """
     Attributes:
         states: more are not explored.
@@ -78,7 +78,7 @@ class Space:
 
 
 def explore(
-    checker: ModelChecker, asked: CompiledProperty, limits: Limits, watch: Watch | None = None, modules: Any = None
+    checker: ModelChecker, asked: CompiledProperty, limits: StateLimits, watch: Watch | None = None, modules: Any = None
 ) -> Space:
     """All states that can be reached before the goal is decided.
 
@@ -93,7 +93,7 @@ def explore(
     goal = compiled.goal
     program = compiled.program
     steps, lower, depth = _bounds(goal)
-    search = search_module.Search(
+    search = search_module.StateSearch(
         kernel_module.Kernel(program, goal),
         tables_of(program, checker.legend, _transient(checker)),
         steps,

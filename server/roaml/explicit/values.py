@@ -23,7 +23,7 @@ class NoValueError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
+class GoalValues:
     """What a question asks for, enclosed by bounds.
 
     Attributes:
@@ -36,7 +36,7 @@ class Values:
     is_precise: bool
 
 
-def values_of(space: Space, modules: Any = None) -> Values:
+def values_of(space: Space, modules: Any = None) -> GoalValues:
     """
     Args:
         modules: the solver's module, for tests.
@@ -55,7 +55,7 @@ class _Question:
         self.question = space.asked.question
         self.is_precise = True
 
-    def values(self) -> Values:
+    def values(self) -> GoalValues:
         if sum(bound == AT_END for bound in self.goal.lower) > 1:
             raise NoValueError("several `F G` in one property are decided only by traces")
         if any(bound == AT_END for bound in self.goal.lower):
@@ -66,7 +66,7 @@ class _Question:
                     f"to {share:.6g}"
                 )
         minimum, maximum, uniform = (self.bounds(mode) for mode in (MINIMUM, MAXIMUM, MEAN))
-        return Values(minimum, maximum, uniform, self.is_precise)
+        return GoalValues(minimum, maximum, uniform, self.is_precise)
 
     def solver(self, mode: int) -> Any:
         return self.module.Solver(self.space.search, mode)

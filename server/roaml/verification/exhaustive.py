@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from roaml.explicit.path import shortest
-from roaml.explicit.space import LimitError, Limits, Space, Watch, explore
-from roaml.explicit.values import NoValueError, Values, values_of
+from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore
+from roaml.explicit.values import GoalValues, NoValueError, values_of
 from roaml.jani.operators import BinaryOperator
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NOT, CompiledProperty, Question
@@ -26,7 +26,7 @@ class UndecidedError(Exception):
 def exact_values(
     checker: ModelChecker,
     asked: CompiledProperty,
-    limits: Limits,
+    limits: StateLimits,
     watch: Watch | None = None,
 ) -> Exact:
     """The exact values of a property, from all states.
@@ -63,7 +63,7 @@ def exact_values(
     )
 
 
-def _proof(space: Space, values: Values) -> str:
+def _proof(space: Space, values: GoalValues) -> str:
     """What all states prove beyond a probability of 0 or 1: that nothing else is possible."""
     goal = space.asked.goal
     if space.asked.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:

@@ -7,8 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from roaml.explicit.space import Limits
-from roaml.explicit.space import Watch as Watching
+from roaml.explicit.space import StateLimits
 from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
@@ -294,7 +293,9 @@ class Verifier:
             stuck.shortest(result.stuck for result in sampled),
         )
 
-    def exhaustive(self, asked: CompiledProperty, limits: Limits, watch: Watching | None = None) -> Result:
+    def exhaustive(
+        self, asked: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
+    ) -> Result:
         """The exact values of a property, from all states; undecided where a limit ends their exploration.
 
         Args:
