@@ -306,7 +306,7 @@ class Kernel:
         """Everything that determines how the trace continues, for `load`."""
         arrays = [list(array) for array in self._changing()]
         counts = (self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved)
-        goal = (self.must_look, self.steps, self.still, self.reward)
+        goal = (self.status, self.must_look, self.steps, self.still, self.reward)
         draws = (self.key, self.drawn, self.scheduler)
         loop = (self.loop_state, self.loop_drawn, self.loop_span, self.loop_left)
         return arrays, counts, goal, draws, loop
@@ -319,14 +319,15 @@ class Kernel:
             for i, value in enumerate(values):
                 array[i] = value
         self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved = counts
-        self.must_look, self.steps, self.still, self.reward = goal
+        self.status, self.must_look, self.steps, self.still, self.reward = goal
         self.key, self.drawn, self.scheduler = draws
         self.loop_state, self.loop_drawn, self.loop_span, self.loop_left = loop
 
     def _changing(self) -> list[Any]:
         """The arrays that steps change, except for those that contain something only within a step."""
         state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
-        return [*state, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
+        goal: list[Any] = [self.stale, self.known, self.known_end, self.known_activity, self.known_steps]
+        return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for

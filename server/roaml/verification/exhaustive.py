@@ -36,7 +36,10 @@ def exact_values(
         FaultError: an undefined operation is executed in some state.
     """
     if asked.question.is_conditional:
-        raise UndecidedError("properties with assumptions are answered by traces only")
+        raise UndecidedError(
+            "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exhaustive to "
+            "estimate the probability under uniform choices"
+        )
     reduced = checker.reduced(asked)
     if reduced is not checker:
         checker, asked = reduced, reduced.asked[0]
