@@ -2,6 +2,7 @@
 /** Everything that the extension does, in the order in which a user meets it. */
 
 import { describe } from "node:test";
+import { debugging } from "./debugging";
 import { editing } from "./editing";
 import { firstStart } from "./firstStart";
 import { harmony } from "./harmony";
@@ -26,6 +27,9 @@ describe("editing", () => {
 });
 describe("systems", () => {
     systems(stage);
+});
+describe("debugging", () => {
+    debugging(stage);
 });
 describe("pictures", () => {
     pictures(stage);
