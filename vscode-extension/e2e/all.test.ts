@@ -2,7 +2,6 @@
 /** Everything that the extension does, in the order in which a user meets it. */
 
 import { describe } from "node:test";
-import { debugging } from "./debugging";
 import { editing } from "./editing";
 import { firstStart } from "./firstStart";
 import { harmony } from "./harmony";
@@ -27,9 +26,6 @@ describe("editing", () => {
 });
 describe("systems", () => {
     systems(stage);
-});
-describe("debugging", () => {
-    debugging(stage);
 });
 describe("pictures", () => {
     pictures(stage);
