@@ -215,7 +215,9 @@ class _Verification:
         by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
 
         def watch(each: CompiledProperty, so_far: Tally) -> None:
-            bar.together(each.question, so_far, len(asked))
+            shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
+            if each is shown:
+                bar.together(each.question, so_far, len(asked))
             if self.state is not None:
                 self.state.keep(each.question.name, by_name[each.question.name], so_far)
 
