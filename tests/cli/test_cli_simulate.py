@@ -126,7 +126,7 @@ def test_interactive_commands(command: Command, tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (("--until", "nowhere"), "there is neither a property nor an event of this name"),
-        (("--property", "nowhere"), "there is no property nowhere"),
+        (("--property", "nowhere"), "has no property `nowhere`"),
         (("--script", "nowhere.json"), "nowhere.json: No such file or directory"),
         (("--constant", "N=1"), "--constant needs a JANI model"),
     ],

@@ -104,7 +104,7 @@ def test_properties_by_name(command: Command, robot: Path) -> None:
     assert [p["name"] for p in one["properties"]] == names[1:]
     done = command("translate", "main.xml", "--property", "none_such")
     assert (done.status, done.out) == (2, "")
-    assert f"there is no property none_such; the system has: {', '.join(names)}" in done.err
+    assert f"the system has no property `none_such`; its properties are: {', '.join(names)}" in done.err
 
 
 def test_parts_of_properties_without_effect(command: Command, robot: Path) -> None:

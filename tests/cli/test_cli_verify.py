@@ -565,8 +565,8 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--property", "unknown"), "there is no property unknown"),
-        (("--expect", "unknown >= 1"), "there is no property unknown"),
+        (("--property", "unknown"), "has no property `unknown`"),
+        (("--expect", "unknown >= 1"), "there is no property `unknown`"),
         (("--expect", "heads is good"), "an expectation must have a form like"),
         (("--expect", "heads >= many"), "an expectation must have a form like"),
         (("--epsilon", "2"), "between 0 and 1"),
@@ -597,7 +597,7 @@ def test_from_python(robot: Path) -> None:
     assert result.name == "never_empty"
     assert result.answer is not None
     assert result.answer.value == 1
-    with pytest.raises(api.PropertyError, match="there is no property x"):
+    with pytest.raises(api.PropertyError, match="has no property `x`"):
         list(api.verify(found, ["x"]))
     (robot / "bad.jani").write_text("{")
     with pytest.raises(api.JaniError):

@@ -141,8 +141,11 @@ def _same(before: object, after: str | None, old: str) -> bool:
 
 
 def _canonical(jani: str) -> object:
-    """Actions that are called alike in several automata are listed once; a rename may tell them apart."""
+    """Actions that are called alike in several automata are listed once; a rename may tell them apart. Comments contain
+    names as the user writes them."""
     model = json.loads(jani)
+    for property_ in model["properties"]:
+        property_.pop("comment", None)
     model["actions"] = list({action["name"]: action for action in model["actions"]}.values())
     return _unordered(model)
 

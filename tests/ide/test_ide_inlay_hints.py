@@ -75,7 +75,7 @@ def test_hints(tmp_path: Path, model: str, name: str) -> None:
 def test_hints_of_properties(tmp_path: Path) -> None:
     text = '{"properties": [{"name": "p", "expression": {"op": "=", "left": "bt_1001_response__status", "right": 1}}]}'
     analysis = load(tmp_path, {**MODELS["robot"], "properties.jani": text})
-    assert '"bt_1001_response__status"« Walk»,' in shown(analysis, str(tmp_path / "properties.jani"))
+    assert '"bt_1001_response__status"« Main/Walk»,' in shown(analysis, str(tmp_path / "properties.jani"))
 
 
 def test_only_the_requested_hints(tmp_path: Path) -> None:

@@ -11,12 +11,17 @@ from ide_sweep import System
 
 from fixture import split_files
 from property_robot import PROPERTIES, ROBOT
+from roaml.ide.code_lens import counted, lenses
+from roaml.ide.hover import hover
+from roaml.ide.inlay_hints import inlay_hints
 from roaml.ide.names.occurrences import occurrences
 from roaml.ide.navigation import definition, references
 from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.ide.navigation.workspace_symbols import search
 from roaml.ide.rename import RenameRefusal, Renaming, rename
-from roaml.text import Location, apply_edits
+from roaml.ide.verifiable import verifiable
+from roaml.roles import SymbolKind
+from roaml.text import Location, Span, apply_edits
 
 TEXTS = split_files(ROBOT)
 
@@ -183,3 +188,68 @@ def test_outline(robot: Robot) -> None:
 def test_workspace_symbols(robot: Robot) -> None:
     symbols = [found.symbol for found in search(robot.analysis, [robot.path], "charges")]
     assert [(symbol.kind.value, symbol.name) for symbol in symbols] == [("property", "charges")]
+
+
+def hovered(robot: Robot, piece: str, file: str = "properties.xml") -> str:
+    shown = hover(robot.analysis, robot.path_of(file), caret(piece, file))
+    return shown.text if shown is not None else ""
+
+
+@pytest.mark.parametrize(
+    ("piece", "parts"),
+    [
+        ('id="char|ges"', ["Whenever `level < 30` holds, `/charge` is called by `Battery` within 10 s."]),
+        ('id="char|ges"', ["```\nG ((level < 30) ⇒ F[0, 10 s] asked)\n```"]),
+        ('<prop|erty id="charges"', ["Whenever `level < 30` holds"]),
+        ('id="po|lite"', ["From the first time that `filled || amount > 3` holds, whenever a response of `/charge`"]),
+        ('id="cou|nts"', ["Each time from when `Main/Other/right_pick` is ticked until", "nothing is required if"]),
+        ('id="ste|ady"', ["At every step, (if a message is published on `/battery/level`, then ("]),
+        ('topic_name="/battery|/level"', ["**Published by** `Battery`"]),
+        ('node="Left/p|ick"', ["node pick"]),
+        ("<event>lev|el &lt; 30", ["level : int32", "The value of `data` at the last time", "`100` before"]),
+        ('until="pic|ked', ["True in the step in which `Left/pick` answers"]),
+        ("status == |1", ["1 = SUCCESS"]),
+        ("code == |4", ["4 = STATUS_SUCCEEDED"]),
+        ('pattern="resp|onse"', ["Whenever the first condition holds"]),
+        ('field="stamp.s|ec"', ["int32"]),
+    ],
+)
+def test_hover(robot: Robot, piece: str, parts: list[str]) -> None:
+    text = hovered(robot, piece)
+    for part in parts:
+        assert part in text
+
+
+def test_hover_in_jani(robot: Robot) -> None:
+    text = hovered(robot, '"bt_1003_resp|onse__status"', "more.jani")
+    assert 'Node `Left/Pick "pick"` of the tree' in text
+
+
+def test_inlay_hints(robot: Robot) -> None:
+    def hints(name: str) -> set[str]:
+        text = TEXTS[name]
+        found = inlay_hints(robot.analysis, robot.path_of(name), Span(0, len(text)))
+        return {text[: hint.offset].rpartition(" ")[2] + hint.text for hint in found}
+
+    assert hints("properties.xml") >= {
+        'node="Left/pick" Left/Pick "pick"',
+        'node="Main/Other/right_pick" Other/Pick "right_pick"',
+        "1 SUCCESS",
+        "4 STATUS_SUCCEEDED",
+    }
+    assert hints("more.jani") == {'"bt_1003_response__status" Left/Pick "pick"', "1 SUCCESS"}
+
+
+def test_lenses(robot: Robot) -> None:
+    found = [lens for lens in lenses(robot.analysis, robot.path) if lens.symbol.kind is SymbolKind.PROPERTY]
+    titles = [counted(robot.analysis, lens.symbol, robot.path).title for lens in found]
+    assert titles[0] == "Whenever level < 30 holds, /charge is called by Battery within 10 s."
+    assert len(titles) == 4
+
+
+def test_the_properties_that_can_be_verified(robot: Robot) -> None:
+    properties = verifiable(robot.analysis, robot.path_of("main.xml"))
+    assert [property_.name for property_ in properties] == ["charges", "polite", "counts", "steady", "fills"]
+    first = properties[0]
+    assert first.comment == "Whenever level < 30 holds, /charge is called by Battery within 10 s."
+    assert PROPERTIES[first.name_span.start : first.name_span.end] == "charges"

@@ -100,7 +100,7 @@ def titles(files: dict[str, str], name: str) -> list[str]:
 def test_equal_texts_are_shown_once() -> None:
     assert hints(SAME, "driver.ascxml") == [" → /command", "(speed : int)"]
     assert hints(SAME, "move.ascxml") == [" : string", " = /command", " → /command", " : int32"]
-    assert hints(SAME, "properties.jani") == [" Move"]
+    assert hints(SAME, "properties.jani") == [" Main/Move"]
     assert titles(SAME, "driver.ascxml") == ["2 publishers · 1 subscriber", "sent once · received once"]
     assert titles(SAME, "move.ascxml") == ["1 use in trees", "set once in trees", "2 publishers · 1 subscriber"]
 

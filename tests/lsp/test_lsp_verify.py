@@ -304,7 +304,7 @@ async def test_a_property_that_is_not_there_does_not_keep_others_from_being_veri
     async with connect(tmp_path) as client:
         answer = await verify(client, tmp_path / "main.xml", ["tocks", "ticks"], {"silent": True})
         tocks, ticks = answer["results"]
-        assert tocks["error"]["message"] == "there is no property tocks; the model has: ticks, stuck"
+        assert tocks["error"]["message"] == "the model has no property `tocks`; its properties are: ticks, stuck"
         assert ticks["probability"] > 0.9
         assert await client.workspace_execute_command_async(types.ExecuteCommandParams(COMMAND, [])) is None
         assert [message.type for message in client.messages] == [types.MessageType.Error]

@@ -153,7 +153,7 @@ def test_a_translation_that_is_read_again_ends_for_the_same_reasons(tmp_path: Pa
 
 def test_stuck_cannot_be_verified_in_a_plain_model() -> None:
     written = document(automaton("a", "s t", ONE_WAY), variables=[variable("x")], properties=FINALLY)
-    with pytest.raises(api.PropertyError, match="there is no property stuck; the model has: p"):
+    with pytest.raises(api.PropertyError, match="the model has no property `stuck`; its properties are: p"):
         api.checker(model(written), ["stuck"])
 
 

@@ -15,7 +15,7 @@ from translating import lowered
 from roaml import api
 from roaml.jani.writer import write
 from roaml.scxml.model import Body, EventRole, If, Network, ScxmlEvent, Send, bodies, statements
-from roaml.scxml.names import is_synchronising, role_of
+from roaml.scxml.names import automaton_role, is_synchronising, role_of
 from roaml.to_jani import translate
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*/main.xml"))
@@ -52,6 +52,10 @@ def test_networks_have_events_of_every_role() -> None:
 def test_role_is_that_of_the_name(network: Network) -> None:
     """Whoever reads names in a trace comes to the same result as the translation."""
     assert {event.name: event.role for event in events(network)} == {e.name: role_of(e.name) for e in events(network)}
+
+
+def test_role_of_an_automaton_is_that_of_its_name(network: Network) -> None:
+    assert all(automaton.role is automaton_role(automaton.name) for automaton in network.automata)
 
 
 @pytest.mark.parametrize(

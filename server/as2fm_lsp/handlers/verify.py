@@ -30,6 +30,7 @@ from as2fm_lsp.verification.report import one_as_text, row
 from as2fm_lsp.verification.settings import VerificationSettings, verification_settings
 from roaml import api
 from roaml.diagnostics import Diagnostic
+from roaml.ide.describe import markdown
 from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Texts, Verifiable, fingerprint, verifiable
@@ -122,7 +123,7 @@ def register(context: Context) -> None:
         analysis = session.moment().snapshot(path).analysis
         return {
             "property": known.result.name,
-            "heading": why.heading,
+            "heading": " ".join(filter(None, (markdown.plain(known.result.comment), why.heading))),
             "verdict": why.verdict,
             "trace": why.trace,
             "expected": missed(known.result),
@@ -246,7 +247,7 @@ class _VerifyCommand:
         rows: list[Json] = []
         results: list[Result] = []
         verifier: Verifier | None = None
-        for property_name in dict.fromkeys(names or [property_.name for property_ in target.model.properties]):
+        for property_name in dict.fromkeys(names or [property_.name for property_ in target.properties]):
             try:
                 await self.bar.step(property_name)
                 began = time.monotonic()
@@ -305,7 +306,7 @@ class _VerifyCommand:
                 lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
                 self.context.requests.checkpoint,
             )
-            is_free = all(property_.name != asked.question.name for property_ in target.model.properties)
+            is_free = all(property_.name != asked.question.name for property_ in target.properties)
             if known.answer is not None and is_free:
                 traces = Traces(target, checker, asked, known.answer.options)
                 seconds = time.monotonic() - began

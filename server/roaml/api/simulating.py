@@ -31,7 +31,7 @@ def session(
         saved: continue this session; its property, seed and trace override the others.
 
     Raises:
-        PropertyError: the model has no property of this name.
+        PropertyError: a property does not exist.
         RunError: the decisions that were saved are not possible in this model.
         FaultError: the model cannot be run, the property cannot be answered, or the run fails.
     """

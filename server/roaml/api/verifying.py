@@ -77,7 +77,9 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
         return target_of(subject)
     from roaml.api.systems import to_jani  # noqa: PLC0415 - a JANI model needs no system
 
-    return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
+    conditional = [property_.name for property_ in subject.observed if property_.assumptions]
+    model = to_jani(subject, has_activity=True)
+    return target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:
@@ -88,7 +90,7 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> ModelCheck
             which every translated system can be asked.
 
     Raises:
-        PropertyError: the model has no property of a name.
+        PropertyError: a property does not exist.
         FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
             are in `refused`.
     """
@@ -143,7 +145,7 @@ def verify(
             give other values, and verdicts say so.
 
     Raises:
-        PropertyError: there is no property of a name.
+        PropertyError: a property does not exist.
         FaultError: the model cannot be run. A property that cannot be answered has a result with a `refusal`.
         WorkersLostError: processes die again and again.
         ValueError: an option or expectation makes no sense.

@@ -113,7 +113,7 @@ class Stacks:
             handler, event = None, ""
         states = self._sources.states(automaton)
         if handler is not None and handler != states.get(machine.state):
-            text = said(event, machine.name, self._session.automata, taken=True)
+            text = said(event, self._session.automata, taken=True)
             yield Frame(thread, f"{machine.name}: {text}", handler, instance, node, "handler")
         origin = states.get(machine.state, machine.origin)
         yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, "state")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Code lenses above declarations: the number of their uses.
+"""Code lenses above declarations: the number of their uses; above properties in XML: what they require.
 
 The positions of the lenses are computed at once, their text only when they become visible (`counted`).
 """
@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
+from roaml.ide.describe.markdown import plain
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
 from roaml.ide.names.lookup import SymbolUse, thing
@@ -18,6 +19,7 @@ from roaml.ide.names.occurrences import uses
 from roaml.ide.system_names import MAX_NAMES, grouped
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
+from roaml.model.property_sentences import sentences
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -48,6 +50,8 @@ def lenses(analysis: Analysis, path: str) -> tuple[Lens, ...]:
         found = _machine(analysis, path, machine)
     elif kind is FileKind.TREE:
         found = _defined(analysis, path, SymbolKind.TREE)
+    elif kind is FileKind.XML_PROPERTIES:
+        found = _defined(analysis, path, SymbolKind.PROPERTY)
     elif kind in (FileKind.STRUCTS, FileKind.JSON_STRUCTS):
         found = _defined(analysis, path, SymbolKind.STRUCT)
     return tuple(sorted(dict.fromkeys(found), key=lambda each: each.span))
@@ -94,6 +98,9 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
     """The number of uses of a symbol of a file, and their places. Systems that share the file are counted separately,
     and named where they differ."""
+    if symbol.kind is SymbolKind.PROPERTY:
+        file = analysis.property_file(path)
+        return Counted(plain(sentences(file).get(symbol.name, "")) if file is not None else "", ())
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
     said = grouped({system: found.title for system, found in by_system.items()})

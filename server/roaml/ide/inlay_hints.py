@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inlay hints: types, topics, parameters of events, numbers of tree nodes.
+"""Inlay hints: types, topics, parameters of events, numbers and names of tree nodes, names of compared numbers.
 
 Each is computed from the existing models; the explanation of a hint is computed only on request (`explain`).
 """
@@ -18,6 +18,7 @@ from roaml.ide.describe.machine import inferred_type
 from roaml.ide.describe.system import node_of
 from roaml.ide.names.in_machine import interface_symbol, is_implicit
 from roaml.ide.navigation import definition_of
+from roaml.ide.property_values import named_json_numbers, named_numbers
 from roaml.ide.system_names import grouped
 from roaml.jani.properties import identifiers
 from roaml.model.kinds import FileKind
@@ -33,9 +34,11 @@ from roaml.model.machine import (
     bodies,
     statements,
 )
+from roaml.model.property_file import NODE
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree import TreeNode, nodes
+from roaml.model.tree_paths import label_of, nodes_called
 from roaml.model.value_types import TypedValue, ValueUse, find_handle, port_type
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
@@ -110,6 +113,8 @@ def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> I
         return _tree(analysis, path, within, linked)
     if kind is FileKind.PROPERTIES and linked is not None:
         return _properties(analysis, path, within, linked)
+    if kind is FileKind.XML_PROPERTIES:
+        return _property_file(analysis, path, linked)
     return ()
 
 
@@ -362,16 +367,36 @@ def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[Sy
 
 
 def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
-    """The nodes whose numbers occur in events of the tree."""
-    for each in analysis.properties(path)[0]:
-        for identifier, span in identifiers(each.expression):
+    """The nodes whose numbers occur in events of the tree, and the names of compared numbers."""
+    for declared in analysis.properties(path)[0]:
+        for identifier, span in identifiers(declared.expression):
             if span.start > within.end or span.end < within.start:
                 continue
             node = node_of(system, identifier)
             if node is not None and node.instance is not None:
                 symbol = Symbol(system.path, SymbolKind.TREE_INSTANCE, str(node.instance.number))
-                yield InlayHint(
-                    span.end + 1,
-                    HintKind.NODES,
-                    (InlayHintLabelPart(" "), InlayHintLabelPart(node.instance.name, symbol)),
-                )
+                label = label_of(system, node.instance)
+                parts = (InlayHintLabelPart(" "), InlayHintLabelPart(label, symbol))
+                yield InlayHint(span.end + 1, HintKind.NODES, parts)
+    json = analysis.json(path)
+    for number, name in named_json_numbers(json[0]) if json is not None else ():
+        yield _value(number.span, name)
+
+
+def _property_file(analysis: Analysis, path: str, system: System | None) -> Iterator[InlayHint]:
+    """The nodes that ports name, and the names of compared numbers."""
+    file = analysis.property_file(path)
+    for port in file.ports if file is not None and system is not None else ():
+        nodes_ = nodes_called(system, port.name.value) if system and port.kind == NODE and port.name else ()
+        if system is not None and port.name is not None and len(nodes_) == 1:
+            symbol = Symbol(system.path, SymbolKind.TREE_INSTANCE, str(nodes_[0].number))
+            parts = (InlayHintLabelPart(" "), InlayHintLabelPart(label_of(system, nodes_[0]), symbol))
+            yield InlayHint(_behind(port.name), HintKind.NODES, parts)
+    for written in file.properties if file is not None else ():
+        for condition in written.expressions:
+            for number, name in named_numbers(file, condition.tree) if file is not None else ():
+                yield _value(number.span, name)
+
+
+def _value(span: Span, name: str) -> InlayHint:
+    return InlayHint(span.end, HintKind.NODES, (InlayHintLabelPart(f" {name}"),))

@@ -18,26 +18,26 @@ NamedT = TypeVar("NamedT", bound=Named)
 
 
 class PropertyError(ValueError):
-    """There is no property of a name; the message lists the properties that there are."""
+    """A property does not exist; the message lists the properties that exist."""
 
 
 def select(
     properties: Sequence[NamedT], names: Iterable[str], owner: str, others: Sequence[str] = ()
 ) -> tuple[NamedT, ...]:
-    """The properties of some names, in the order of the names.
+    """The properties with these names, in the order of the names.
 
     Args:
-        owner: what has the properties, for the message: `model` or `system`.
-        others: names that can be asked for besides; for the message.
+        owner: what the properties belong to, for the message: `model` or `system`.
+        others: further names that can be chosen, for the message.
 
     Raises:
-        PropertyError: there is no property of a name.
+        PropertyError: a property does not exist.
     """
     by_name = {property_.name: property_ for property_ in properties}
     chosen = []
     for name in names:
         if name not in by_name:
             known = ", ".join([*by_name, *others]) or "none"
-            raise PropertyError(f"there is no property {name}; the {owner} has: {known}")
+            raise PropertyError(f"the {owner} has no property `{name}`; its properties are: {known}")
         chosen.append(by_name[name])
     return tuple(chosen)

@@ -12,7 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
+from roaml.exhaustive import Vocabulary
 from roaml.expr.types import UNKNOWN
 from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import misfits
@@ -26,22 +28,40 @@ from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
-ANYTHING = ""
-"""The act of a gap that may provide anything."""
-SENDS = "event-sender"
-RECEIVES = "event-receiver"
-PARAMETER = "event-sender parameter"
-PORT = "port"
-VARIABLE = "variable"
-"""Reads or writes a variable of the blackboard."""
-REMAP = "remap"
-"""Passes a variable to a subtree, by its inner or outer name."""
-NODE = "node"
-"""Is a node of the tree."""
-TREE = "tree"
-"""Handles ticks and halts, or answers them."""
-NAME = "name"
-"""Is the name of the machine."""
+
+class GapAct(Vocabulary):
+    """What an unreadable part may do besides using an interface."""
+
+    ANYTHING = "anything"
+    SENDS = "event-sender"
+    RECEIVES = "event-receiver"
+    PARAMETER = "event-sender parameter"
+    """Gives a parameter to an event that it sends."""
+    PORT = "port"
+    VARIABLE = "variable"
+    """Reads or writes a variable of the blackboard."""
+    REMAP = "remap"
+    """Passes a variable to a subtree, by its inner or outer name."""
+    NODE = "node"
+    """Is a node of the tree."""
+    PLUGIN = "plugin"
+    """Is the plugin of a node."""
+    TREE = "tree"
+    """Handles ticks and halts, or answers them."""
+    NAME = "name"
+    """Is the name of the machine."""
+
+
+class InterfaceAct(NamedTuple):
+    """What an unreadable part may do with an interface, from the general to the specific: it declares one, it sends or
+    handles a part of it, or it reads or sets a field of that part."""
+
+    kind: SymbolKind
+    part: ProtocolPart | None = None
+    is_of_field: bool = False
+
+
+Act: TypeAlias = GapAct | InterfaceAct
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,21 +69,23 @@ class Gap:
     """A fact that an unreadable part of a file may contain.
 
     Attributes:
-        act: what is done, from the general to the specific: the kind of a declaration (`publisher`), a part of it that
-            is sent or handled (`publisher message`), a field of that (`publisher message field`); or one of the
-            constants of this module.
+        act: what is done.
         name: the topic, service or action as written, the event, the port; `None` if it may be any.
         port: the port that provides the name, if one does.
     """
 
-    act: str
+    act: Act
     name: str | None = None
     port: str = ""
 
 
-def answers(act: str, wanted: str) -> bool:
-    """Whether a gap with `act` may also do `wanted`: a machine that may declare a publisher may also publish."""
-    return act in (ANYTHING, wanted) or wanted.startswith(f"{act} ")
+def answers(act: Act, missing: Act) -> bool:
+    """Whether a gap with `act` may also do what is missing: a machine that may declare a publisher may also publish."""
+    if act is GapAct.ANYTHING or act == missing:
+        return True
+    if isinstance(act, GapAct) or isinstance(missing, GapAct):
+        return act is GapAct.SENDS and missing is GapAct.PARAMETER
+    return act.kind is missing.kind and (act.part is None or act == missing._replace(is_of_field=False))
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +136,7 @@ class _Search:
             yield from (PlacedGap(gap, span) for gap in self._unread(misfit.element, misfit.parent_type))
             yield from (PlacedGap(gap, span) for gap in self._datum(misfit.element, misfit.parent))
         if self.machine.name is None:
-            yield PlacedGap(Gap(NAME), self.machine.element.name_span)
+            yield PlacedGap(Gap(GapAct.NAME), self.machine.element.name_span)
         for declaration in self.machine.declarations:
             yield from self._declaration(declaration)
         yield from self._statements()
@@ -170,7 +192,7 @@ class _Search:
         elif type_.sends is ProtocolPart.EVENT or type_.receives is ProtocolPart.EVENT:
             event = meant(element, "event", type_.attributes)
             if type_.sends or event is not None:
-                yield Gap(SENDS if type_.sends else RECEIVES, event.value if event else None)
+                yield Gap(GapAct.SENDS if type_.sends else GapAct.RECEIVES, event.value if event else None)
         elif (
             (name := type_.attributes.get("name")) is not None
             and name.refers
@@ -179,16 +201,17 @@ class _Search:
             handle = meant(element, "name", type_.attributes)
             for kind in name.refers:
                 if kind in INTERFACE_KINDS:
-                    yield from self._over(f"{kind.value} {part.value}", kind, handle)
+                    yield from self._over(InterfaceAct(kind, part), handle)
         elif "key" in type_.attributes:
             key = meant(element, "key", type_.attributes)
-            yield Gap(PORT, key.value if key else None)
+            yield Gap(GapAct.PORT, key.value if key else None)
         elif type_.sends in _IN_TREE or type_.receives in _IN_TREE:
-            yield Gap(TREE)
+            yield Gap(GapAct.TREE)
 
-    def _over(self, act: str, kind: SymbolKind, handle: Name | None) -> Iterator[Gap]:
+    def _over(self, act: InterfaceAct, handle: Name | None) -> Iterator[Gap]:
         """The facts about the declaration named `handle`, or one that it may be a misspelling of."""
-        right = [d for d in self.machine.declarations if d.kind == kind and d.handle is not None]
+        kind = act.kind
+        right = [d for d in self.machine.declarations if d.kind is kind and d.handle is not None]
         named = [d for d in right if handle and d.handle and d.handle.value == handle.value]
         if handle is None:
             # One of the existing declarations, or one that is missing.
@@ -202,14 +225,14 @@ class _Search:
             for declaration in named:
                 if declaration.handle is declaration.interface and isinstance(declaration.interface, Name):
                     # The topic, service or action is the handle, and may be misspelled in its declaration.
-                    yield Gap(kind.value, handle.value)
-                    yield Gap(OTHER_SIDE[kind].value, declaration.interface.value)
+                    yield Gap(InterfaceAct(kind), handle.value)
+                    yield Gap(InterfaceAct(OTHER_SIDE[kind]), declaration.interface.value)
         if not named:
             other = [d for d in self.machine.declarations if d.handle and d.handle.value == handle.value]
             named = [d for d in other if isinstance(d.interface, (Name, PortRead)) and d.kind in INTERFACE_KINDS]
         yield from (_about(act, declaration) for declaration in named)
         if not named:
-            yield Gap(kind.value)  # the declaration is missing
+            yield Gap(InterfaceAct(kind))  # the declaration is missing
 
     def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
         """A field or parameter that is given in an unknown way: `<feild name="…">` in an element that sends."""
@@ -218,7 +241,7 @@ class _Search:
         for chart in self.machine.charts:
             for statement in chart.statements:
                 if statement.element is parent and isinstance(statement, Send):
-                    yield Gap(PARAMETER, statement.event.value if statement.event else None)
+                    yield Gap(GapAct.PARAMETER, statement.event.value if statement.event else None)
                 elif statement.element is parent and isinstance(statement, RosSend):
                     yield from self._fields(statement)
 
@@ -231,7 +254,7 @@ class _Search:
         if isinstance(declaration.interface, PortRead):
             key = declaration.interface.key
             if key is None or all(port.key is None or port.key.value != key.value for port in self.machine.ports):
-                yield PlacedGap(Gap(declaration.kind.value), declaration.interface.span)
+                yield PlacedGap(Gap(InterfaceAct(declaration.kind)), declaration.interface.span)
         elif declaration.interface is None or not is_interface_name(declaration.interface.value):
             yield PlacedGap(_declared(element, type_, declaration.kind), element.name_span)
         unknown = declaration.type is None or not self.has_type(
@@ -240,7 +263,7 @@ class _Search:
         if unknown:
             span = declaration.type.span if declaration.type else element.name_span
             for part in _PARTS[declaration.kind]:
-                yield PlacedGap(_about(f"{declaration.kind.value} {part.value} field", declaration), span)
+                yield PlacedGap(_about(InterfaceAct(declaration.kind, part, True), declaration), span)
 
     def _statements(self) -> Iterator[PlacedGap]:
         owners: dict[Element, RosSend] = {}
@@ -262,15 +285,17 @@ class _Search:
     def _send(self, send: Send) -> Iterator[PlacedGap]:
         if send.event is None:
             event = meant(send.element, "event", HL_SCXML.elements["send"].attributes)
-            yield PlacedGap(Gap(SENDS, event.value if event else None), send.element.name_span)
+            yield PlacedGap(Gap(GapAct.SENDS, event.value if event else None), send.element.name_span)
         for param in send.params:
             if param.name is None:
-                yield PlacedGap(Gap(PARAMETER, send.event.value if send.event else None), param.element.name_span)
+                yield PlacedGap(
+                    Gap(GapAct.PARAMETER, send.event.value if send.event else None), param.element.name_span
+                )
 
     def _fields(self, statement: RosSend) -> Iterator[Gap]:
         declaration = find_handle(self.machine, statement)
         for kind in statement.type.attributes["name"].refers:
-            act = f"{kind.value} {statement.part.value} field"
+            act = InterfaceAct(kind, statement.part, True)
             yield _about(act, declaration) if declaration is not None else Gap(act)
 
     def _user(self, user: RosSend | Handler, part: ProtocolPart) -> Iterator[PlacedGap]:
@@ -283,10 +308,10 @@ class _Search:
         handle = user.handle or meant(user.element, "name", user.type.attributes)
         span = user.handle.span if user.handle else user.element.name_span
         for kind in kinds:
-            yield from (PlacedGap(gap, span) for gap in self._over(f"{kind.value} {part.value}", kind, handle))
+            yield from (PlacedGap(gap, span) for gap in self._over(InterfaceAct(kind, part), handle))
             if declaration is not None and declaration.kind in INTERFACE_KINDS:
                 # The declaration may be wrong.
-                yield PlacedGap(_about(kind.value, declaration), span)
+                yield PlacedGap(_about(InterfaceAct(kind), declaration), span)
 
     def _handlers(self) -> Iterator[PlacedGap]:
         for chart in self.machine.charts:
@@ -297,21 +322,21 @@ class _Search:
                     elif handler.effective and handler.event is None:
                         event = meant(handler.element, "event", handler.type.attributes)
                         if event is not None:
-                            yield PlacedGap(Gap(RECEIVES, event.value), handler.element.name_span)
+                            yield PlacedGap(Gap(GapAct.RECEIVES, event.value), handler.element.name_span)
 
     def _ports(self) -> Iterator[PlacedGap]:
         declared = {port.key.value for port in self.machine.ports if port.key}
         for port in self.machine.ports:
             if port.key is None:
                 key = meant(port.element, "key", HL_SCXML.elements[port.element.name].attributes)
-                yield PlacedGap(Gap(PORT, key.value if key else None), port.element.name_span)
+                yield PlacedGap(Gap(GapAct.PORT, key.value if key else None), port.element.name_span)
         for read in reads_of_ports(self.machine, self.typed):
             if read.key is None or read.key.value not in declared:
-                yield PlacedGap(Gap(PORT), read.span)
+                yield PlacedGap(Gap(GapAct.PORT), read.span)
         for chart in self.machine.charts:
             for statement in chart.statements:
                 if isinstance(statement, SetOutput) and (statement.key is None or statement.key.value not in declared):
-                    yield PlacedGap(Gap(PORT), statement.element.name_span)
+                    yield PlacedGap(Gap(GapAct.PORT), statement.element.name_span)
 
 
 _IN_TREE = (
@@ -362,7 +387,7 @@ def is_interface_name(name: str) -> bool:
     return bool(name) and not any(character.isspace() for character in name)
 
 
-def _about(act: str, declaration: Declaration) -> Gap:
+def _about(act: Act, declaration: Declaration) -> Gap:
     if isinstance(declaration.interface, PortRead):
         key = declaration.interface.key
         return Gap(act, None, key.value) if key else Gap(act)
@@ -376,9 +401,9 @@ def _declared(element: Element, type_: ElementType, kind: SymbolKind) -> Gap:
         if attribute in type_.attributes:
             name = meant(element, attribute, type_.attributes)
             if name is not None:
-                return Gap(kind.value, name.value if is_interface_name(name.value) else None)
+                return Gap(InterfaceAct(kind), name.value if is_interface_name(name.value) else None)
             child = element.find(attribute)
             read = port_read(child) if child is not None else None
             if read is not None and read.key is not None:
-                return Gap(kind.value, None, read.key.value)
-    return Gap(kind.value)
+                return Gap(InterfaceAct(kind), None, read.key.value)
+    return Gap(InterfaceAct(kind))

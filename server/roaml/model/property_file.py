@@ -107,6 +107,7 @@ class WrittenProperty:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PropertyFile:
+    document: Document
     element: Element
     ports: tuple[Port, ...]
     properties: tuple[WrittenProperty, ...]
@@ -137,7 +138,7 @@ def build_property_file(document: Document) -> PropertyFile | None:
         for element in section.elements
         if element.name == "property"
     ]
-    return PropertyFile(root, tuple(ports), tuple(properties))
+    return PropertyFile(document, root, tuple(ports), tuple(properties))
 
 
 def _port(document: Document, element: Element) -> Port:

@@ -35,7 +35,8 @@ from roaml.model.property_file import (
     WrittenScope,
 )
 from roaml.model.property_ports import FindInterface, LinkedPort, LinkedVariable, PortLinker
-from roaml.model.property_problems import Problem, ProblemKind
+from roaml.model.property_problems import Problem, ProblemKind, Remedy
+from roaml.model.property_sentences import sentence
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
@@ -58,6 +59,7 @@ from roaml.observers.properties import (
 )
 from roaml.suggest import close_names
 from roaml.text import Span
+from roaml.xml_syntax import Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +70,7 @@ class LinkedProperty:
         conditions: input of its observer -> expression.
         ports: the ports whose variables it reads; their events are its letters.
         path: the path of its file.
+        sentence: what it requires.
     """
 
     name: str
@@ -77,6 +80,7 @@ class LinkedProperty:
     ports: tuple[LinkedPort, ...]
     written: WrittenProperty
     path: str
+    sentence: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,14 +137,18 @@ class _Linker:
         self.by_id: dict[str, tuple[LinkedPort, LinkedVariable]] = {}
         self.used: set[str] = set()
 
-    def report(self, kind: ProblemKind, span: Span, message: str, close: Iterable[str] = ()) -> None:
-        self.problems.append(Problem(kind, span, message, tuple(close)))
+    def report(
+        self,
+        kind: ProblemKind,
+        span: Span,
+        message: str,
+        close: Iterable[str] = (),
+        remedy: Remedy | None = None,
+        element: Element | None = None,
+    ) -> None:
+        self.problems.append(Problem(kind, span, message, tuple(close), remedy, element))
 
     def linked(self) -> LinkedFile:
-        assumed = next((written for written in self.file.properties if written.section == ASSUMES), None)
-        if assumed is not None:
-            message = "assumptions are neither verified nor translated yet; without them, the guarantees are stronger"
-            self.report(ProblemKind.FORM, assumed.element.name_span, message)
         self._check_variables()
         self._check_names()
         properties = [self._property(written) for written in self.file.properties]
@@ -186,14 +194,20 @@ class _Linker:
             seen.add(name)
 
     def _check_use(self) -> None:
+        if any(problem.kind in (ProblemKind.CONDITION, ProblemKind.FORM) for problem in self.problems):
+            return  # what is written wrongly may mean a variable
         for port in self.linked_ports:
             if not port.variables:
                 message = "this port has no variables, so no property listens to it"
-                self.report(ProblemKind.UNUSED, port.written.element.name_span, message)
+                element = port.written.element
+                self.report(ProblemKind.UNUSED, element.name_span, message, (), Remedy.REMOVE_ELEMENT, element)
             for variable in port.variables:
                 if variable.id not in self.used and variable.written.id is not None:
                     message = f"no property uses `{variable.id}`"
-                    self.report(ProblemKind.UNUSED, variable.written.id.span, message)
+                    element = variable.written.element
+                    self.report(
+                        ProblemKind.UNUSED, variable.written.id.span, message, (), Remedy.REMOVE_ELEMENT, element
+                    )
 
     # ----------------------------------------------------------- properties
 
@@ -215,7 +229,16 @@ class _Linker:
         names = {each.name for c in conditions.values() for each in walk(c.tree) if isinstance(each, Name)}
         ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
         is_assumption = written.section == ASSUMES
-        return LinkedProperty(written.id.value, is_assumption, property_, conditions, ports, written, self.path)
+        return LinkedProperty(
+            written.id.value,
+            is_assumption,
+            property_,
+            conditions,
+            ports,
+            written,
+            self.path,
+            sentence(self.file, written),
+        )
 
     def _check_condition(self, condition: Expression) -> None:
         if condition.broken:
@@ -295,7 +318,8 @@ class _Linker:
     def _scope(self, written: WrittenProperty) -> tuple[ScopeKind, dict[str, Expression]] | None:
         if not written.scopes:
             message = 'the scope is missing: `<scope type="globally"/>` asks of the whole trace'
-            self.report(ProblemKind.FORM, written.element.name_span, message)
+            element = written.element
+            self.report(ProblemKind.FORM, element.name_span, message, (), Remedy.ADD_SCOPE, element)
             return None
         scope = written.scopes[0]
         if scope.type is None or scope.type.value not in {kind.value for kind in ScopeKind}:
@@ -312,7 +336,7 @@ class _Linker:
                 self.report(ProblemKind.FORM, place.span, f"the scope `{kind.value}` needs the attribute `{attribute}`")
             elif condition is not None and not is_needed:
                 message = f"the scope `{kind.value}` has no `{attribute}`"
-                self.report(ProblemKind.FORM, condition.span, message)
+                self.report(ProblemKind.FORM, condition.span, message, (), Remedy.REMOVE_ATTRIBUTE, scope.element)
             elif condition is not None:
                 yield name, condition
 

@@ -138,8 +138,9 @@ class PortLinker:
         part = type_.part(_PARTS[event]) if type_ is not None and event in _PARTS else None
         if part is None and event == "goal_response":
             part = Struct("", (), "answer to a goal")
+        problems = len(self.problems)
         events = tuple(self._channel_events(port, channel, event))
-        if not events and self._is_complete():
+        if not events and self._is_complete() and len(self.problems) == problems:
             what = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
             who = what.get(event, "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this is never sent")
@@ -267,7 +268,8 @@ class PortLinker:
                 close = tuple(dict.fromkeys(shorter[node.number] for node in matches))
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             elif self._is_complete():
-                known = dict.fromkeys(text for node in self.system.instances for text in (node.name, node.plugin))
+                names = (text for node in self.system.instances for text in (node.name, node.plugin))
+                known = dict.fromkeys((*names, *short_paths(self.system).values()))
                 close = close_names(name.value, known)
                 hint = f"; did you mean `{close[0]}`?" if close else ""
                 message = f"the tree has no node `{name.value}`{hint}"

@@ -7,6 +7,7 @@ import enum
 from dataclasses import dataclass
 
 from roaml.text import Span
+from roaml.xml_syntax import Element
 
 
 class ProblemKind(enum.Enum):
@@ -26,11 +27,25 @@ class ProblemKind(enum.Enum):
     UNUSED = "unused-port-variable"
 
 
+class Remedy(enum.Enum):
+    """What removes a problem."""
+
+    REMOVE_ELEMENT = "remove the element"
+    REMOVE_ATTRIBUTE = "remove the attribute with the value at the span of the problem"
+    ADD_SCOPE = "add a scope to the element"
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """`close`: similar names that may be intended at `span`."""
+    """
+    Attributes:
+        close: similar names that may be intended at `span`.
+        remedy: what removes the problem at `element`, if it is evident.
+    """
 
     kind: ProblemKind
     span: Span
     message: str
     close: tuple[str, ...] = ()
+    remedy: Remedy | None = None
+    element: Element | None = None

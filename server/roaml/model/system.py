@@ -16,24 +16,11 @@ from functools import cached_property
 from typing import TypeAlias
 
 from roaml.diagnostics import Symbol
+from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
-from roaml.model.gaps import (
-    ANYTHING,
-    NAME,
-    NODE,
-    PARAMETER,
-    PORT,
-    RECEIVES,
-    REMAP,
-    SENDS,
-    TREE,
-    VARIABLE,
-    Gap,
-    answers,
-    is_interface_name,
-)
+from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
     EventReceived,
     EventSent,
@@ -54,7 +41,7 @@ ANY_TYPE = "any"
 """The type of a port that accepts any type."""
 
 
-Fact: TypeAlias = "tuple[str, str | None]"
+Fact: TypeAlias = "tuple[Act, str | None]"
 """An act (see `Gap`) and its subject, with topics named as in events; `None` if it may be any."""
 
 
@@ -154,7 +141,7 @@ class BoundPort:
         return self.automaton.instance.source
 
 
-_BESIDE_EVENTS = (PORT, VARIABLE, REMAP, NAME, PARAMETER)
+_BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAct.PARAMETER)
 """The acts of gaps that do not affect which events a machine handles and sends."""
 
 
@@ -211,7 +198,7 @@ class System:
         for gap in self.gaps:
             found |= self.facts(gap)
         if self.ticked_nodes or self.idle_plugins:
-            found.add((ANYTHING, None))  # another file was probably meant
+            found.add((GapAct.ANYTHING, None))  # another file was probably meant
         for automaton in self.automata:
             found |= self.facts_of(automaton)
         for instance in self.instances:
@@ -219,7 +206,7 @@ class System:
                 found |= self.facts_of_unknown(instance)
         return frozenset(found)
 
-    def may(self, act: str, name: str, automaton: SystemAutomaton | None = None) -> bool:
+    def may(self, act: Act, name: str, automaton: SystemAutomaton | None = None) -> bool:
         """Whether an automaton, or this automaton, may do this in an unreadable part. `name` is as for channels and
         events."""
         possible = self.possible if automaton is None else self.facts_of(automaton)
@@ -231,15 +218,15 @@ class System:
 
     def facts(self, gap: Gap, automaton: SystemAutomaton | None = None) -> set[Fact]:
         """The facts of a gap, in an automaton or in the files around the automata."""
-        if gap.act == NODE:
+        if gap.act is GapAct.NODE:
             return self._facts_of_any_node()
-        if gap.act == REMAP:
+        if gap.act is GapAct.REMAP:
             named = [v for v in self.blackboard if gap.name is not None and f"__{v}".endswith(f"__{gap.name}")]
-            return {(VARIABLE, variable) for variable in named}
-        if gap.act == PORT:
+            return {(GapAct.VARIABLE, variable) for variable in named}
+        if gap.act is GapAct.PORT:
             ports = automaton.instance.ports if automaton is not None and automaton.instance is not None else ()
             bound = [value for key, value in ports if gap.name in (None, key)]
-            return {(VARIABLE, value.variable) for value in bound if isinstance(value, Reference)}
+            return {(GapAct.VARIABLE, value.variable) for value in bound if isinstance(value, Reference)}
         if gap.port and automaton is not None:
             value = automaton.port(gap.port)
             name = value.text.strip() if isinstance(value, PortConstant) else ""
@@ -260,40 +247,47 @@ class System:
         return frozenset(
             id(automaton)
             for automaton in self.automata
-            if any(act not in _BESIDE_EVENTS and not act.endswith(" field") for act, _ in self.facts_of(automaton))
+            if any(_is_about_events(act) for act, _ in self.facts_of(automaton))
         )
 
     def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
         """The facts of a tree node whose port should name a topic, service or action, and does not."""
         value = automaton.port(use.port)
-        bound: set[Fact] = {(VARIABLE, value.variable)} if isinstance(value, Reference) else set()
-        return {*bound, (use.kind.value, None)}
+        bound: set[Fact] = {(GapAct.VARIABLE, value.variable)} if isinstance(value, Reference) else set()
+        return {*bound, (InterfaceAct(use.kind), None)}
 
     def facts_of_unknown(self, instance: Instance) -> set[Fact]:
         """The facts of a tree node without a plugin: those of the plugin that was probably meant."""
-        found: set[Fact] = {(VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
+        found: set[Fact] = {(GapAct.VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
         element = BEHAVIOR_TREE.elements.get(instance.plugin)
         if element is not None and element.node:
-            return {*found, (TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
+            return {*found, (GapAct.TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
         names = [outline.name for _, outline in (*self.plugins, *self.nodes)]
         close = close_names(instance.plugin, [*names, *builtin_plugins()], 1)
-        found |= {(NODE, name) for name in close} or {(NODE, None)}
+        found |= {(GapAct.NODE, name) for name in close} or {(GapAct.NODE, None)}
         if not close or not self.plugins_known:
-            return {*found, (ANYTHING, None)}
+            return {*found, (GapAct.ANYTHING, None)}
         for path, outline in (*self.plugins, *self.nodes):
             if outline.name in close:
                 meant = SystemAutomaton(instance.automaton, path, outline, instance)
                 found |= set(_said(meant)) | self.facts_of(meant)
-        return {*found, (TREE, None)}
+        return {*found, (GapAct.TREE, None)}
 
     def _facts_of_any_node(self) -> set[Fact]:
         """The facts of a tree node with any plugin."""
         if not self.plugins_known:
-            return {(ANYTHING, None)}
-        found: set[Fact] = {(NODE, None), (VARIABLE, None), (TREE, None), (SymbolKind.PUBLISHER.value, CLOCK_TOPIC)}
+            return {(GapAct.ANYTHING, None)}
+        found: set[Fact] = {
+            (GapAct.NODE, None),
+            (GapAct.VARIABLE, None),
+            (GapAct.TREE, None),
+            (InterfaceAct(SymbolKind.PUBLISHER), CLOCK_TOPIC),
+        }
         for path, outline in self.plugins:
             found |= set(_said(SystemAutomaton(outline.name, path, outline)))
-            found |= {_fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act != PORT}
+            found |= {
+                _fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act is not GapAct.PORT
+            }
         return found
 
     @cached_property
@@ -304,7 +298,7 @@ class System:
     @cached_property
     def idle_plugins(self) -> frozenset[str]:
         """The files listed as plugins that are not plugins and that the tree does not use by name."""
-        if any(gap.act in (ANYTHING, NODE) for gap in self.gaps):
+        if any(gap.act in (GapAct.ANYTHING, GapAct.NODE) for gap in self.gaps):
             return frozenset()
         used = {instance.plugin for instance in self.instances}
         return frozenset(
@@ -312,7 +306,7 @@ class System:
             for path, outline in self.plugins
             if outline.name not in used
             and not outline.takes_part_in_tree
-            and not any(gap.act in (TREE, PORT, ANYTHING) for gap in outline.gaps)
+            and not any(gap.act in (GapAct.TREE, GapAct.PORT, GapAct.ANYTHING) for gap in outline.gaps)
         )
 
     @cached_property
@@ -455,42 +449,58 @@ class System:
 
 # ------------------------------------------------------------- what is not read
 
-_OF_TOPICS = (SymbolKind.PUBLISHER.value, SymbolKind.SUBSCRIBER.value)
+_OF_TOPICS = (SymbolKind.PUBLISHER, SymbolKind.SUBSCRIBER)
 
 
-def _fact(act: str, name: str | None) -> Fact:
-    is_topic = name is not None and act.partition(" ")[0] in _OF_TOPICS
+def _fact(act: Act, name: str | None) -> Fact:
+    is_topic = isinstance(act, InterfaceAct) and act.kind in _OF_TOPICS
     return act, sanitise(name) if name is not None and is_topic else name
+
+
+def _is_about_events(act: Act) -> bool:
+    return not act.is_of_field if isinstance(act, InterfaceAct) else act not in _BESIDE_EVENTS
 
 
 def _said(automaton: SystemAutomaton) -> Iterator[Fact]:
     """The facts of an automaton that may take part in the system."""
     for use in automaton.outline.interfaces:
-        yield _fact(use.kind.value, automaton.interface_name(use))
-    yield from ((SENDS, sent.event) for sent in automaton.outline.sent)
-    yield from ((RECEIVES, received.event) for received in automaton.outline.received)
+        yield _fact(InterfaceAct(use.kind), automaton.interface_name(use))
+    yield from ((GapAct.SENDS, sent.event) for sent in automaton.outline.sent)
+    yield from ((GapAct.RECEIVES, received.event) for received in automaton.outline.received)
 
 
-_PREFIXES = {"publisher": "topic", "service-client": "srv", "service-server": "srv"}
-_PREFIXES |= {"action-client": "action", "action-server": "action"}
+_PREFIXES = {
+    SymbolKind.PUBLISHER: "topic",
+    SymbolKind.SERVICE_CLIENT: "srv",
+    SymbolKind.SERVICE_SERVER: "srv",
+    SymbolKind.ACTION_CLIENT: "action",
+    SymbolKind.ACTION_SERVER: "action",
+}
 _OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
 
 
-def may_give_variable(act: str, name: str | None, variable: str) -> bool:
+def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
     """Whether a gap with `act` may add a variable of this name to the translation (see `roaml.model.globals`)."""
-    first = act.partition(" ")[0]
-    if first in _PREFIXES:
-        of = f"{_PREFIXES[first]}_"
-        return variable.startswith(of if name is None else f"{of}{sanitise(name)}_")
-    if act in (SENDS, PARAMETER):
-        if name is None:
-            return _OF_INTERFACES.match(variable) is None
-        return variable == f"{name}.valid" or variable.startswith(f"{name}__")
-    if act in (TREE, VARIABLE):
-        return variable.startswith("bt_")
-    if act == NAME:
-        return variable.startswith(("srv_", "action_"))
-    return act == ANYTHING
+    if isinstance(act, InterfaceAct):
+        prefix = _PREFIXES.get(act.kind)
+        if prefix is None:
+            return False
+        return variable.startswith(f"{prefix}_" if name is None else f"{prefix}_{sanitise(name)}_")
+    match act:
+        case GapAct.ANYTHING:
+            return True
+        case GapAct.SENDS | GapAct.PARAMETER:
+            if name is None:
+                return _OF_INTERFACES.match(variable) is None
+            return variable == f"{name}.valid" or variable.startswith(f"{name}__")
+        case GapAct.TREE | GapAct.VARIABLE:
+            return variable.startswith("bt_")
+        case GapAct.NAME:
+            return variable.startswith(("srv_", "action_"))
+        case GapAct.RECEIVES | GapAct.PORT | GapAct.REMAP | GapAct.NODE | GapAct.PLUGIN:
+            return False
+        case _:
+            return assert_never(act)
 
 
 # ---------------------------------------------------- nodes of BehaviorTree.CPP

@@ -31,7 +31,7 @@ from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.validate import Misfit, Violation, misfits, validate
 from roaml.model.build_machine import build_machine
 from roaml.model.expand import TreeFileOutline, expand, is_whole, node_at, stray_remaps, tree_file_outline
-from roaml.model.gaps import ANYTHING, NODE, RECEIVES, REMAP, SENDS, Gap, PlacedGap, machine_gaps
+from roaml.model.gaps import Gap, GapAct, InterfaceAct, PlacedGap, machine_gaps
 from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.json_schema import structs_in_json
 from roaml.model.kinds import EXTENSIONS, MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind, kind_of
@@ -605,15 +605,15 @@ class Analysis:
         root = file.element.name_span
         broken = self._broken(path)
         if broken is not None:
-            yield path, PlacedGap(Gap(ANYTHING), broken)
+            yield path, PlacedGap(Gap(GapAct.ANYTHING), broken)
         if "node_models" in file.unread:
-            yield path, PlacedGap(Gap(ANYTHING), root)
+            yield path, PlacedGap(Gap(GapAct.ANYTHING), root)
         if "behavior_tree" in file.unread:
-            yield path, PlacedGap(Gap(NODE), root)
+            yield path, PlacedGap(Gap(GapAct.NODE), root)
         for entry in listed:
             if entry.input.section == "node_models" and not entry.usable:
                 yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
-        yield from ((place, PlacedGap(Gap(NODE), span)) for place, span in self._tree_gaps(path, file, listed))
+        yield from ((place, PlacedGap(Gap(GapAct.NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         outlines = self.tree_outlines(path)
         for stray in self.memo.get("stray remaps", path, outlines, lambda: tuple(stray_remaps(outlines))):
             tree = self.tree(stray.source.path)
@@ -622,7 +622,7 @@ class Analysis:
             outer = blackboard_variable(stray.outer)
             for name in (*stray.meant[:1], *((outer,) if outer and stray.meant else ())):
                 if key is not None:
-                    yield stray.source.path, PlacedGap(Gap(REMAP, name), key)
+                    yield stray.source.path, PlacedGap(Gap(GapAct.REMAP, name), key)
 
     def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
         """The facts of a node whose file cannot be used: those of the file in its folder that is probably meant."""
@@ -632,13 +632,13 @@ class Analysis:
         close = close_names(_stem(missing.path), by_name, 1) if missing.path else ()
         meant = by_name[close[0]] if close else ""
         if not meant or self.machine(meant) is None:
-            yield Gap(ANYTHING)
+            yield Gap(GapAct.ANYTHING)
             return
         outline = self.outline(meant, system, self.structs(system), {})
         yield from outline.gaps
-        yield from (Gap(use.kind.value, use.name or None) for use in outline.interfaces)
-        yield from (Gap(SENDS, sent.event) for sent in outline.sent)
-        yield from (Gap(RECEIVES, received.event) for received in outline.received)
+        yield from (Gap(InterfaceAct(use.kind), use.name or None) for use in outline.interfaces)
+        yield from (Gap(GapAct.SENDS, sent.event) for sent in outline.sent)
+        yield from (Gap(GapAct.RECEIVES, received.event) for received in outline.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """Why some nodes of the executed tree are unknown, if the system should have a tree: file and place."""
@@ -721,7 +721,7 @@ class Analysis:
         assert document is not None
         gaps = machine_gaps(machine, typed, document.namespaces, self._has_type)
         broken = self._broken(path)
-        return gaps if broken is None else (*gaps, PlacedGap(Gap(ANYTHING), broken))
+        return gaps if broken is None else (*gaps, PlacedGap(Gap(GapAct.ANYTHING), broken))
 
     def _has_type(self, kind: str, name: str) -> bool:
         return isinstance(self.interface(kind, name), InterfaceType)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from roaml.scxml.model import EventRole, ScxmlEvent
+from roaml.scxml.model import EventRole, Role, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
 
@@ -35,6 +35,19 @@ WAITING, RECEIVED = "waiting", "received"
 """The buffer of an event: it has the name of its event, and has one of these locations."""
 
 _GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
+
+
+def automaton_role(automaton: str) -> Role:
+    """What the name of an automaton says about its role."""
+    if automaton == CLOCK:
+        return Role.CLOCK
+    if automaton == BLACKBOARD:
+        return Role.BLACKBOARD
+    if automaton.startswith(TREE_ROOT_PREFIX):
+        return Role.TREE_ROOT
+    is_handler = automaton.startswith((SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX))
+    return Role.HANDLER if is_handler else Role.MACHINE
+
 
 NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
 """The automaton of a tree node: its number and its type."""
@@ -120,26 +133,24 @@ _ON_RECEIVE = "_on_receive"
 # --------------------------------------------------------------------- variables
 
 
-def open_variable(property_: str) -> str:
-    """The variable that says whether a property is still open when the time of the model ends
-    (docs/spec/jani.md#observers)."""
-    return f"{property_}__open"
+VIOLATED, SATISFIED, PENDING, OPEN, ASKED, OPENED = "violated", "satisfied", "pending", "open", "asked", "opened"
+"""What the variables of an observer say (docs/spec/jani.md#observers)."""
 
 
-def asked_variable(property_: str) -> str:
-    """The variable that says whether what a property is about has occurred, such as the request of a response
-    (docs/spec/jani.md#observers)."""
-    return f"{property_}__asked"
+def observer_variable(prefix: str, what: str) -> str:
+    """A variable of the observer whose names begin with a prefix."""
+    return f"{prefix}__{what}"
 
 
-def opened_variable(property_: str) -> str:
-    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
-    return f"{property_}__opened"
+def observer_prefix(variable: str, *what: str) -> str:
+    """The prefix of a variable of an observer that says one of these things; "" if it is not one."""
+    prefix, _, ending = variable.rpartition("__")
+    return prefix if ending in what else ""
 
 
-def pending_variable(property_: str) -> str:
-    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
-    return f"{property_}__pending"
+def assumptions_of(property_: str) -> str:
+    """The property that the assumptions of a property hold (docs/spec/jani.md#observers)."""
+    return f"{property_}__assumptions"
 
 
 def is_length(variable: str) -> bool:

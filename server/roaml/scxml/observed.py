@@ -50,10 +50,17 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """`conditions`: what the inputs of its observer are, as expressions over the ids of the variables."""
+    """
+    Attributes:
+        conditions: what the inputs of its observer are, as expressions over the ids of the variables.
+        comment: what the property requires, as a sentence.
+        assumptions: the properties that are assumed for it.
+    """
 
     name: str
     property: Property
     conditions: Mapping[str, Expr]
     ports: tuple[ObservedPort, ...]
     origin: Location
+    comment: str = ""
+    assumptions: tuple[ObservedProperty, ...] = ()

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 from roaml.jani.expressions import Boolean, Integer, Name, Real
 from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
-from roaml.scxml.names import CLOCK_ACTION, is_timer, received_by, sent_by
+from roaml.scxml.model import Role
+from roaml.scxml.names import CLOCK_ACTION, automaton_role, is_timer, received_by, sent_by
 from roaml.simulation.run import Decision, Enabled, EnabledEdges
-from roaml.simulation.words import CLOCK_NAME, TREE_NAME, resting, tree_text, who
+from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.record import Plain
 from roaml.views.event_words import said
@@ -148,7 +149,7 @@ def _consequences(automaton: Automaton, destination: Destination, clients: Seque
         visited.add(location)
         event = sent_by(following[0].action or "")
         if event:
-            yield f"{name} sends {said(event, '', clients)}"
+            yield f"{name} sends {said(event, clients)}"
         (destination,) = following[0].destinations
 
 
@@ -163,20 +164,22 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
     if told:
         return told
     if event:
-        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {said(event, '', clients)}"
+        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {said(event, clients)}"
     event = received_by(action)
     if event and is_timer(event):
-        takers = [name for name in names if name != CLOCK_NAME]
+        automata = [part.automaton.name for part in actors]
+        takers = [automaton for automaton in automata if automaton_role(automaton) is not Role.CLOCK]
         if not takers:
             return "a timer ticks"
-        if takers == [TREE_NAME]:
+        if all(automaton_role(taker) is Role.TREE_ROOT for taker in takers):
             return "the tree begins its next tick"
-        return f"{_listed(takers)} {_verb(takers, 'takes', 'take')} {said(event, takers[0], clients, taken=True)}"
+        names = [who(taker) for taker in takers]
+        return f"{_listed(names)} {_verb(names, 'takes', 'take')} {said(event, clients, taken=True)}"
     if event:
         parameters = _parameters(events.parameters(event))
         if not names:
-            return f"nobody receives {said(event, '', clients)}{parameters}"
-        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {said(event, names[0], clients)}{parameters}"
+            return f"nobody receives {said(event, clients)}{parameters}"
+        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {said(event, clients)}{parameters}"
     if not names:
         names = [who(part.automaton.name) for part in parts]
     return f"{_listed(names)} {_verb(names, 'goes', 'go')} on"

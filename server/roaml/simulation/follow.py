@@ -184,7 +184,7 @@ class Follower:
             yield EventState(
                 event,
                 self.events.name(event),
-                said(event, "", self._names),
+                said(event, self._names),
                 who(sender) if sender else "",
                 parameters,
                 step,

@@ -5,23 +5,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
-from roaml.scxml.names import BLACKBOARD, CLOCK, CLOCK_ACTION, STATUSES, TREE_EVENT, TREE_ROOT_PREFIX, received_by
+from roaml.scxml.model import Role
+from roaml.scxml.names import CLOCK_ACTION, STATUSES, TREE_EVENT, automaton_role, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
 STATUS_NAMES = {number: name for name, number in STATUSES.items()}
 """The number with which a node answers -> the name of the status."""
-CLOCK_NAME, TREE_NAME, BLACKBOARD_NAME = "clock", "tree", "blackboard"
 
 
 def who(automaton: str) -> str:
     """The name of an automaton in messages."""
-    if automaton == CLOCK:
-        return CLOCK_NAME
-    if automaton == BLACKBOARD:
-        return BLACKBOARD_NAME
-    return TREE_NAME if automaton.startswith(TREE_ROOT_PREFIX) else name_of(automaton)
+    role = automaton_role(automaton)
+    match role:
+        case Role.CLOCK:
+            return "clock"
+        case Role.BLACKBOARD:
+            return "blackboard"
+        case Role.TREE_ROOT:
+            return "tree"
+        case Role.MACHINE | Role.HANDLER:
+            return name_of(automaton)
+        case _:
+            return assert_never(role)
 
 
 def resting(automaton: Automaton) -> frozenset[str]:

@@ -28,6 +28,7 @@ class Story:
         start: the variables of the model before the first step.
         standstill: where it has ended, if it is stuck there.
         is_whole: whether all of it is to be shown, not only what matters.
+        comment: what the property requires, if the model says it.
     """
 
     property: str
@@ -40,6 +41,7 @@ class Story:
     start: Mapping[str, Plain]
     standstill: Standstill | None = None
     is_whole: bool = False
+    comment: str = ""
 
 
 def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -65,6 +67,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         automata,
         start,
         recorder.standstill() if recording.end is End.STUCK else None,
+        comment=recorder.asked.property.comment or "",
     )
 
 

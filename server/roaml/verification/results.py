@@ -103,6 +103,11 @@ class Result:
     traces: Traces | None = field(default=None, repr=False, compare=False)
 
     @property
+    def comment(self) -> str:
+        """What the property requires, if the model says it."""
+        return (self.traces.asked.property.comment or "") if self.traces is not None else ""
+
+    @property
     def asks_stuck(self) -> bool:
         """Whether the question is about stuck traces."""
         return any(answer.question.is_stuck for answer in self._answers())

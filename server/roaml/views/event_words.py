@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
+from roaml.scxml.model import Role
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
@@ -33,19 +34,19 @@ _FORMS = (
 _COMPILED = tuple((re.compile(form), text) for form, text in _FORMS)
 
 
-def said(event: str, who: str, clients: Collection[str], taken: bool = False) -> str:
+def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
     """A phrase for an event.
 
     Args:
-        who: the automaton that waits for it, or receives it.
         clients: the automata of the system, of which one may be named at the end.
-        taken: whether `who` receives the tick of a timer, instead of waiting for the timer.
+        role: that of the automaton that waits for the event, or receives it.
+        taken: whether this automaton receives the tick of a timer, instead of waiting for the timer.
     """
     if is_timer(event):
         timer = event.removeprefix(TIMER_PREFIX)
         for user in clients:
             timer = timer.removesuffix(f"__{safe_name(user)}")
-        if who == "the tree":
+        if role is Role.TREE_ROOT:
             return "its next tick"
         return f"the tick of its timer `{timer}`" if taken else f"its timer `{timer}`"
     if event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX):

@@ -95,7 +95,7 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
     waiting = waits_of(story)
     table = [*_told(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
-    text = f"{heading(story)}\n"
+    text = f"{heading(story)}\n" + (f"  {story.comment}\n" if story.comment else "")
     for row in table:
         cells = (f"{row.step:>{widths[0]}}", row.time.rjust(widths[1]), row.who.ljust(widths[2]))
         text += "  " + "  ".join((*cells, row.what.ljust(widths[3]), row.place)).rstrip() + "\n"
@@ -187,7 +187,8 @@ def _section(story: Story, place_of: PlaceOf) -> str:
                 cells.append("<td></td>")
         rows.append(f"<tr><th>{row.step}</th><th>{html.escape(row.time)}</th>{''.join(cells)}</tr>")
     return (
-        f"<h2>{html.escape(story.property)}</h2><p>{html.escape(heading(story))}</p>"
+        f"<h2>{html.escape(story.property)}</h2><p>{html.escape(story.comment)}</p>"
+        f"<p>{html.escape(heading(story))}</p>"
         f"<table><thead><tr><th>step</th><th>time</th>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
         f"<details><summary>Mermaid</summary><pre>{html.escape(as_mermaid(story, place_of))}</pre></details>"
     )

@@ -15,15 +15,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.exhaustive import assert_never
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
+from roaml.scxml.model import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
-    BLACKBOARD,
     CLOCK,
     RECEIVED,
     SERVICE_HANDLER_PREFIX,
     TREE_ROOT_PREFIX,
+    automaton_role,
     is_timer,
     named,
     on_receive,
@@ -37,7 +39,6 @@ from roaml.views.event_words import said
 from roaml.views.turns import is_inner, name_of
 
 TICK, HALT = "tick", "halt"
-THE_CLOCK, THE_TREE, THE_BLACKBOARD = "the clock", "the tree", "the blackboard"
 
 
 class Wait(NamedTuple):
@@ -45,7 +46,7 @@ class Wait(NamedTuple):
 
     Attributes:
         origin: the corresponding place in the text.
-        automaton, location: its name in the model, and its location.
+        automaton, location, role: its name in the model, its location, and its role in the system.
         whom: the automaton for which it waits; "" if there is none.
         unanswered: `TICK` or `HALT` if it waits for the answer to one; then `origin` is the place of the node that must
             answer, in the tree.
@@ -57,6 +58,7 @@ class Wait(NamedTuple):
     origin: Origin | None
     automaton: str
     location: str
+    role: Role
     whom: str = ""
     unanswered: str = ""
     for_timer: bool = False
@@ -96,13 +98,13 @@ NEEDS_TIME = "answer-needs-time"
 def rule(waiting: Sequence[Wait]) -> str:
     """The rule that documents the problem: for a node that must answer the tree and waits for a timer; otherwise ""."""
     is_late = any(wait.unanswered for wait in waiting) and any(wait.for_timer for wait in waiting)
-    return NEEDS_TIME if is_late and any(wait.who == THE_CLOCK for wait in waiting) else ""
+    return NEEDS_TIME if is_late and any(wait.role is Role.CLOCK for wait in waiting) else ""
 
 
 def advice(waiting: Sequence[Wait]) -> str:
     """How to fix it, if the reason is a node that does not answer the tree in time; otherwise ""."""
     late = next((wait for wait in waiting if wait.unanswered), None)
-    if late is None or not any(wait.who == THE_CLOCK for wait in waiting):
+    if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
     if late.unanswered == HALT:
         return f"a halt must be answered before time passes; let {late.whom} answer it at once"
@@ -262,54 +264,67 @@ class _Chain:
         return not is_inner(automaton)
 
     def who(self, number: int) -> str:
-        name = self.automata[number].name
-        if name.startswith(TREE_ROOT_PREFIX):
-            return THE_TREE
-        for prefix, what in ((SERVICE_HANDLER_PREFIX, "service"), (ACTION_HANDLER_PREFIX, "action")):
-            if name.startswith(prefix):
+        name, role = self.automata[number].name, self.role(number)
+        match role:
+            case Role.MACHINE:
+                return name_of(name)
+            case Role.TREE_ROOT:
+                return "the tree"
+            case Role.CLOCK:
+                return "the clock"
+            case Role.BLACKBOARD:
+                return "the blackboard"
+            case Role.HANDLER:
+                is_service = name.startswith(SERVICE_HANDLER_PREFIX)
+                what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
                 return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
-        return {CLOCK: THE_CLOCK, BLACKBOARD: THE_BLACKBOARD}.get(name, name_of(name))
+            case _:
+                return assert_never(role)
 
-    def shown_from(self, number: int, event: str) -> tuple[str, str]:
+    def role(self, number: int) -> Role:
+        return automaton_role(self.automata[number].name)
+
+    def shown_from(self, number: int, event: str) -> tuple[int, str]:
         """The automaton whose event another one passes on, and the event that is awaited there."""
         seen = set()
         while number not in seen and number in self.links and not self.is_shown(number):
             seen.add(number)
             link = self.links[number][0]
             number, event = link.others[0][0], link.event or event
-        return self.who(number), event
+        return number, event
 
     def words(self, link: _Link) -> Wait:
         number = link.automaton
-        who, here = self.who(number), self.locations[number]
+        who, role, here = self.who(number), self.role(number), self.locations[number]
         is_state = any(received_by(edge.action or "") for edge in self.edges(number)) or not self.edges(number)
-        is_generated = who.startswith("the ")
-        where = f" in `{here}`" if is_state and not is_generated else ""
-        if who == THE_CLOCK and self.time is not None:
+        where = f" in `{here}`" if is_state and role is Role.MACHINE else ""
+        if role is Role.CLOCK and self.time is not None:
             where = f" at {self.time:g} s"
         shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
-        others = list(dict.fromkeys(name for name, _ in shown))
+        others = list(dict.fromkeys(self.who(other) for other, _ in shown))
         them = " and ".join(others)
         unanswered, origin, for_timer = "", link.origin, False
         if link.event is None:
             does = "takes" if received_by(link.wanted) else "sends"
             event = received_by(link.wanted) or sent_by(link.wanted)
-            what = f"stays{where} and never {does} {said(event, who, self.clients())}"
+            what = f"stays{where} and never {does} {said(event, self.clients(), role)}"
         elif not link.event:
             what = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
-            what = f"waits{where} for {them or 'nobody'} to take {said(link.event, them, self.clients(), taken=True)}"
+            takers = {self.role(other) for other, _ in shown}
+            taker = Role.TREE_ROOT if takers == {Role.TREE_ROOT} else Role.MACHINE
+            what = f"waits{where} for {them or 'nobody'} to take {said(link.event, self.clients(), taker, taken=True)}"
         elif _is_answer(link.event):
             unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
             origin = self.place_in_tree(shown[0][1]) or origin
             what = f"waits{where} for {them} to answer its {unanswered}"
         else:
             senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
-            what = f"waits{where} for {said(link.event, who, self.clients())}{senders}"
+            what = f"waits{where} for {said(link.event, self.clients(), role)}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
                 what += ", which ticks when the clock goes on"
-        return Wait(who, what, origin, self.automata[number].name, here, them, unanswered, for_timer)
+        return Wait(who, what, origin, self.automata[number].name, here, role, them, unanswered, for_timer)
 
     def place_in_tree(self, answer: str) -> Origin | None:
         """The place in the tree of the node that sends an answer: the node that ticks it is there."""

@@ -8,9 +8,13 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet, escaped
+from roaml.ide.describe.system import node_of
+from roaml.ide.json_tree import members
+from roaml.ide.property_values import compared_global, names_of_global
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Schema
 from roaml.model.kinds import FileKind
+from roaml.model.tree_paths import label_of
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 from roaml.text import Span
@@ -150,6 +154,7 @@ def _values(analysis: Analysis, path: str, place: _Place) -> Iterator[Completion
         return
     is_formula = grammar.is_a(schema, "formula")
     if is_formula or grammar.is_a(schema, "expression"):
+        yield from _compared_values(place)
         yield from _names(analysis, path)
         yield from _operators(grammar, "formula" if is_formula else "expression")
         for word in ("true", "false"):
@@ -164,12 +169,24 @@ def _quoted(text: str) -> str:
 
 def _names(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
     """The variables of the translated systems."""
-    for system in analysis.systems_of(path):
-        for name, variable in (analysis.globals(system) if system else {}).items():
-            about = Symbol(system or "", SymbolKind.GLOBAL, name)
+    for path_of_system in analysis.systems_of(path):
+        system = analysis.system(path_of_system) if path_of_system else None
+        for name, variable in analysis.globals(system.path).items() if system else ():
+            about = Symbol(system.path if system else "", SymbolKind.GLOBAL, name)
             rank = Rank.LIKELY if name.endswith(".valid") else Rank.USUAL
-            detail = str(variable.type)
-            yield CompletionItem(name, ItemKind.VARIABLE, _quoted(name), detail, about, rank, f'"{name}"')
+            node = node_of(system, name) if system else None
+            label = label_of(system, node.instance) if system and node and node.instance else ""
+            detail = " · ".join(filter(None, (str(variable.type), label)))
+            filter_ = f'"{name} {label}"' if label else f'"{name}"'
+            yield CompletionItem(name, ItemKind.VARIABLE, _quoted(name), detail, about, rank, filter_)
+
+
+def _compared_values(place: _Place) -> Iterator[CompletionItem]:
+    """The named values of the variable on the other side of a comparison."""
+    around = members(place.inside) if place.inside is not None else {}
+    variable = compared_global(around)
+    for number, name in names_of_global(variable).items():
+        yield CompletionItem(str(number), ItemKind.VALUE, detail=name, rank=Rank.BEST, filter=f"{number} {name}")
 
 
 def _operators(grammar: JsonGrammar, kind: str) -> Iterator[CompletionItem]:

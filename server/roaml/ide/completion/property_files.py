@@ -12,16 +12,15 @@ from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import Request, Subject
 from roaml.ide.names.in_property_file import SYMBOL_KINDS
+from roaml.ide.property_values import names_of_port
 from roaml.ide.syntax import Typed
 from roaml.language import XML_PROPERTIES, AttributeType, ElementType
 from roaml.model.property_file import NODE, PLAIN, STATE, TOPIC, Port
 from roaml.model.property_ports import EVENTS, LinkedVariable, names_of, part_of
 from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
-from roaml.model.value_types import GOAL_STATUSES
 from roaml.observers.properties import Pattern
 from roaml.roles import SymbolKind
-from roaml.scxml.names import STATUSES
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
@@ -280,18 +279,12 @@ def compared_values(request: Request, start: int) -> Iterator[CompletionItem]:
     variable = _linked(request).get(compared[1]) if compared is not None else None
     if variable is None:
         return
-    for number, name in named_values(request, variable).items():
+    ports = request.property_file.ports if request.property_file is not None else ()
+    port = next((port for port in ports if variable.written in port.variables), None)
+    for number, name in names_of_port(port, variable.written).items() if port is not None else ():
         yield CompletionItem(str(number), ItemKind.VALUE, detail=name, rank=Rank.BEST, filter=f"{number} {name}")
     if variable.type != UNKNOWN and not isinstance(variable.type, Struct):
         yield CompletionItem(zero_text(variable.type), ItemKind.VALUE, detail=str(variable.type), rank=Rank.LIKELY)
-
-
-def named_values(request: Request, variable: LinkedVariable) -> Mapping[int, str]:
-    ports = request.property_file.ports if request.property_file is not None else ()
-    port = next((port for port in ports if variable.written in port.variables), None)
-    if port is not None and port.kind == NODE and variable.kind == STATE:
-        return {number: name for name, number in STATUSES.items()}
-    return GOAL_STATUSES if variable.kind == "result_code" else {}
 
 
 def in_formula(request: Request, span: Span) -> tuple[Span, list[CompletionItem]] | None:

@@ -4,17 +4,16 @@ variables."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from roaml.ide.describe.markdown import code, lines, name, paragraphs
 from roaml.ide.json_tree import members
+from roaml.ide.property_values import compared_global, names_of_global
 from roaml.jani.operators import BINARY_OPERATORS, UNARY_OPERATORS
 from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
 from roaml.model.value_types import GOAL_STATUSES
-from roaml.scxml.names import STATUSES
 
 _DEPTH = 12
 _LENGTH = 400
@@ -84,33 +83,19 @@ def member(key: Key) -> str:
     return paragraphs(" · ".join(filter(None, head)), PROPERTIES.text(key.schema))
 
 
-_STATUS = re.compile(r"bt_\d+_response__status")
-_CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
-_COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
-
-
 def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
     """The meaning of a number that is compared with the status of a node or the code of a result; "" if it has none.
 
     Args:
         around: the members of the comparison.
     """
-    operator = around.get("op")
-    known = BINARY_OPERATORS.get(operator.value) if isinstance(operator, JsonString) else None
-    sides = [around.get("left"), around.get("right")]
-    if known is None or known.symbol not in _COMPARISONS or written not in sides:
+    values = names_of_global(compared_global(around, written))
+    if not values:
         return ""
-    variable = next((each.value for each in sides if isinstance(each, JsonString)), "")
-    if _STATUS.fullmatch(variable):
-        called = next((name for name, value in STATUSES.items() if str(value) == written.text), "")
-        every = ", ".join(f"{value} = {name}" for name, value in STATUSES.items())
-        return paragraphs(code(f"{written.text} = {called}") if called else "", f"Statuses of tree nodes: {every}")
-    if _CODE.fullmatch(variable):
-        every = ", ".join(f"{value} = {name}" for value, name in GOAL_STATUSES.items())
-        called = next((name for code_, name in GOAL_STATUSES.items() if str(code_) == written.text), "")
-        head = code(f"{written.text} = {called}") if called else ""
-        return paragraphs(head, f"Codes of action results (`action_msgs/GoalStatus`): {every}")
-    return ""
+    called = next((name for value, name in values.items() if str(value) == written.text), "")
+    every = ", ".join(f"{value} = {name}" for value, name in values.items())
+    what = "Codes of action results (`action_msgs/GoalStatus`)" if values is GOAL_STATUSES else "Statuses of tree nodes"
+    return paragraphs(code(f"{written.text} = {called}") if called else "", f"{what}: {every}")
 
 
 def global_variable(variable: GlobalVariable) -> str:

@@ -20,6 +20,7 @@ from roaml.ide.hover.markup import in_markup
 from roaml.ide.hover.place import Place, place_at
 from roaml.ide.hover.property_file import global_variable, in_json
 from roaml.ide.hover.tree import tree_node
+from roaml.ide.hover.xml_property_file import compared_number, property_tag
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.text import Span
@@ -61,7 +62,8 @@ def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:
     if place.kind in _JSON:
         described = global_variable(place) or (None if name else in_json(place))
     else:
-        described = None if name else in_expression(place) or listed_file(place) or in_markup(place)
+        in_file = property_tag(place) or compared_number(place) if place.kind is FileKind.XML_PROPERTIES else None
+        described = None if name else in_file or in_expression(place) or listed_file(place) or in_markup(place)
     if described is not None:
         yield described
     if place.kind is FileKind.TREE and (node := tree_node(place)):

@@ -7,11 +7,13 @@ from collections.abc import Iterator
 
 from roaml.ide.describe import property_file as describe_properties
 from roaml.ide.describe import system as describe_system
-from roaml.ide.describe.markdown import code, paragraphs
+from roaml.ide.describe.markdown import code, lines, paragraphs
+from roaml.ide.describe.markdown import name as markdown_name
 from roaml.ide.hover.place import Place
 from roaml.ide.json_tree import members
 from roaml.json_syntax import JsonArray, JsonNumber, JsonObject, JsonString, JsonValue, Member
 from roaml.language.json_schema import PROPERTIES, Schema
+from roaml.model.tree_paths import label_of
 from roaml.text import Span
 
 
@@ -29,7 +31,9 @@ def global_variable(place: Place) -> tuple[Span, str] | None:
         if system is not None and variable is not None:
             node = describe_system.node_of(system, found.value)
             about = describe_system.node(system, node) if node else ""
-            texts[paragraphs(describe_properties.global_variable(variable), about)] = None
+            label = label_of(system, node.instance) if node and node.instance else ""
+            who = f"Node {markdown_name(label)} of the tree" if label else ""
+            texts[paragraphs(describe_properties.global_variable(variable), lines(who, about))] = None
     return (found.content_span, paragraphs(*texts)) if texts else None
 
 

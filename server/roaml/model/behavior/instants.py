@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from roaml.model.behavior.explore import BehaviorStep
 from roaml.model.behavior.phases import DutyKind, ProtocolEvent
 from roaml.model.behavior.summary import START, Needs, Promise
-from roaml.model.gaps import SENDS
+from roaml.model.gaps import Act, GapAct, InterfaceAct
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart, SymbolKind
 
@@ -239,15 +239,15 @@ class Instants:
 def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
     """Whether an event may come from an unreadable part."""
     if event.part is ProtocolPart.EVENT:
-        return system.may(SENDS, event.name)
+        return system.may(GapAct.SENDS, event.name)
     if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
-        acts: tuple[str, ...] = (f"action-server {event.part.value}",)
+        acts: tuple[Act, ...] = (InterfaceAct(SymbolKind.ACTION_SERVER, event.part),)
         name = next(
             (automaton.interface_name(use) for use in automaton.outline.interfaces if use.handle == event.name), ""
         )
     else:
         sender = _SENDERS.get(event.part) or _SERVERS[event.part]
-        acts = tuple(f"{sender.value} {part.value}" for part in _ANSWERS.get(event.part, (event.part,)))
+        acts = tuple(InterfaceAct(sender, part) for part in _ANSWERS.get(event.part, (event.part,)))
         channel = channel_of(system, automaton, event)
         name = channel.name if channel else ""
     return any(system.may(act, name or "") for act in acts)

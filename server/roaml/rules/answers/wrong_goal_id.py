@@ -12,6 +12,7 @@ from roaml.expr.tree import access_path
 from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.behavior.phases import Duty, DutyKind
+from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Assign, Chart, If, RosSend, Statement
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, System
@@ -129,7 +130,7 @@ def _wrong_constant(system: System, channel: Channel, value: float) -> str:
             return ""
         named = channel.users[int(value)].automaton.name
         return f"which is always the id of `{named}`, but `{channel.name}` has {len(clients)} clients"
-    if not clients or system.may(SymbolKind.ACTION_CLIENT.value, channel.name):
+    if not clients or system.may(InterfaceAct(SymbolKind.ACTION_CLIENT), channel.name):
         return ""
     ids = "0" if len(channel.users) == 1 else f"0 to {len(channel.users) - 1}"
     return f"which is not the id of any client of `{channel.name}`: the ids are {ids}"

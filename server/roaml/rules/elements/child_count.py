@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.forest.forest import Forest
 from roaml.language import BEHAVIOR_TREE
 from roaml.libraries import UNBOUNDED, NodeKind
-from roaml.model.gaps import ANYTHING, TREE
+from roaml.model.gaps import GapAct
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext
@@ -79,7 +79,7 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
     least = max(calls.children, 1 if calls.any_child else 0)
     if count < least:
         yield _too_few(node, least, UNBOUNDED if calls.any_child else least)
-    if calls.ticked_children is None or any(gap.act in (TREE, ANYTHING) for gap in plugin.gaps):
+    if calls.ticked_children is None or any(gap.act in (GapAct.TREE, GapAct.ANYTHING) for gap in plugin.gaps):
         return
     for index, child in enumerate(node.children):
         span = child.element.name_span

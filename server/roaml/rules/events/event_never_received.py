@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.gaps import RECEIVES
+from roaml.model.gaps import GapAct
 from roaml.model.machine import Send
 from roaml.model.name_forms import EVENT
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -25,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 event = system.events.get(statement.event.value)
                 if event is None or event.receivers or system.is_observed(event.name):
                     continue
-                if not system.may(RECEIVES, event.name):
+                if not system.may(GapAct.RECEIVES, event.name):
                     close = close_names(event.name, awaited)
                     message = f"no machine has a transition for the event `{event.name}`{did_you_mean(close)}"
                     yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import remove
 from roaml.interfaces.registry import NotFound
-from roaml.model.gaps import SENDS
+from roaml.model.gaps import GapAct
 from roaml.model.globals import global_variables
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
@@ -32,7 +32,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     generated = _generated(context, system)
     sent = [event.name for event in system.events.values() if event.senders]
     for event, handler in unsent:
-        unread = system.may(SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
+        unread = system.may(GapAct.SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
         if not unread and event.value not in generated:
             close = close_names(event.value, sent)
             message = f"no machine sends the event `{event.value}`{did_you_mean(close)}"

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct, StructKind
-from roaml.model.gaps import PARAMETER
+from roaml.model.gaps import GapAct
 from roaml.model.system import PlainEvent
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -24,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 event = context.system.events.get(problem.owner.event)
                 if problem.owner.kind is not StructKind.EVENT or event is None or not event.senders:
                     continue
-                if not context.system.may(PARAMETER, event.name):
+                if not context.system.may(GapAct.PARAMETER, event.name):
                     yield from _check(problem, event, [name for name, _ in problem.owner.members])
 
 

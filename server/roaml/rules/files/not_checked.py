@@ -9,20 +9,19 @@ from dataclasses import dataclass
 from roaml.diagnostics import Finding, Severity
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import node_at
-from roaml.model.gaps import ANYTHING, RECEIVES, SENDS, VARIABLE, answers
+from roaml.model.gaps import Act, GapAct, InterfaceAct, answers
 from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
-from roaml.roles import SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
 from roaml.text import Span
 
-_PLUGIN = "plugin"
+_ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
 """The facts about a file that may be the plugin of a node."""
-_ANY_PLUGIN: set[Fact] = {(_PLUGIN, None)}
-_ANY_FACT: set[Fact] = {(ANYTHING, None)}
+_ANY_FACT: set[Fact] = {(GapAct.ANYTHING, None)}
 _MOST = 3
 """The maximum number of questions that a message names."""
 
@@ -43,16 +42,17 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
 
 @dataclass(frozen=True, slots=True)
 class _Want:
-    """Something that is missing in the readable part of the system. If `act` is empty, it is a variable."""
+    """Something that is missing in the readable part of the system. If there is no `act`, it is a variable."""
 
-    act: str
+    act: Act | None
     name: str
     question: str
 
     def may_be(self, facts: set[Fact]) -> bool:
-        if not self.act:
+        missing = self.act
+        if missing is None:
             return any(may_give_variable(act, about, self.name) for act, about in facts)
-        return any(answers(act, self.act) and about in (None, self.name) for act, about in facts)
+        return any(answers(act, missing) and about in (None, self.name) for act, about in facts)
 
 
 def _causes(context: MachineContext | TreeContext | SystemContext, system: System) -> Iterator[tuple[Span, set[Fact]]]:
@@ -85,33 +85,39 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
 def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Want]:
     for name in sorted({instance.plugin for instance in system.instances}):
         if system.plugin(name)[1] is None:
-            yield _Want(_PLUGIN, name, f"whether the plugin `{name}` exists")
+            yield _Want(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
-            yield _Want(
-                SymbolKind.SUBSCRIBER.value, topic.name, f"which machine subscribes to the topic `{topic.name}`"
-            )
+            question = f"which machine subscribes to the topic `{topic.name}`"
+            yield _Want(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name, question)
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
-            yield _Want("publisher message", topic.name, f"which machine publishes on the topic `{topic.name}`")
-    for what, channels in (("service", system.services), ("action", system.actions)):
+            yield _Want(
+                InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE),
+                topic.name,
+                f"which machine publishes on the topic `{topic.name}`",
+            )
+    for what, server, client, channels in (
+        ("service", SymbolKind.SERVICE_SERVER, SymbolKind.SERVICE_CLIENT, system.services),
+        ("action", SymbolKind.ACTION_SERVER, SymbolKind.ACTION_CLIENT, system.actions),
+    ):
         for channel in channels.values():
             if not channel.sources:
-                yield _Want(f"{what}-server", channel.name, f"which machine serves the {what} `{channel.name}`")
+                yield _Want(InterfaceAct(server), channel.name, f"which machine serves the {what} `{channel.name}`")
             elif not channel.users:
-                yield _Want(f"{what}-client", channel.name, f"which machine uses the {what} `{channel.name}`")
+                yield _Want(InterfaceAct(client), channel.name, f"which machine uses the {what} `{channel.name}`")
     for event in system.events.values():
         if not event.senders:
-            yield _Want(SENDS, event.name, f"which machine sends the event `{event.name}`")
+            yield _Want(GapAct.SENDS, event.name, f"which machine sends the event `{event.name}`")
         elif not event.receivers and not system.is_observed(event.name):
-            yield _Want(RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
+            yield _Want(GapAct.RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
     for variable, ports in system.blackboard.items():
         if not any(bound.port.written for bound in ports):
-            yield _Want(VARIABLE, variable, f"which node writes the blackboard variable `{variable}`")
+            yield _Want(GapAct.VARIABLE, variable, f"which node writes the blackboard variable `{variable}`")
         elif not any(bound.port.read for bound in ports):
-            yield _Want(VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
+            yield _Want(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
     known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):
-        yield _Want("", name, f"whether the variable `{name}`, which a property names, exists")
+        yield _Want(None, name, f"whether the variable `{name}`, which a property names, exists")
 
 
 def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import InterfaceAct
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -23,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         unused = [(declaration, channel) for declaration, _, channel in declared(context, kind) if not channel.users]
         unserved = [c.name for c in channels.values() if c.users and not c.sources] if unused else []
         for declaration, channel in unused:
-            if not system.may(other_kind(kind).value, channel.name):
+            if not system.may(InterfaceAct(other_kind(kind)), channel.name):
                 close = close_names(channel.name, unserved)
                 message = f"no machine uses the {what} `{channel.name}`{did_you_mean(close)}"
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

@@ -7,11 +7,14 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
+from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Declaration, Handler
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
+
+_SENDS_FEEDBACK = InterfaceAct(SymbolKind.ACTION_SERVER, ProtocolPart.FEEDBACK)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -21,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration, _, action in declared(context, SymbolKind.ACTION_CLIENT):
         if not action.sources or any(ProtocolPart.FEEDBACK in server.use.sends for server in action.sources):
             continue
-        if any(system.may("action-server feedback", action.name, server.automaton) for server in action.sources):
+        if any(system.may(_SENDS_FEEDBACK, action.name, server.automaton) for server in action.sources):
             continue
         for handler in _handlers(context, declaration):
             message = f"the server of `{action.name}` never sends feedback"

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.system import System
 from roaml.model.value_types import find_handle
@@ -21,7 +22,7 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         return
     for kind, what in ((SymbolKind.SERVICE_CLIENT, "service"), (SymbolKind.ACTION_CLIENT, "action")):
         for naming in named_here(context, kind):
-            if not naming.channel.sources and not system.may(other_kind(kind).value, naming.channel.name):
+            if not naming.channel.sources and not system.may(InterfaceAct(other_kind(kind)), naming.channel.name):
                 yield _finding(context, system, naming, what)
 
 

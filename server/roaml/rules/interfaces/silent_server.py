@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import last_in
+from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
@@ -31,7 +32,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _may_do_more(system: System, automaton: SystemAutomaton, kind: SymbolKind, channel: Channel) -> bool:
     """Whether a server may answer in a part of its machine that cannot be read."""
-    return any(system.may(f"{kind.value} {part.value}", channel.name, automaton) for part in _PARTS)
+    return any(system.may(InterfaceAct(kind, part), channel.name, automaton) for part in _PARTS)
 
 
 _PARTS = (

@@ -6,9 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.roles import SymbolKind
+from roaml.model.gaps import InterfaceAct
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import has_publisher, named_here
+
+_PUBLISHES = InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE)
 
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
@@ -19,7 +22,7 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     published = [t.name for t in system.topics.values() if t.sources] if unpublished else []
     for naming in unpublished:
         topic = naming.channel
-        if not naming.use.receives or system.may("publisher message", topic.name):
+        if not naming.use.receives or system.may(_PUBLISHES, topic.name):
             continue
         # A topic that is declared on both sides is unlikely to be misspelled.
         close = close_names(topic.name, () if topic.sources else published)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.gaps import InterfaceAct
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -23,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     ]
     unpublished = [t.name for t in system.topics.values() if t.users and not t.sources] if unheard else []
     for declaration, topic in unheard:
-        if not system.may(SymbolKind.SUBSCRIBER.value, topic.name):
+        if not system.may(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name):
             close = close_names(topic.name, unpublished)
             message = f"no machine subscribes to the topic `{topic.name}`{did_you_mean(close)}"
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())

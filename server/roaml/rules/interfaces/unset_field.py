@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Member, access_path, walk
+from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
@@ -51,7 +52,7 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
     if field not in dict(interface.optional).get(part.value, frozenset()):
         return
     for _, channel in channels_of(context, declaration):
-        unread = context.system.may(f"{other_kind(declaration.kind).value} {part.value} field", channel.name)
+        unread = context.system.may(InterfaceAct(other_kind(declaration.kind), part, True), channel.name)
         if not unread and not any(field in sent for sent in _sent(channel, part)):
             yield RULE.at(
                 node.name_span,

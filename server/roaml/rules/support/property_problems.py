@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import after, first_in, removal, remove
 from roaml.model.property_links import LinkedFile
-from roaml.model.property_problems import ProblemKind
+from roaml.model.property_problems import Problem, ProblemKind, Remedy
 from roaml.rules.rule import Rule, replacements
 
 
@@ -18,7 +19,27 @@ def problem_rule(kind: ProblemKind, severity: Severity, summary: str) -> Rule:
     def check(file: LinkedFile) -> Iterator[Finding]:
         for problem in file.problems:
             if problem.kind is kind:
-                yield holder[0].at(problem.span, problem.message, *replacements(problem.span, problem.close))
+                fixes = (*replacements(problem.span, problem.close), *_remedies(file, problem))
+                yield holder[0].at(problem.span, problem.message, *fixes)
 
     holder.append(Rule(kind.value, severity, summary, xml_properties=check))
     return holder[0]
+
+
+def _remedies(file: LinkedFile, problem: Problem) -> Iterator[Fix]:
+    element, document = problem.element, file.file.document
+    if element is None or problem.remedy is None:
+        return
+    match problem.remedy:
+        case Remedy.REMOVE_ELEMENT:
+            yield remove(document, element, preferred=False)
+        case Remedy.REMOVE_ATTRIBUTE:
+            for attribute in element.attributes:
+                if attribute.span.contains(problem.span.start):
+                    edit = removal(document.text, attribute.span)
+                    yield Fix(f"Remove `{attribute.name}`", (edit,), preferred=True)
+        case Remedy.ADD_SCOPE:
+            line = '<scope type="globally" />'
+            intervals = [child for child in element.elements if child.name != "time_interval"]
+            place = after(document, intervals[-1], line) if intervals else first_in(document, element, line)
+            yield Fix(f"Add `{line}`", (place,), preferred=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.gaps import VARIABLE
+from roaml.model.gaps import GapAct
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.blackboard import described, places, renamings
 from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
@@ -24,7 +24,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for variable, ports in board.items():
         if variable in read or not any(bound.port.written for bound in ports):
             continue
-        if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(VARIABLE, variable):
+        if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(GapAct.VARIABLE, variable):
             continue
         close = close_names(variable, unwritten)
         for bound, span, written in places(context, variable, ports):

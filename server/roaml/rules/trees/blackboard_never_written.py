@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.gaps import VARIABLE
+from roaml.model.gaps import GapAct
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.blackboard import described, places, renamings
 
@@ -17,7 +17,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     board = context.system.blackboard
     set_ = [name for name, ports in board.items() if any(bound.port.written for bound in ports)]
     for variable, ports in board.items():
-        if variable in set_ or context.system.may(VARIABLE, variable):
+        if variable in set_ or context.system.may(GapAct.VARIABLE, variable):
             continue
         close = close_names(variable, set_)
         for bound, span, written in places(context, variable, ports):

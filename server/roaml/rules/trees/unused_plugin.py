@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
-from roaml.model.gaps import NODE
+from roaml.model.gaps import GapAct
 from roaml.rules.rule import Rule, SystemContext
 
 
@@ -19,7 +19,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     for listed in context.files:
         src, name = listed.input.src, names.get(listed.path)
         if listed.input.section == "behavior_tree" and src is not None and name is not None and name not in used:
-            if system.may(NODE, name):
+            if system.may(GapAct.NODE, name):
                 continue
             yield RULE.at(src.span, f"the tree never uses the plugin `{name}`", tags=(Tag.UNNECESSARY,))
 
