@@ -49,7 +49,7 @@ from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import Pattern, PatternProperty, ScopeKind
-from roaml.scxml.names import CLOCK, CLOCK_ACTION, named, on_send, open_variable
+from roaml.scxml.names import CLOCK, CLOCK_ACTION, OBSERVER_SUFFIX, named, on_send, open_variable
 from roaml.scxml.observed import ObservedPort, ObservedProperty, PortEvent
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
 from roaml.to_jani.observed_values import observed_values
@@ -149,7 +149,7 @@ class _ObserverWriter:
         variables = (*model.variables, *self.values.declared, *self._variables())
         syncs = tuple(self._joined())
         observer = Automaton(
-            f"{self.prefix}__observer",
+            f"{self.prefix}{OBSERVER_SUFFIX}",
             (Location(_OBSERVING, origin=self.origin),),
             (_OBSERVING,),
             tuple(self.edges.values()),
