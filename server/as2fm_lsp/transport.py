@@ -19,6 +19,7 @@ from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
 from contextlib import suppress
 from typing import Any, BinaryIO
+from urllib.parse import urlsplit
 
 from lsprotocol import types
 from pygls.exceptions import (
@@ -100,6 +101,7 @@ class Protocol(LanguageServerProtocol):
             _check_cancellation(message)
         structured = self._structured(message)
         if method == types.INITIALIZE:
+            _check_folders(structured.params)
             self._is_initialized = True
         self.handle_message(structured)
 
@@ -143,6 +145,16 @@ class Protocol(LanguageServerProtocol):
                 callback(future)
 
         super()._execute_handler(msg_id, handler, done, args, kwargs)
+
+
+def _check_folders(params: types.InitializeParams) -> None:
+    """pygls fails with an internal error if it cannot parse a URI."""
+    folders = (("workspaceFolders", folder.uri) for folder in params.workspace_folders or ())
+    for name, uri in (("rootUri", params.root_uri), *folders):
+        try:
+            urlsplit(uri or "")
+        except ValueError:
+            raise JsonRpcInvalidParams(f"`{name}` of `initialize` is not a valid URI") from None
 
 
 def _check_cancellation(message: dict[str, Any]) -> None:

@@ -81,6 +81,31 @@ async def test_a_second_initialize() -> None:
     assert answers[12]["result"][0]["location"]["range"]["start"]["character"] == 8
 
 
+@pytest.mark.parametrize(
+    "folders", [{"rootUri": "file://["}, {"workspaceFolders": [{"uri": "file://[", "name": "robot"}]}]
+)
+async def test_initialize_with_an_invalid_uri(folders: dict[str, object]) -> None:
+    """It is refused; a valid `initialize` is possible afterwards."""
+    server = await start_raw()
+    server.tell("initialize", {**INITIALIZE, **folders}, 10)
+    server.tell("initialize", INITIALIZE, 11)
+    _, answers, log = await finish(server)
+    assert [code(answers, id_) for id_ in (10, 11)] == [INVALID_PARAMS, None]
+    assert log == ""
+
+
+async def test_requests_for_an_empty_document() -> None:
+    server = await start_raw()
+    server.tell("initialize", INITIALIZE, 10)
+    server.tell("textDocument/didOpen", {"textDocument": {"uri": "untitled:1", "languageId": "ascxml", "version": 1,
+        "text": ""}})  # fmt: skip
+    place = {"textDocument": {"uri": "untitled:1"}, "positions": [{"line": 0, "character": 0}]}
+    server.tell("textDocument/selectionRange", place, 11)
+    _, answers, _ = await finish(server)
+    nowhere = {"line": 0, "character": 0}
+    assert answers[11]["result"] == [{"range": {"start": nowhere, "end": nowhere}}]
+
+
 async def test_after_shutdown() -> None:
     """Requests are refused, notifications dropped; `exit` is still heard."""
     server = await start_raw()

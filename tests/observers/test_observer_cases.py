@@ -240,6 +240,31 @@ recurrence after-until 0 1  : . u #                  : vacuous
 """
 
 
+SCOPES = """
+response after              : . p q #                : unopened
+response after              : . s #                  : opened
+response before             : . p q #                : unopened      # it is judged when the scope closes
+response before             : . s #                  : opened
+precedence between          : . s #                  : unopened
+precedence between          : . s u #                : opened
+response after-until        : . u #                  : unopened
+response after-until        : . s #                  : opened
+"""
+
+
+@pytest.mark.parametrize(("property_", "trace", "expected"), _cases(SCOPES))
+def test_opened_scopes(property_: str, trace: str, expected: str) -> None:
+    letters, _ = read(trace)
+    opened = observer_of(property_of(property_)).outputs.opened
+    assert opened is not None
+    assert bool(final_state(property_of(property_), letters)[opened.name]) is (expected == "opened")
+
+
+@pytest.mark.parametrize("property_", ["response globally", "precedence until", "absence after", "existence before"])
+def test_scopes_that_say_no_more_than_exercised_have_no_output(property_: str) -> None:
+    assert observer_of(property_of(property_)).outputs.opened is None
+
+
 @pytest.mark.parametrize(("property_", "trace", "expected"), _cases(VACUOUS))
 def test_exercised_properties(property_: str, trace: str, expected: str) -> None:
     letters, _ = read(trace)

@@ -5,16 +5,19 @@ probabilities, and the same traces satisfy both."""
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 
 import pytest
 from storm import exact
-from translating import errors, loaded
+from translating import loaded
 
+from as2fm_lsp.verification.report import one_as_text, row, warning
 from roaml import api
 from roaml.jani.model import Model
 from roaml.smc.run import Options
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION
+from roaml.verification.storm import ExactError
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
     <datamodel><data id="count" type="int32" expr="0" /></datamodel>
@@ -226,11 +229,116 @@ def test_properties_are_chosen_by_name() -> None:
     assert [p.name for p in api.to_jani(source, ["answered"]).properties] == ["answered"]
 
 
-def test_a_file_with_assumptions_is_refused() -> None:
+def with_assumptions(assumed: str, guarantees: str) -> dict[str, str]:
     files = system("")
-    assumed = TWINS["existence"][0].format("assumed")
-    files["properties.xml"] = f"<properties>{PORTS}<assumes>{assumed}</assumes></properties>"
-    assert [error.code for error in errors(files)] == ["property-form"]
+    sections = f"<assumes>{assumed}</assumes><guarantees>{guarantees}</guarantees>"
+    return {**files, "properties.xml": f"<properties>{PORTS}{sections}</properties>"}
+
+
+EXISTS = '<property id="{}" pattern="existence"><event>{}</event><scope type="globally" /></property>'
+ANSWERED = """<property id="{}" pattern="response"><events><event>{}</event><event>{}</event></events>
+    <scope type="{}" /></property>"""
+ASSUMED = {
+    "existence given existence": (EXISTS.format("some", "heads"), EXISTS.format("g", "whistle")),
+    "absence given two": (
+        EXISTS.format("some", "heads") + EXISTS.format("other", "tails"),
+        '<property id="g" pattern="absence"><event>count == 3</event><scope type="globally" /></property>',
+    ),
+    "existence given a response": (
+        ANSWERED.format("answered", "tails", "heads", "globally"),
+        EXISTS.format("g", "whistle"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ASSUMED)
+def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str) -> None:
+    source = loaded(with_assumptions(*ASSUMED[name]))
+    model = api.to_jani(source)
+    assert [property_.name for property_ in model.properties] == ["g", "g__assumptions"]
+    both, assumed = exact(model, "g"), exact(model, "g__assumptions")
+    assert both.least == pytest.approx(both.greatest)
+    assert assumed.least == pytest.approx(assumed.greatest)
+    assert 0 < both.least < assumed.least < 1
+    options = Options(method="fixed", max_traces=4000, seed=2, confidence=0.999)
+    (result,) = api.verify(source, options=options)
+    assert result.answer is not None
+    assert result.answer.tally.simulated == 4000
+    assert result.answer.tally.traces / 4000 == pytest.approx(assumed.least, abs=0.03)
+    bounds = result.answer.bounds
+    assert bounds.lower <= both.least / assumed.least <= bounds.upper
+    assert bounds.half_width < 0.04
+    verifier = api.verifier(source)
+    with pytest.raises(ExactError, match="given assumptions"):
+        verifier.exact(verifier.question("g"), 100_000)
+
+
+def test_assumptions_that_no_trace_satisfies_leave_no_value() -> None:
+    source = loaded(with_assumptions(EXISTS.format("never", "count == 70"), EXISTS.format("g", "whistle")))
+    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150), expectations=["g >= 0.1"])
+    assert result.answer is not None
+    assert (result.answer.tally.traces, result.answer.tally.rejected) == (0, 150)
+    assert not result.is_met
+    why = "no trace satisfies the assumptions, so there is no value: 150 traces violate them"
+    assert one_as_text(result, str).startswith(f"g: {why}, ")
+    assert row(result)["assumptions"] == {"satisfied": 0, "violated": 150}
+    assert warning(result) == why
+
+
+def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
+    late = EXISTS.format("late", "whistle").replace(
+        "</property>", '<time_interval after="3" within="50" time_unit="s" /></property>'
+    )
+    source = loaded(with_assumptions(late, EXISTS.format("g", "heads")))
+    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150))
+    assert result.answer is not None
+    tally = result.answer.tally
+    assert tally.rejected == 0
+    assert 0 < tally.undecided < tally.traces == 150
+
+
+VACUOUS = f"""
+{ANSWERED.format("scoped", "tails", "whistle", "after").replace("<scope", '<scope event="count == 2"')}
+{ANSWERED.format("answered", "tails", "whistle", "globally")}
+{ANSWERED.format("dead", "count == 70", "whistle", "globally")}
+<property id="unopened" pattern="absence"><event>tails</event><scope type="after" event="count == 70" /></property>
+"""
+
+
+def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> None:
+    options = Options(method="fixed", max_traces=300, seed=1)
+    answered = api.verify(loaded(system(VACUOUS)), options=options, only_uniform=True)
+    results = {result.name: result for result in answered}
+    rows = {name: row(result) for name, result in results.items()}
+    assert rows["scoped"]["vacuous"]["scope_not_judged"] > 0
+    assert rows["scoped"]["vacuous"]["not_triggered"] > 0
+    assert sum(rows["scoped"]["vacuous"].values()) < 300
+    assert rows["answered"]["vacuous"]["scope_not_judged"] == 0
+    assert 0 < rows["answered"]["vacuous"]["not_triggered"] < 300
+    # Half of the ticks are neither heads nor tails.
+    assert rows["answered"]["vacuous"]["not_triggered"] / 300 == pytest.approx(0.8**6, abs=0.1)
+    # Nothing but the end of time violates an untimed response of this system.
+    assert rows["answered"]["failed_at_end_of_time"] == rows["answered"]["failed"] > 0
+    assert rows["dead"]["vacuous"] == {"scope_not_judged": 0, "not_triggered": 300}
+    assert warning(results["dead"]) == "the property is vacuous: it was not triggered in any trace"
+    assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
+    assert warning(results["unopened"]) == "the property is vacuous: its scope was not judged in any trace"
+    text = one_as_text(results["scoped"], str)
+    assert re.search(r"\n  its scope was not judged in [0-9]+ of 300 traces \(", text)
+    assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)
+    assert "failed traces fail at the end of time (max_time)" in text
+
+
+def test_what_observers_say_of_their_activity_changes_no_answer() -> None:
+    source = loaded(system(VACUOUS))
+    options = Options(method="fixed", max_traces=200)
+    plain, full = (
+        [(result.name, result.answer and result.answer.value) for result in api.verify(subject, options=options)]
+        for subject in (api.to_jani(source), source)
+    )
+    assert plain == full
+    names = {variable.name for variable in api.to_jani(source).variables}
+    assert not any(name.endswith(("__asked", "__opened")) for name in names)
 
 
 NOTES = '<ros_topic_publisher name="notes" topic="/notes" type="std_msgs/Empty" />'

@@ -12,11 +12,13 @@ from dataclasses import replace
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.mock_options import add_mock_options, has_mock_options, names_tree
 from as2fm_lsp.cli.output import takes_color
 from as2fm_lsp.cli.times import time_of
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.node import Origin
+from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
@@ -36,6 +38,7 @@ def add_model_arguments(parser: ArgumentParser) -> None:
     add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
         "MODEL.jani declares without one; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+    add_mock_options(parser)
 
 
 def settings_of(path: str) -> Settings:
@@ -60,6 +63,8 @@ def check_model_arguments(options: argparse.Namespace) -> None:
             raise UsageError("--max-time needs a system; a JANI model has no such parameter")
     elif options.constant:
         raise UsageError("--constant needs a JANI model; a system has no constants")
+    if has_mock_options(options) and not names_tree(options.main):
+        raise UsageError("mocks, entries and a tick rate are for files of behavior trees; a system has its own")
 
 
 def read_target(options: argparse.Namespace, settings: Settings) -> VerificationTarget:
@@ -67,7 +72,15 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
 
     Raises:
         api.PathError, api.ConstantError, api.ModelError, api.JaniError: as `api.target`.
+        UsageError: leaves of a tree have no mock, or mocks are not valid.
     """
+    if names_tree(options.main):
+        from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without it
+
+        try:
+            return load_subject(options, settings, counts=False).target
+        except MockError as error:
+            raise UsageError(str(error)) from None
     overrides = Overrides(options.max_time, None)
     return api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
 

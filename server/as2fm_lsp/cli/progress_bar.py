@@ -44,9 +44,8 @@ class ProgressBar:
 
     def together(self, question: Question, tally: Tally, number: int) -> None:
         """Update after a batch for one of several properties that share traces."""
-        if not tally.is_finished:
-            self._question = replace(question, name=f"{question.name} ({number} properties together)")
-            self.watch(tally)
+        self._question = replace(question, name=f"{question.name} ({number} properties together)")
+        self.watch(tally)
 
     def watch(self, tally: Tally) -> None:
         """Update after a batch."""

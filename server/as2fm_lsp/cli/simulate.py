@@ -101,7 +101,7 @@ def _saved(options: argparse.Namespace) -> SavedSession | None:
 
 def _property(options: argparse.Namespace, target: VerificationTarget) -> str | None:
     """The property that is evaluated on the run: the one until which it is to last, if any."""
-    names = {property_.name for property_ in target.model.properties}
+    names = {property_.name for property_ in target.properties}
     if options.until not in names:
         return options.property  # type: ignore[no-any-return]
     if options.property not in (None, options.until):
@@ -116,7 +116,7 @@ def _advance(options: argparse.Namespace, session: Session, target: Verification
     watched = session.save().property
     if options.until is not None and options.until != watched:
         if not session.has_event(options.until):
-            known = ", ".join(sorted(property_.name for property_ in target.model.properties)) or "none"
+            known = ", ".join(sorted(property_.name for property_ in target.properties)) or "none"
             raise UsageError(
                 f"--until {options.until}: there is neither a property nor an event of this name; properties: {known}"
             )

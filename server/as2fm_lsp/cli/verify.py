@@ -20,6 +20,7 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.mock_options import names_tree
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
     add_model_arguments,
@@ -39,12 +40,13 @@ from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, LEAST_EPSILON, METHODS, Options, Tally
+from roaml.smc.run import ADAPTIVE, FIXED, LEAST_EPSILON, METHODS, Options, Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
@@ -56,7 +58,10 @@ from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
 if TYPE_CHECKING:
+    from roaml.mocks.network import MockedTree
+    from roaml.project.settings import Settings
     from roaml.smc.story import Story
+    from roaml.verification.tree_outcome import TreeOutcome
 
 EXAMPLES = """\
 examples:
@@ -66,6 +71,7 @@ examples:
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
   as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
   as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
+  as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
   as2fm-lsp verify main.xml --exact                      exact minimum and maximum by Storm, if there are few states
 
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
@@ -79,6 +85,8 @@ stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
+MAX_TRACES_IN_ONE_PROCESS = 20_000
+"""Fewer traces of a tree take less time than the start of further processes."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -100,6 +108,8 @@ def _run(options: argparse.Namespace) -> int:
     limits = _limits(options)
     check_model_arguments(options)
     settings = settings_of(options.main)
+    if names_tree(options.main):
+        return _run_tree(options, expectations, limits, settings)
     only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
     names = options.property or None
     try:
@@ -117,10 +127,42 @@ def _run(options: argparse.Namespace) -> int:
     return _Verification(options, verifier).run()
 
 
-class _Verification:
-    """One call of the command, after all files have been read."""
+def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
+    """A tree that belongs to no system, with mocks (docs/spec/mocks.md)."""
+    from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
+    from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
-    def __init__(self, options: argparse.Namespace, verifier: Verifier) -> None:
+    if limits.method == ADAPTIVE:  # a fixed number: all measurements are made on the same traces
+        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES)
+    if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
+        options.jobs = 1
+    try:
+        with StatusLine() as status:
+            status.stage("reading and translating")
+            tree = load_subject(options, settings, counts=not options.exact)
+            status.stage("compiling")
+            names = options.property or [SUCCEEDS]
+            verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)
+            status.stage("making traces")
+            outcome = None if options.exact else measure(tree.mocked, tree.target, limits)
+    except MockError as error:
+        raise UsageError(str(error)) from None
+    except api.ModelError as error:
+        return _errors(options, error_report(error))
+    return _Verification(options, verifier, (tree.mocked, outcome)).run()
+
+
+class _Verification:
+    """One call of the command, after all files have been read. `tree` is a tree without a system, if one is verified,
+    with its measurements."""
+
+    def __init__(
+        self,
+        options: argparse.Namespace,
+        verifier: Verifier,
+        tree: tuple[MockedTree, TreeOutcome | None] | None = None,
+    ) -> None:
+        self.tree = tree
         self.options = options
         self.verifier = verifier
         self.target = verifier.target
@@ -143,7 +185,8 @@ class _Verification:
                     with Pool(workers or self.options.jobs, executor) as pool:
                         self.results.append(self._answer_alone(name, pool, bar))
                     interrupted = self.results[-1].is_interrupted
-            if not interrupted and not self.options.exact and stuck.can_be_stuck(checker):
+            looks = self.tree is None and not interrupted and not self.options.exact
+            if looks and stuck.can_be_stuck(checker):
                 asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
                 self.look = self._look(None if asks_stuck or self.faults else bar)
         self._print()
@@ -169,7 +212,9 @@ class _Verification:
         by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
 
         def watch(each: CompiledProperty, so_far: Tally) -> None:
-            bar.together(each.question, so_far, len(asked))
+            shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
+            if each is shown:
+                bar.together(each.question, so_far, len(asked))
             if self.state is not None:
                 self.state.keep(each.question.name, by_name[each.question.name], so_far)
 
@@ -263,16 +308,41 @@ class _Verification:
         if self.options.format == "json":
             entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
-            return as_json(self.results, entries, stuck=row)
+            return as_json(self.results, entries, stuck=row, tree=self._tree_row())
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
         # A story of a stuck trace ends with the waiting automata.
         is_told = STANDARD_OUTPUT in self.options.explain and any(result.answer for result in self.results)
         is_told = is_told and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
+        if self.tree is not None:
+            return f"{self._tree_text(text, is_told)}{self._assumptions()}\n"
         if self.look is not None:
             text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
         return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
+
+    def _tree_row(self) -> dict[str, Any] | None:
+        if self.tree is None:
+            return None
+        from as2fm_lsp.verification.tree_report import as_row  # noqa: PLC0415
+
+        mocked, outcome = self.tree
+        return None if outcome is None else as_row(mocked, outcome)
+
+    def _tree_text(self, text: str, is_told: bool) -> str:
+        """The results of a tree without a system: those of its properties, its measurements, and a failing trace."""
+        from as2fm_lsp.verification import tree_report  # noqa: PLC0415
+
+        assert self.tree is not None
+        mocked, outcome = self.tree
+        if outcome is not None:
+            text += tree_report.as_text(mocked, outcome, self._place)
+            succeeds = next((r for r in self.results if r.name == "succeeds" and r.traces is not None), None)
+            failing = None if succeeds is None or is_told else unwanted_trace(succeeds)
+            if succeeds is not None and succeeds.traces is not None and failing is not None:
+                story = succeeds.traces.story(failing.trace)
+                text += tree_report.story_as_text(mocked, story, self._place)
+        return f"{text}{tree_report.assumptions(mocked)}\n"
 
     def _where_shown(self, is_told: bool) -> str:
         """Where the waiting automata were shown, for the known example of a stuck trace; "" if nowhere."""
@@ -397,7 +467,9 @@ def parser() -> ArgumentParser:
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("main", metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
+    result.add_argument(
+        "main", metavar="MAIN.xml|MODEL.jani|TREE.xml", help="the system file, a JANI model, or a tree without a system"
+    )
     add = result.add_argument
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "

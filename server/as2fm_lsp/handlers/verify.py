@@ -239,7 +239,7 @@ class _VerifyCommand:
         rows: list[Json] = []
         results: list[Result] = []
         verifier: Verifier | None = None
-        for property_name in dict.fromkeys(names or [property_.name for property_ in target.model.properties]):
+        for property_name in dict.fromkeys(names or [property_.name for property_ in target.properties]):
             try:
                 await self.bar.step(property_name)
                 began = time.monotonic()
@@ -298,7 +298,7 @@ class _VerifyCommand:
                 lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
                 self.context.requests.checkpoint,
             )
-            is_free = all(property_.name != asked.question.name for property_ in target.model.properties)
+            is_free = all(property_.name != asked.question.name for property_ in target.properties)
             if known.answer is not None and is_free:
                 traces = Traces(target, checker, asked, known.answer.options)
                 seconds = time.monotonic() - began

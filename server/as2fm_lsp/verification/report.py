@@ -11,7 +11,7 @@ from typing import Any
 
 from as2fm_lsp import junit
 from as2fm_lsp.junit import Case, CaseOutcome
-from as2fm_lsp.verification import ends, scheduler_report, stuck_report
+from as2fm_lsp.verification import activity_report, ends, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
@@ -109,7 +109,7 @@ def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> lis
 def _estimate(answer: Answer) -> str:
     tally, (lower, upper) = answer.tally, answer.bounds
     if tally.traces == 0:
-        return "no result yet"
+        return activity_report.warning(answer) or "no result yet"
     what = "infinite" if math.isinf(answer.value) else _number(answer.value)
     interval = f" in [{_number(lower)}, {_number(upper)}]"
     good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
@@ -136,11 +136,7 @@ def _remarks(answer: Answer) -> list[str]:
     if cut:
         steps = f"{answer.options.max_steps:,}"
         lines.append(f"  {cut:,} undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
-    if answer.tally.undecided > cut:
-        lines.append(
-            f"  {answer.tally.undecided - cut:,} traces are open: the time ends (max_time) before a deadline of the "
-            "property; they widen the interval"
-        )
+    lines += [f"  {remark}" for remark in activity_report.remarks(answer)]
     return lines
 
 
@@ -151,12 +147,18 @@ def _number(value: float) -> str:
 
 
 def as_json(
-    results: Sequence[Result], errors: Sequence[dict[str, Any]] = (), stuck: dict[str, Any] | None = None
+    results: Sequence[Result],
+    errors: Sequence[dict[str, Any]] = (),
+    stuck: dict[str, Any] | None = None,
+    tree: dict[str, Any] | None = None,
 ) -> str:
-    """For programs; `stuck` is the result of the check for stuck systems."""
+    """For programs; `stuck` is the result of the check for stuck systems, `tree` what was measured of a tree without a
+    system."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
+    if tree is not None:
+        value["tree"] = tree
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
@@ -201,6 +203,7 @@ def warning(result: Result) -> str:
     if result.stuck is not None and not result.asks_stuck:
         parts.append(result.stuck.warning)
     if result.answer is not None:
+        parts.append(activity_report.warning(result.answer))
         parts.append(scheduler_report.warning(result.answer.question, result.choices))
     return "; ".join(filter(None, parts))
 
@@ -216,6 +219,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "failed": answer.failures,
         "undecided": tally.undecided,
         "ends": ends.as_row(tally),
+        **activity_report.row(answer),
         "steps": tally.steps,
         "complete": answer.is_complete,
         "interval": answer.interval,

@@ -108,23 +108,24 @@ def to_scxml(system: LoadedSystem) -> Network:
     return lower(program_of(system.analysis, system.path))
 
 
-def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None) -> Model:
+def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None, *, has_activity: bool = False) -> Model:
     """The system as a network of Markov decision processes. `roaml.jani.write` creates the text.
 
     Args:
         properties: the names of the properties to include; `None` for all.
+        has_activity: whether observers also say whether their property was triggered.
 
     Raises:
         PropertyError: the system has no property with one of the names.
     """
     if properties is None:
-        return translate(to_scxml(system), system.properties, system.observed)
+        return translate(to_scxml(system), system.properties, system.observed, has_activity=has_activity)
     chosen: tuple[Property | ObservedProperty, ...] = select(
         (*system.properties, *system.observed), properties, "system"
     )
     in_jani = tuple(property_ for property_ in chosen if isinstance(property_, Property))
     in_xml = tuple(property_ for property_ in chosen if isinstance(property_, ObservedProperty))
-    return translate(to_scxml(system), in_jani, in_xml)
+    return translate(to_scxml(system), in_jani, in_xml, has_activity=has_activity)
 
 
 def source_map(system: LoadedSystem, model: Model) -> SourceMap:

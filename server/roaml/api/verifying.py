@@ -77,7 +77,9 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
         return target_of(subject)
     from roaml.api.systems import to_jani  # noqa: PLC0415 - a JANI model needs no system
 
-    return target_of(to_jani(subject), subject.path, subject.files, subject.analysis.source)
+    conditional = [property_.name for property_ in subject.observed if property_.assumptions]
+    model = to_jani(subject, has_activity=True)
+    return target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:

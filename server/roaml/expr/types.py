@@ -214,3 +214,15 @@ def join(left: Type, right: Type) -> Type | None:
     if fits(right, left):
         return left
     return None
+
+
+def same_kind(left: Type, right: Type) -> bool:
+    """Whether the translation stores values of both types in the same JANI type. Bounds are not compared."""
+    match left, right:
+        case (Unknown(), _) | (_, Unknown()) | (EmptyArray(), EmptyArray() | Array()) | (Array(), EmptyArray()):
+            return True
+        case Array(), Array():
+            return same_kind(left.element, right.element)
+        case Scalar(), Scalar():
+            return left.kind == right.kind
+    return False

@@ -15,10 +15,11 @@ from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Tex
 
 
 def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
-    """The spans around an offset, the innermost first, each contained in the next; the last one is the whole text."""
+    """The spans around an offset, the innermost first, each contained in the next; the last one is the whole text, even
+    if it is empty."""
     source = analysis.source(path)
     if source is None:
-        return ()
+        return (Span(0, 0),)
     found = [Span(0, len(source.text))]
     if (file := xml_file(analysis, path)) is not None:
         around = path_at(file, offset)
@@ -28,7 +29,7 @@ def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
         found += _in_element(file.document, around[-1], offset) if around else ()
     elif path.endswith((".jani", ".json")) and (json := analysis.json(path)) is not None:
         found += spans_at(json[0], offset)
-    return tuple(_nested(found, offset))
+    return tuple(_nested(found, offset)) or (Span(0, 0),)
 
 
 def _nested(spans: list[Span], offset: int) -> list[Span]:

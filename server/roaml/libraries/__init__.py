@@ -76,6 +76,7 @@ def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
         None if running is None else running == "true",
         element.get("not-translated"),
         element.get("in-systems", ""),
+        element.get("succeeds") == "true",
     )
 
 

@@ -77,6 +77,7 @@ class Node:
         children: the minimum and maximum number of children.
         since: the first version of the library that has it, "" if all supported versions have it.
         until: the first version that no longer has it, or "".
+        succeeds: whether it always returns SUCCESS in trees that set its ports as the library's own trees do.
         running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
         not_translated: why it cannot be translated into a model of a system (may be ""); `None` if it can.
         in_systems: how it differs in trees of systems, or "".
@@ -93,6 +94,7 @@ class Node:
     running: bool | None = None
     not_translated: str | None = None
     in_systems: str = ""
+    succeeds: bool = False
 
     @cached_property
     def port_by_name(self) -> Mapping[str, Port]:

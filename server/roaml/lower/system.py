@@ -26,7 +26,7 @@ def lower(program: TranslatableSystem) -> Network:
     events = {(timer.user, timer.handle): timer.event for timer in timers if timer.event is not None}
     automata = list(_automata(program, members, events))
     if timers:
-        automata.append(clock(timers, program))
+        automata.append(clock(timers, program.parameters.max_time or 0, program.place))
     return Network(tuple(automata), program.parameters.max_array_size, program.parameters.random_values)
 
 

@@ -122,13 +122,12 @@ def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
 STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
-def clock(timers: list[Timer], program: TranslatableSystem) -> PlainAutomaton:
-    """The automaton that counts the time and makes timers fire."""
+def clock(timers: list[Timer], max_time: int, origin: Location) -> PlainAutomaton:
+    """The automaton that counts the time, up to `max_time` in ns, and makes timers fire."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
     step = math.gcd(*periods)
-    end = -(-(program.parameters.max_time or 0) // unit)
-    origin = program.place
+    end = -(-max_time // unit)
     now = name("current_time")
     ticks = [
         _tick(timer.event, equal(binary(now, Operator.REMAINDER, integer(period)), integer(0)), timer.origin)

@@ -149,10 +149,6 @@ class _Linker:
         self.problems.append(Problem(kind, span, message, tuple(close), remedy, element))
 
     def linked(self) -> LinkedFile:
-        assumed = next((written for written in self.file.properties if written.section == ASSUMES), None)
-        if assumed is not None:
-            message = "assumptions are neither verified nor translated yet; without them, the guarantees are stronger"
-            self.report(ProblemKind.FORM, assumed.element.name_span, message)
         self._check_variables()
         self._check_names()
         properties = [self._property(written) for written in self.file.properties]

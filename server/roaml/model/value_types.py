@@ -24,6 +24,7 @@ from roaml.expr.types import (
     Type,
     leaves,
     resolve_type,
+    same_kind,
     unwrap,
     wrap,
 )
@@ -274,13 +275,21 @@ def interface_part(part: ProtocolPart, declaration: Declaration | None, environm
 
 def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
     """A message with the fields of its own type and those of the types that are published (docs/spec/ros.md#topics): a
-    rule warns that they differ, but each field exists."""
+    rule warns that they differ, but each field exists. A field that both have, but with different types, has the type
+    that is published, because such a value is stored."""
     members = dict(own.members)
-    for other in published:
-        part = dict(other.parts).get("message", UNKNOWN)
-        for name, type_ in part.members if isinstance(part, Struct) else ():
-            members.setdefault(name, type_)
-    return own if len(members) == len(own.members) else replace(own, members=tuple(members.items()))
+    sent = [part for other in published if isinstance(part := dict(other.parts).get("message", UNKNOWN), Struct)]
+    for message in sent:
+        for name, type_ in message.members:
+            if name not in members or (own not in sent and not _same_leaves(members[name], type_)):
+                members[name] = type_
+    return own if members == dict(own.members) else replace(own, members=tuple(members.items()))
+
+
+def _same_leaves(left: Type, right: Type) -> bool:
+    """Whether all leaves of two fields have the same names and kinds."""
+    mine, theirs = dict(leaves(left)), dict(leaves(right))
+    return mine.keys() == theirs.keys() and all(same_kind(mine[path], theirs[path]) for path in mine)
 
 
 def unset_fields(statement: RosSend, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:

@@ -32,6 +32,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     violated = builder.flag("violated")
     satisfied = None if property_.scope.has_until else builder.flag("satisfied")
     exercised = builder.flag("exercised") if _can_be_vacuous(property_) else None
+    opened = builder.flag("opened") if _can_be_closed(property_) else None
     scope = _Scope(builder, property_.scope)
     judge = _judge(builder, property_, scope.is_open_at_first)
     is_deferred = property_.scope.is_judged_at_close
@@ -46,6 +47,8 @@ def observe_pattern(property_: PatternProperty) -> Observer:
             builder.raise_if(satisfied, conjunction(closes, negation(violated)))
         if asked is not None and exercised is not None:
             builder.raise_if(exercised, conjunction(closes, asked))
+        if opened is not None and is_deferred:
+            builder.raise_if(opened, closes)
     judge.advance()
     if closes != FALSE:
         judge.clear(closes)
@@ -64,16 +67,23 @@ def observe_pattern(property_: PatternProperty) -> Observer:
         builder.raise_if(satisfied, safe)
     if exercised is not None:
         builder.raise_if(exercised if asked is None else asked, conjunction(scope.inside, judge.asks))
+    if opened is not None and not is_deferred:
+        builder.raise_if(opened, scope.inside)
     builder.finish()
     pending, due = FALSE if is_deferred else judge.owes, FALSE if is_deferred else judge.is_due
     outputs = Outputs(
-        violated, satisfied, conjunction(scope.inside, pending), conjunction(scope.inside, due), exercised
+        violated, satisfied, conjunction(scope.inside, pending), conjunction(scope.inside, due), exercised, opened
     )
     return Observer(property_.inputs, tuple(builder.registers), tuple(builder.assignments), outputs)
 
 
 def _can_be_vacuous(property_: PatternProperty) -> bool:
     return property_.pattern.is_binary or property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.UNTIL)
+
+
+def _can_be_closed(property_: PatternProperty) -> bool:
+    """Whether a pattern with requests has a scope that may never be judged."""
+    return property_.pattern.is_binary and property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.UNTIL)
 
 
 # ----------------------------------------------------------------------- scopes

@@ -95,6 +95,7 @@ class Outputs:
         pending: an obligation is open that is violated if the trace ends here.
         due: an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
+        opened: whether the scope was judged, if `exercised` says more than that.
     """
 
     violated: Register
@@ -102,6 +103,7 @@ class Outputs:
     pending: Expression = FALSE
     due: Expression = FALSE
     exercised: Register | None = None
+    opened: Register | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 from roaml.jani.properties import Property
 from roaml.lower import TranslatableSystem
 from roaml.lower.size import size_of
@@ -10,7 +13,7 @@ from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.property_file import EVENT
-from roaml.model.property_links import LinkedProperty
+from roaml.model.property_links import LinkedFile, LinkedProperty
 from roaml.model.property_ports import LinkedVariable
 from roaml.model.size import Size
 from roaml.model.system import System
@@ -27,10 +30,17 @@ def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
 
 
 def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedProperty, ...]:
-    """The properties in XML in the files that a system lists, in their order."""
+    """The guarantees in XML in the files that a system lists, in their order, each with the assumptions of its file."""
     files = (f.path for f in analysis.listed(path) if f.wanted is FileKind.XML_PROPERTIES and f.usable)
     linked = (analysis.linked_properties(file, path) for file in files)
-    return tuple(_observed(property_) for file in linked if file is not None for property_ in file.properties)
+    return tuple(guarantee for file in linked if file is not None for guarantee in _guarantees(file))
+
+
+def _guarantees(file: LinkedFile) -> Iterator[ObservedProperty]:
+    assumptions = tuple(_observed(property_) for property_ in file.properties if property_.is_assumption)
+    for property_ in file.properties:
+        if not property_.is_assumption:
+            yield replace(_observed(property_), assumptions=assumptions)
 
 
 def _observed(property_: LinkedProperty) -> ObservedProperty:

@@ -135,26 +135,24 @@ _ON_RECEIVE = "_on_receive"
 # --------------------------------------------------------------------- variables
 
 
-def open_variable(property_: str) -> str:
-    """The variable that says whether a property is still open when the time of the model ends
-    (docs/spec/jani.md#observers)."""
-    return f"{property_}__open"
+VIOLATED, SATISFIED, PENDING, OPEN, ASKED, OPENED = "violated", "satisfied", "pending", "open", "asked", "opened"
+"""What the variables of an observer say (docs/spec/jani.md#observers)."""
 
 
-def asked_variable(property_: str) -> str:
-    """The variable that says whether what a property is about has occurred, such as the request of a response
-    (docs/spec/jani.md#observers)."""
-    return f"{property_}__asked"
+def observer_variable(prefix: str, what: str) -> str:
+    """A variable of the observer whose names begin with a prefix."""
+    return f"{prefix}__{what}"
 
 
-def opened_variable(property_: str) -> str:
-    """The variable that says whether the scope of a property has been judged (docs/spec/jani.md#observers)."""
-    return f"{property_}__opened"
+def observer_prefix(variable: str, *what: str) -> str:
+    """The prefix of a variable of an observer that says one of these things; "" if it is not one."""
+    prefix, _, ending = variable.rpartition("__")
+    return prefix if ending in what else ""
 
 
-def pending_variable(property_: str) -> str:
-    """The variable that says whether a property is violated if the trace ends (docs/spec/jani.md#observers)."""
-    return f"{property_}__pending"
+def assumptions_of(property_: str) -> str:
+    """The property that the assumptions of a property hold (docs/spec/jani.md#observers)."""
+    return f"{property_}__assumptions"
 
 
 def is_length(variable: str) -> bool:

@@ -54,6 +54,7 @@ class ObservedProperty:
     Attributes:
         conditions: what the inputs of its observer are, as expressions over the ids of the variables.
         comment: what the property requires, as a sentence.
+        assumptions: the properties that are assumed for it.
     """
 
     name: str
@@ -62,3 +63,4 @@ class ObservedProperty:
     ports: tuple[ObservedPort, ...]
     origin: Location
     comment: str = ""
+    assumptions: tuple[ObservedProperty, ...] = ()

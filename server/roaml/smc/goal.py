@@ -13,7 +13,7 @@ import math
 from array import array
 from dataclasses import dataclass, replace
 
-from roaml.jani.expressions import Conditional, Expression, Integer, Unary
+from roaml.jani.expressions import Conditional, Expression, Integer, Name, Unary
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     Accumulation,
@@ -121,23 +121,24 @@ class CompiledProperty:
 
 @dataclass(frozen=True, slots=True)
 class ObserverOutputs:
-    """Expressions over the variables of an observer; `None` where it has none.
+    """Expressions over the variables of observers; `None` where there are none.
 
     Attributes:
-        open: where this holds at the end of the model's time, `F G` is undecided.
+        open: for a variable x, where this holds at the end of the model's time, `F G x` is undecided.
         asked: whether what the property is about has occurred.
         opened: whether the scope of the property has been judged.
         can_be_late: whether the property fails if the time ends while something is still to come.
     """
 
-    open: Expression | None = None
+    open: tuple[tuple[str, Name], ...] = ()
     asked: Expression | None = None
     opened: Expression | None = None
     can_be_late: bool = False
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
-        return tuple(each for each in (self.open, self.asked, self.opened) if each is not None)
+        activity = tuple(each for each in (self.asked, self.opened) if each is not None)
+        return (*(expression for _, expression in self.open), *activity)
 
 
 NO_OUTPUTS = ObserverOutputs()
@@ -154,6 +155,11 @@ def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs 
     """
     check_form(property_)
     return _Writer(compilation, property_, outputs).asked()
+
+
+def given(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
+    """The question about `asked`, which includes the assumptions, of those traces that satisfy them."""
+    return replace(asked, question=replace(asked.question, is_conditional=True), assumptions=assumptions.goal)
 
 
 STUCK_PROPERTY = "stuck"
@@ -336,7 +342,9 @@ class _Writer:
 
     def at_end(self, lasting: Lasting) -> None:
         """`F G b` is true if b holds in the state in which a trace stays."""
-        left = FALSE if self.outputs.open is None else self.condition(self.outputs.open)
+        read = {name for name, _ in identifiers(lasting.condition)}
+        opened = next((expression for name, expression in self.outputs.open if name in read), None)
+        left = FALSE if opened is None else self.condition(opened)
         right = self.condition(lasting.condition)
         self.formula.append(len(self.left))
         self.left.append(left)

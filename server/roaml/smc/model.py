@@ -17,7 +17,7 @@ from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.explore import Registers
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, ask, ask_stuck
+from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, ask, ask_stuck, given
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
@@ -47,6 +47,7 @@ class ModelChecker:
     Args:
         marks: what it means that a trace ends in a location; see `roaml.smc.end`.
         outputs: property -> what its observer says, if it has one.
+        assumptions: property -> the property that its assumptions hold, if it has any; both are in `model`.
         asks_stuck: whether `stuck` is among the questions, as the last one.
 
     Attributes:
@@ -66,6 +67,7 @@ class ModelChecker:
         *,
         asks_stuck: bool = False,
         outputs: Mapping[str, ObserverOutputs] = MappingProxyType({}),
+        assumptions: Mapping[str, Property] = MappingProxyType({}),
     ) -> None:
         self.model = model
         self.outputs = outputs
@@ -76,13 +78,16 @@ class ModelChecker:
         sys.setrecursionlimit(max(depth, DEPTH))
         try:
             check_size(model, chosen)
-            read = [expression for each in outputs.values() for expression in each.expressions]
-            self._compilation = Compilation(model, [*(property_.expression for property_ in chosen), *read])
+            read: list[Formula] = [expression for each in outputs.values() for expression in each.expressions]
+            read += [property_.expression for property_ in (*chosen, *assumptions.values())]
+            self._compilation = Compilation(model, read)
             self.asked: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    self.asked += (ask(self._compilation, property_, outputs.get(property_.name, NO_OUTPUTS)),)
+                    asked = self._ask(property_)
+                    assumed = assumptions.get(property_.name)
+                    self.asked += (asked if assumed is None else given(asked, self._ask(assumed)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
             self.stuck: CompiledProperty = ask_stuck(self._compilation)
@@ -94,6 +99,9 @@ class ModelChecker:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
         finally:
             sys.setrecursionlimit(depth)
+
+    def _ask(self, property_: Property) -> CompiledProperty:
+        return ask(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
 
     @property
     def legend(self) -> Legend:
@@ -128,8 +136,8 @@ class ModelChecker:
 
     def _read(self, asked: CompiledProperty) -> tuple[Formula, ...]:
         """All that the probability of a question depends on."""
-        is_open = self.outputs.get(asked.property.name, NO_OUTPUTS).open
-        return (asked.property.expression, *([] if is_open is None else [is_open]))
+        outputs = self.outputs.get(asked.property.name, NO_OUTPUTS)
+        return (asked.property.expression, *(expression for _, expression in outputs.open))
 
     def _outputs(self, asked: CompiledProperty) -> Mapping[str, ObserverOutputs]:
         name = asked.property.name
@@ -204,6 +212,9 @@ class ModelChecker:
         """
         if asked.question.is_reward:
             raise FaultError("schedulers can be sampled only for probabilities", asked.property.origin)
+        if asked.question.is_conditional:
+            message = "schedulers cannot be sampled for a probability given assumptions; use --scheduler uniform"
+            raise FaultError(message, asked.property.origin)
         try:
             schedulers = candidates(len(self.automata))
             search(self.payload(asked), asked.question, options, pool, schedulers, state, watch, pulse)

@@ -25,12 +25,17 @@ DESCRIPTION = "Translated from HL-SCXML by roaml"
 
 
 def translate(
-    network: Network, properties: Iterable[Property] = (), observed_properties: Sequence[ObservedProperty] = ()
+    network: Network,
+    properties: Iterable[Property] = (),
+    observed_properties: Sequence[ObservedProperty] = (),
+    *,
+    has_activity: bool = False,
 ) -> Model:
     """The JANI model of a network: its automata, one for each event, and the given properties.
 
     Args:
         observed_properties: those for which observers are added.
+        has_activity: whether observers also say whether their property was triggered.
     """
     behaviors = [behavior_of(automaton) for automaton in network.automata]
     table = event_table(behaviors)
@@ -58,7 +63,7 @@ def translate(
         properties=tuple(expanded(property_, shapes) for property_ in properties),
     )
     owners = {automaton.name: automaton.thread_of for automaton in network.automata if automaton.thread_of}
-    return observed(model, observed_properties, shapes, network.max_array_size, owners)
+    return observed(model, observed_properties, shapes, network.max_array_size, owners, has_activity=has_activity)
 
 
 def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], network: Network) -> Automaton:

@@ -28,6 +28,7 @@ from roaml.jani.model import (
     System,
     Variable,
 )
+from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator as JaniBinary
 from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.jani.properties import (
@@ -49,7 +50,19 @@ from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import Pattern, PatternProperty, ScopeKind
-from roaml.scxml.names import CLOCK, CLOCK_ACTION, OBSERVER_SUFFIX, named, on_send, open_variable
+from roaml.scxml.names import (
+    ASKED,
+    CLOCK,
+    CLOCK_ACTION,
+    OBSERVER_SUFFIX,
+    OPEN,
+    OPENED,
+    PENDING,
+    assumptions_of,
+    named,
+    observer_variable,
+    on_send,
+)
 from roaml.scxml.observed import ObservedPort, ObservedProperty, PortEvent
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
 from roaml.to_jani.observed_values import observed_values
@@ -57,8 +70,6 @@ from roaml.to_jani.shapes import ArrayShape
 
 _OBSERVING = "observing"
 """The only location of an observer."""
-_PENDING = "pending"
-"""A variable of the observer: the property is violated if the trace ends now."""
 _OVER = "over"
 """A variable of the observer: the clock has ended."""
 
@@ -69,10 +80,13 @@ def observed(
     shapes: Mapping[str, ArrayShape],
     size: int,
     owners: Mapping[str, str],
+    *,
+    has_activity: bool = False,
 ) -> Model:
-    """The model with an observer and a property for each of the properties.
+    """The model with an observer and a property for each of the properties; two properties for one with assumptions.
 
     Args:
+        has_activity: whether observers also say whether the property was triggered.
         shapes: of the global variables.
         size: the capacity of arrays that are sent.
         owners: the automaton of the machine, for each automaton that is a thread of one.
@@ -81,9 +95,36 @@ def observed(
         return model
     model = with_end_of_time(model)
     first_index = 1 + max((assignment.index for assignment in _assignments(model)), default=-1)
+    paths: dict[str, Formula] = {}
+    for property_ in (*_assumptions(properties), *properties):
+        writer = _ObserverWriter(model, property_, shapes, size, owners, first_index, has_activity)
+        model = writer.written()
+        paths[property_.name] = writer.path()
+    return replace(model, properties=(*model.properties, *_formulas(properties, paths)))
+
+
+def _assumptions(properties: Iterable[ObservedProperty]) -> Iterable[ObservedProperty]:
+    """The assumptions of all properties, each once."""
+    return {assumed.name: assumed for property_ in properties for assumed in property_.assumptions}.values()
+
+
+def _formulas(properties: Iterable[ObservedProperty], paths: Mapping[str, Formula]) -> Iterator[Property]:
     for property_ in properties:
-        model = _ObserverWriter(model, property_, shapes, size, owners, first_index).written()
-    return model
+        assumed = [paths[assumption.name] for assumption in property_.assumptions]
+        yield _minimum(property_.name, [paths[property_.name], *assumed], property_.origin, property_.comment or None)
+        if assumed:
+            yield _minimum(assumptions_of(property_.name), assumed, property_.origin)
+
+
+def _minimum(name: str, paths: Sequence[Formula], origin: Origin, comment: str | None = None) -> Property:
+    """The minimum probability that all formulas hold."""
+    path = paths[0]
+    for another in paths[1:]:
+        path = BinaryFormula(JaniBinary.AND, path, another)
+    probability = Probability(ProbabilityOperator.PMIN, path, origin=origin)
+    states = Predicate(StatePredicate.INITIAL)
+    values = Filter(FilterFunction.VALUES, probability, states, origin=origin)
+    return Property(name, values, comment=comment, origin=origin)
 
 
 def _assignments(model: Model) -> Iterator[Assignment]:
@@ -122,7 +163,9 @@ class _ObserverWriter:
         size: int,
         owners: Mapping[str, str],
         first_index: int,
+        has_activity: bool,
     ) -> None:
+        self.has_activity = has_activity
         self.model = model
         self.property = property_
         self.owners = owners
@@ -162,11 +205,18 @@ class _ObserverWriter:
             system=System((*model.system.elements, Element(observer.name)), syncs),
             variables=variables,
             actions=(*model.actions, *(Action(action) for action in self.edges if action not in known_actions)),
-            properties=(*model.properties, self._property()),
         )
 
     def _named(self, register: str) -> str:
-        return f"{self.prefix}__{register}"
+        outputs = self.outputs
+        if outputs.exercised is not None and register == outputs.exercised.name:
+            # Without requests, all that can be missing is the scope.
+            register = ASKED if self._has_requests() else OPENED
+        return observer_variable(self.prefix, register)
+
+    def _has_requests(self) -> bool:
+        pattern = self.property.property
+        return isinstance(pattern, PatternProperty) and pattern.pattern.is_binary
 
     # ----------------------------------------------------------- variables
 
@@ -178,6 +228,8 @@ class _ObserverWriter:
         else:
             due = self.outputs.due if self.is_timed else program.FALSE
             needed = {self.outputs.violated.name} | _registers(self.outputs.pending) | _registers(due)
+        if self.has_activity:
+            needed |= {each.name for each in (self.outputs.exercised, self.outputs.opened) if each is not None}
         while True:
             read = {
                 name
@@ -197,10 +249,10 @@ class _ObserverWriter:
                 yield self._variable(self._named(register.name), type_, state[register.name])
         if self.is_pending:
             pending = program.evaluate(self.outputs.pending, state, {}, False)
-            yield self._variable(self._named(_PENDING), BOOL, pending)
+            yield self._variable(observer_variable(self.prefix, PENDING), BOOL, pending)
             if self.is_timed:
                 yield self._variable(self._named(_OVER), BOOL, False)
-                yield self._variable(open_variable(self.property.name), BOOL, False)
+                yield self._variable(observer_variable(self.prefix, OPEN), BOOL, False)
 
     def _variable(self, name: str, type_: Type, value: bool | int) -> Variable:
         return Variable(name, type_, _literal(value), origin=self.origin)
@@ -280,14 +332,13 @@ class _ObserverWriter:
             return []
         pending = self._translated(self.outputs.pending, {})
         if not self.is_timed:
-            return [self._assign(_PENDING, pending, index)]
+            return [self._assign(PENDING, pending, index)]
         due, over = self._translated(self.outputs.due, {}), jani.Name(self._named(_OVER))
         is_due = _or(_not(over), due)
         is_open = _and(over, _and(pending, _not(due)))
-        target = jani.Name(open_variable(self.property.name))
         return [
-            self._assign(_PENDING, _and(pending, is_due), index),
-            Assignment(target, is_open, index, origin=self.origin),
+            self._assign(PENDING, _and(pending, is_due), index),
+            self._assign(OPEN, is_open, index),
         ]
 
     def _assign(self, register: str, value: Expression, index: int) -> Assignment:
@@ -322,7 +373,8 @@ class _ObserverWriter:
 
     # ---------------------------------------------------------- the property
 
-    def _property(self) -> Property:
+    def path(self) -> Formula:
+        """The formula over paths that says that the property holds."""
         path: Formula
         if self.is_reachability:
             assert self.outputs.satisfied is not None
@@ -331,17 +383,10 @@ class _ObserverWriter:
             sound = _not(jani.Name(self._named(self.outputs.violated.name)))
             path = UnaryPath(UnaryPathOperator.GLOBALLY, sound)
             if self.is_pending:
-                stays = UnaryPath(UnaryPathOperator.GLOBALLY, jani.Name(self._named(_PENDING)))
+                stays = UnaryPath(UnaryPathOperator.GLOBALLY, jani.Name(observer_variable(self.prefix, PENDING)))
                 lasting = UnaryPath(UnaryPathOperator.FINALLY, stays)
                 path = BinaryFormula(JaniBinary.AND, path, UnaryFormula(JaniUnary.NOT, lasting))
-        probability = Probability(ProbabilityOperator.PMIN, path, origin=self.origin)
-        states = Predicate(StatePredicate.INITIAL)
-        return Property(
-            self.property.name,
-            Filter(FilterFunction.VALUES, probability, states, origin=self.origin),
-            comment=self.property.comment or None,
-            origin=self.origin,
-        )
+        return path
 
 
 def _is_existence(property_: ObservedProperty) -> bool:

@@ -12,7 +12,6 @@ from typing import Any
 
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
-from roaml.scxml.names import open_variable
 from roaml.smc.explore import MOST_CHOICES, Explorer, StateFaultError, TooManyChoicesError, TooManyStatesError
 from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
@@ -38,6 +37,11 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
         ExactError: there are too many states, Storm is not there, or it does not know the model's features.
         FaultError: the model did something that has no meaning.
     """
+    if asked.question.is_conditional:
+        raise ExactError(
+            "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exact to "
+            "estimate the probability under uniform choices"
+        )
     try:
         stormpy: Any = importlib.import_module("stormpy")
     except ImportError:
@@ -62,18 +66,19 @@ def exact_values(checker: ModelChecker, asked: CompiledProperty, limit: int) -> 
         raise ExactError("this can be decided only by traces; omit --exact")
     document = json.loads("".join(write(checker.model)))
     (property_,) = (row for row in document["properties"] if row["name"] == asked.question.name)
-    extremes = []
-    for operator in ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax"):
-        extremes.append(_value(stormpy, document, {**_inner(property_["expression"]), "op": operator}))
-    if checker.outputs.get(asked.property.name, NO_OUTPUTS).open is not None:
-        stays = {"op": "F", "exp": {"op": "G", "exp": open_variable(asked.property.name)}}
+    operators = ("Emin", "Emax") if asked.question.is_reward else ("Pmin", "Pmax")
+    least, greatest = (
+        _value(stormpy, document, {**_inner(property_["expression"]), "op": operator}) for operator in operators
+    )
+    for _, condition in checker.outputs.get(asked.property.name, NO_OUTPUTS).open:
+        stays = {"op": "F", "exp": {"op": "G", "exp": condition.identifier}}
         share = _value(stormpy, document, {"op": "Pmax", "exp": stays})
         if share > _SLACK:
             raise ExactError(
                 "the time ends (max_time) before a deadline of the property; the probability of such traces is up to "
                 f"{share:.6g}; leave --exact out to estimate"
             )
-    return Exact(extremes[0], extremes[1], states)
+    return Exact(least, greatest, states)
 
 
 def _value(stormpy: Any, document: dict[str, Any], expression: dict[str, Any]) -> float:

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.jani.model import Model
 from roaml.jani.node import Origin
+from roaml.jani.properties import Property
+from roaml.scxml.names import assumptions_of
 from roaml.text import SourceFile
 
 CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
@@ -32,6 +34,7 @@ class VerificationTarget:
         files: all files that were read, the named one first.
         source_of: path -> the text of the file of an origin; `None` if it is unknown.
         clock: the variables for seconds and nanoseconds, if the model has them.
+        assumptions: property -> the property that its assumptions hold, if it has any.
     """
 
     path: str
@@ -39,6 +42,13 @@ class VerificationTarget:
     model: Model
     source_of: Callable[[str], SourceFile | None]
     clock: tuple[str, str] | None
+    assumptions: Mapping[str, Property] = field(default_factory=dict)
+
+    @property
+    def properties(self) -> tuple[Property, ...]:
+        """What can be verified: the properties of the model, without those about assumptions."""
+        assumed = {property_.name for property_ in self.assumptions.values()}
+        return tuple(property_ for property_ in self.model.properties if property_.name not in assumed)
 
     def place(self, origin: Origin | None) -> LineColumn | None:
         """The position of an origin; `None` if it is unknown."""
@@ -54,9 +64,16 @@ def target_of(
     path: str = "",
     files: tuple[str, ...] = (),
     source_of: Callable[[str], SourceFile | None] = lambda _: None,
+    conditional: Iterable[str] = (),
 ) -> VerificationTarget:
-    """A model as a target, with its clock if it has one."""
+    """A model as a target, with its clock if it has one.
+
+    Args:
+        conditional: the properties with assumptions.
+    """
+    by_name = {property_.name: property_ for property_ in model.properties}
+    assumptions = {name: by_name[assumptions_of(name)] for name in conditional if name in by_name}
     names = {variable.name for variable in model.variables}
     return VerificationTarget(
-        path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None
+        path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None, assumptions
     )

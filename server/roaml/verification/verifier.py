@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
@@ -41,15 +42,27 @@ def checker_of(target: VerificationTarget, properties: Iterable[str] | None = No
         PropertyError: the model has no property with one of the names.
         FaultError: the model is of an unsupported kind; see `roaml.smc.fault`. Unsupported properties are in `refused`.
     """
-    model, ends = target.model, marks(target.model)
+    ends = marks(target.model)
     if properties is None:
-        return ModelChecker(model, model.properties, ends, outputs=observer_outputs(model))
+        return _checker(target, target.properties)
     names = list(dict.fromkeys(properties))
-    asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in model.properties)
+    asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in target.properties)
     if asks_stuck:
         names.remove(STUCK_PROPERTY)
-    chosen = select(model.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
-    return ModelChecker(model, chosen, ends, asks_stuck=asks_stuck, outputs=observer_outputs(model))
+    chosen = select(target.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
+    return _checker(target, chosen, asks_stuck=asks_stuck)
+
+
+def _checker(target: VerificationTarget, chosen: tuple[Property, ...], *, asks_stuck: bool = False) -> ModelChecker:
+    model, names = target.model, {property_.name for property_ in chosen}
+    return ModelChecker(
+        model,
+        chosen,
+        marks(model),
+        asks_stuck=asks_stuck,
+        outputs=observer_outputs(model),
+        assumptions={name: assumed for name, assumed in target.assumptions.items() if name in names},
+    )
 
 
 def verifier_of(
@@ -73,7 +86,7 @@ def verifier_of(
     """
     expectations = tuple(expectations)
     expected = [expectation.name for expectation in expectations]
-    known = [property_.name for property_ in target.model.properties]
+    known = [property_.name for property_ in target.properties]
     names = None if properties is None else [*properties, *expected]
     if names is None and STUCK_PROPERTY in expected:
         names = [*known, STUCK_PROPERTY]

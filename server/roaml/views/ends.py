@@ -12,19 +12,24 @@ from collections.abc import Mapping
 
 from roaml.jani.expressions import Expression, Name
 from roaml.jani.model import Automaton, Model
+from roaml.jani.properties import identifiers
 from roaml.scxml.names import (
+    ASKED,
     CLOCK,
+    OPEN,
+    OPENED,
+    PENDING,
     RECEIVED,
+    SATISFIED,
     TIME_IS_OVER,
     TREE_HAS_FINISHED,
     TREE_ROOT_PREFIX,
+    VIOLATED,
     WAITING,
-    asked_variable,
     named,
+    observer_prefix,
+    observer_variable,
     on_send,
-    open_variable,
-    opened_variable,
-    pending_variable,
 )
 from roaml.smc.end import End
 from roaml.smc.goal import ObserverOutputs
@@ -53,18 +58,29 @@ def _mark(automaton: Automaton, location: str) -> End:
 
 
 def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
-    """Property -> the variables of its observer that say more than its formula (docs/spec/jani.md#observers)."""
+    """Property -> the variables of its observers that say more than its formula (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
-
-    def read(variable: str) -> Expression | None:
-        return Name(variable) if variable in variables else None
-
-    return {
-        name: ObserverOutputs(
-            read(open_variable(name)),
-            read(asked_variable(name)),
-            read(opened_variable(name)),
-            can_be_late=pending_variable(name) in variables,
+    observers = {automaton.name for automaton in model.automata}
+    outputs = {}
+    for property_ in model.properties:
+        read = [name for name, _ in identifiers(property_.expression)]
+        prefixes = [observer_prefix(name, VIOLATED, SATISFIED) for name in read]
+        prefixes = [prefix for prefix in prefixes if f"{prefix}{OBSERVER_SUFFIX}" in observers]
+        if not prefixes:
+            continue
+        own = prefixes[0]  # The others are of its assumptions.
+        outputs[property_.name] = ObserverOutputs(
+            tuple(
+                (observer_variable(prefix, PENDING), Name(observer_variable(prefix, OPEN)))
+                for prefix in prefixes
+                if observer_variable(prefix, OPEN) in variables
+            ),
+            _variable(observer_variable(own, ASKED), variables),
+            _variable(observer_variable(own, OPENED), variables),
+            can_be_late=observer_variable(own, PENDING) in read or observer_variable(own, SATISFIED) in read,
         )
-        for name in (property_.name for property_ in model.properties)
-    }
+    return outputs
+
+
+def _variable(name: str, variables: set[str]) -> Expression | None:
+    return Name(name) if name in variables else None

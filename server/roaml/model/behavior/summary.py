@@ -6,7 +6,7 @@ It contains names of states and handles, but no positions, so most changes of a 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -135,7 +135,7 @@ class _Summary:
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
         answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
-        needs = self._needs(on_the_way, answers)
+        needs = _needs(_incoming(on_the_way), answers)
         for number, alternatives in needs.items():
             if configurations[number].answering(duty) is not Phase.SEVERAL:
                 yield self._promise(duty, number, True, alternatives)
@@ -144,7 +144,7 @@ class _Summary:
             taking = ProtocolEvent(asked_by, duty.handle)
             takes = [replace(edge, event=0) for edge in self.edges if edge.taken == taking]
             idle = [edge for edge in self.edges if not owing[edge.source] and not owing[edge.target]]
-            for number, alternatives in self._needs([*idle, *takes], takes).items():
+            for number, alternatives in _needs(_incoming([*idle, *takes]), takes).items():
                 yield self._promise(duty, number, False, alternatives)
 
     def _promise(self, duty: Duty, number: int, taken: bool, alternatives: tuple[int, ...]) -> Promise:
@@ -159,11 +159,15 @@ class _Summary:
     def _repeats(self) -> Iterator[tuple[ProtocolEvent, Needs]]:
         at_start = [event for event in self.behavior.at_start if event.part in REPEATED]
         twice = {e for step in self.behavior.steps for e in step.sent if step.sent.count(e) > 1}
-        for event in dict.fromkeys([*(e for edge in self.edges for e in sorted(edge.sent)), *at_start]):
-            if event.part not in REPEATED:
-                continue
-            sending = [edge for edge in self.edges if event in edge.sent]
-            needs = self._needs(self.edges, sending)
+        edges_that_send: dict[ProtocolEvent, list[_Edge]] = {}
+        for edge in self.edges:
+            for event in sorted(edge.sent):
+                if event.part in REPEATED:
+                    edges_that_send.setdefault(event, []).append(edge)
+        incoming = _incoming(self.edges)
+        for event in dict.fromkeys([*edges_that_send, *at_start]):
+            sending = edges_that_send.get(event, [])
+            needs = _needs(incoming, sending)
             after = {edge.target for edge in sending}
             if event in at_start:
                 after.update(range(self.behavior.starts))
@@ -188,31 +192,36 @@ class _Summary:
             found |= {(cause, event) for cause in causes for event in edge.sent}
         return frozenset(found)
 
-    def _needs(self, edges: Iterable[_Edge], reaching: Iterable[_Edge]) -> dict[int, tuple[int, ...]]:
-        """For each configuration from which `edges` lead to one of `reaching`, the smallest sets of events that lead
-        there."""
-        goals = set(reaching)
-        incoming: dict[int, list[_Edge]] = {}
-        found: dict[int, tuple[int, ...]] = {}
-        waiting: dict[int, None] = {}
-        for edge in edges:
-            if edge in goals:
-                found[edge.source] = _least((*found.get(edge.source, ()), edge.event))
+
+def _incoming(edges: Iterable[_Edge]) -> dict[int, list[_Edge]]:
+    """The edges that lead to each configuration from another one."""
+    incoming: dict[int, list[_Edge]] = {}
+    for edge in edges:
+        if edge.source != edge.target:
+            incoming.setdefault(edge.target, []).append(edge)
+    return incoming
+
+
+def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge]) -> dict[int, tuple[int, ...]]:
+    """For each configuration from which edges lead to one of `reaching`, the smallest sets of events that do so."""
+    goals = set(reaching)
+    needs: dict[int, tuple[int, ...]] = {}
+    waiting: dict[int, None] = {}
+    for edge in reaching:
+        needs[edge.source] = _least((*needs.get(edge.source, ()), edge.event))
+        waiting[edge.source] = None
+    while waiting:
+        target = next(iter(waiting))
+        del waiting[target]
+        for edge in incoming.get(target, ()):
+            known = needs.get(edge.source, ())
+            if known == (0,) or edge in goals:
+                continue
+            least = _least((*known, *(edge.event | mask for mask in needs[target])))
+            if least != known:
+                needs[edge.source] = least
                 waiting[edge.source] = None
-            elif edge.source != edge.target:
-                incoming.setdefault(edge.target, []).append(edge)
-        while waiting:
-            target = next(iter(waiting))
-            del waiting[target]
-            for edge in incoming.get(target, ()):
-                known = found.get(edge.source, ())
-                if known == (0,):
-                    continue
-                least = _least((*known, *(edge.event | mask for mask in found[target])))
-                if least != known:
-                    found[edge.source] = least
-                    waiting[edge.source] = None
-        return found
+    return needs
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.expr.types import Array, EmptyArray, Scalar, Struct, Type, Unknown, is_kind, leaves, unwrap
+from roaml.expr.types import EmptyArray, Struct, Type, Unknown, is_kind, leaves, same_kind, unwrap
 from roaml.model.machine import Declaration, Param, RosSend, Send
 from roaml.model.outline import SentField
 from roaml.model.system import PlainEvent
@@ -44,7 +44,7 @@ def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[F
         for other in sent.params:
             for name, mine, theirs in _differing(param.name.value, value.sent, other):
                 there = phrase(theirs)
-                hint = ROUND if value.type != value.sent and same(value.type, theirs) else ""
+                hint = ROUND if value.type != value.sent and same_kind(value.type, theirs) else ""
                 yield RULE.at(
                     value.value.span,
                     f"`{name}` is {phrase(mine)} here, but {there} in another `{event.name}`{hint}",
@@ -61,7 +61,7 @@ def _differing(name: str, type_: Type, other: SentField) -> Iterator[tuple[str, 
         return
     theirs = flattened(other.name, other.type)
     for leaf, mine in flattened(name, type_).items():
-        if leaf in theirs and not same(mine, theirs[leaf]):
+        if leaf in theirs and not same_kind(mine, theirs[leaf]):
             yield leaf, mine, theirs[leaf]
 
 
@@ -77,18 +77,6 @@ def flattened(name: str, type_: Type) -> dict[str, Type]:
     """The leaves of a parameter: the translation has one parameter for each leaf of a struct
     (docs/spec/types.md#leaves)."""
     return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
-
-
-def same(left: Type, right: Type) -> bool:
-    """Whether two senders give a parameter the same JANI type. Bounds are not compared."""
-    match left, right:
-        case (Unknown(), _) | (_, Unknown()) | (EmptyArray(), EmptyArray() | Array()) | (Array(), EmptyArray()):
-            return True
-        case Array(), Array():
-            return same(left.element, right.element)
-        case Scalar(), Scalar():
-            return left.kind == right.kind
-    return False
 
 
 # ------------------------------------------------------------------ ROS fields

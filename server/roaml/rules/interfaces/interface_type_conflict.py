@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.types import leaves, same_kind
 from roaml.interfaces.registry import NotFound
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, CLOCK_TYPE, Channel, System
@@ -13,6 +14,7 @@ from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, other_kind
+from roaml.rules.support.types import phrase
 from roaml.text import TextEdit
 
 
@@ -23,29 +25,54 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for declaration, _, channel in declared(context, kind):
             if declaration.type is None:
                 continue
-            mine = normal(declaration.type.value)
-            for type_, related in _others(context.system, kind, channel):
-                if normal(type_) != mine and _known(context, kind, declaration.type.value, type_):
-                    name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
-                    yield RULE.at(
-                        declaration.type.span,
-                        f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere",
-                        Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
-                        # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
-                        severity=Severity.WARNING if channel_kind is SymbolKind.TOPIC else Severity.ERROR,
-                        related=related,
-                    )
-                    break
+            mine = declaration.type.value
+            name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
+            others = tuple(_others(context.system, kind, channel))
+            has_other_side = not all(is_same_side for _, _, is_same_side in others)
+            for type_, related, is_same_side in others:
+                if normal(type_) == normal(mine) or not _known(context, kind, mine, type_):
+                    continue
+                clash = ""
+                if channel_kind is SymbolKind.TOPIC:
+                    # All publishers share a variable for each field. `type-mismatch` reports a subscriber that reads
+                    # a field of another type, unless a port names the topic.
+                    is_port = not isinstance(declaration.interface, Name)
+                    clash = _clash(context, mine, type_) if is_same_side or is_port else ""
+                if is_same_side and has_other_side and not (clash and kind is SymbolKind.PUBLISHER):
+                    continue
+                yield RULE.at(
+                    declaration.type.span,
+                    f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}",
+                    Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
+                    # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
+                    severity=Severity.WARNING if channel_kind is SymbolKind.TOPIC and not clash else Severity.ERROR,
+                    related=related,
+                )
+                break
 
 
-def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...]]]:
-    """The types at the other side, which take precedence; if there is none, those at the same side."""
+def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...], bool]]:
+    """The types at the other side, which take precedence, then those at the same side, each with whether it is at the
+    same side."""
     other = [endpoint for endpoint in channel.endpoints if endpoint.use.kind is other_kind(kind)]
     is_clock = kind is SymbolKind.SUBSCRIBER and channel.name == CLOCK_TOPIC and system.has_timer
     if is_clock:
-        yield CLOCK_TYPE, ()
-    for endpoint in other if other or is_clock else channel.endpoints:
-        yield endpoint.use.type, (Related(endpoint.symbol, "declared here"),)
+        yield CLOCK_TYPE, (), False
+    for endpoint in other:
+        yield endpoint.use.type, (Related(endpoint.symbol, "declared here"),), False
+    for endpoint in channel.endpoints:
+        if endpoint.use.kind is kind:
+            yield endpoint.use.type, (Related(endpoint.symbol, "declared here"),), True
+
+
+def _clash(context: MachineContext, mine: str, other: str) -> str:
+    """What is said of a field that two types of messages have with values of different kinds; "" if there is none."""
+    messages = [context.interface(INTERFACE_KINDS[SymbolKind.PUBLISHER], type_) for type_ in (mine, other)]
+    fields, theirs = ({} if isinstance(m, NotFound) else dict(leaves(m.part("message"))) for m in messages)
+    for path, type_ in fields.items():
+        if path in theirs and not same_kind(type_, theirs[path]):
+            return f"; its field `{'.'.join(path)}` is {phrase(theirs[path])} there and {phrase(type_)} here"
+    return ""
 
 
 def _known(context: MachineContext, kind: SymbolKind, *types: str) -> bool:

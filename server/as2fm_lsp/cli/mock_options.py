@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The options for trees without a system: their mocks, and what is assumed of their host."""
+
+from __future__ import annotations
+
+import argparse
+from fractions import Fraction
+from pathlib import Path
+
+from roaml.model.kinds import FileKind, kind_of
+
+MAX_RATE = 10_000
+
+
+def add_mock_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("trees without a system")
+    add = group.add_argument
+    add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
+        "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE stands for any text; may be "
+        "repeated")  # fmt: skip
+    add("--mocks", metavar="FILE", help="mocks from a file, one in each line")
+    add("--entry", action="append", default=[], metavar="NAME=VALUE", help="the blackboard entry NAME has this "
+        "value at the start; may be repeated")  # fmt: skip
+    add("--tick-rate", type=_rate, metavar="HZ", help="ticks of the tree in a second (10)")
+
+
+def has_mock_options(options: argparse.Namespace) -> bool:
+    return bool(options.mock or options.mocks or options.entry or options.tick_rate)
+
+
+def names_tree(path: str) -> bool:
+    """Whether a path names a file with behavior trees."""
+    if path.endswith(".jani"):
+        return False
+    try:
+        text = Path(path).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    return kind_of(path, text) is FileKind.TREE
+
+
+def _rate(text: str) -> Fraction:
+    try:
+        rate = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        rate = Fraction(0)
+    if not 0 < rate <= MAX_RATE:
+        raise argparse.ArgumentTypeError(f"expected a number of Hz, greater than 0 and at most {MAX_RATE}")
+    return rate

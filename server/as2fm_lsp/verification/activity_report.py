@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far traces have exercised a property, in every format: assumptions, scopes, requests, and what the end of time
+left open (docs/verification.md#vacuity)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from roaml.smc.end import End
+from roaml.smc.run import Answer, Tally
+
+NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
+
+
+def remarks(answer: Answer) -> list[str]:
+    """For readers: one line for each remark."""
+    tally = answer.tally
+    lines = []
+    if answer.question.is_conditional and tally.traces:
+        share = _share(tally.traces, tally.simulated)
+        lines.append(f"given its assumptions, which {share} satisfy; under uniform choices")
+    if tally.traces and tally.closed + tally.idle == tally.traces:
+        lines.append(f"warning: {warning(answer)}")
+    else:
+        if tally.closed:
+            lines.append(
+                f"its scope was not judged in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
+            )
+        if tally.idle:
+            lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
+    if tally.late:
+        lines.append(
+            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), where something "
+            "was still to come; a longer time may satisfy them"
+        )
+    opened = open_at_end(tally)
+    if opened:
+        lines.append(
+            f"{_share(opened, tally.traces)} are open: the time ends (max_time) before a deadline of the property; "
+            "they widen the interval"
+        )
+    return lines
+
+
+def open_at_end(tally: Tally) -> int:
+    """The traces that are undecided because the time ended before a deadline."""
+    return tally.undecided - tally.ended(End.CUT)
+
+
+def warning(answer: Answer) -> str:
+    """Why the number says nothing about the property; "" if it does."""
+    tally = answer.tally
+    if answer.question.is_conditional and tally.traces == 0 and tally.rejected:
+        return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
+    if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
+        return ""
+    if tally.idle == 0:
+        return "the property is vacuous: its scope was not judged in any trace"
+    return "the property is vacuous: it was not triggered in any trace"
+
+
+def row(answer: Answer) -> dict[str, Any]:
+    """For JSON."""
+    tally, question = answer.tally, answer.question
+    values: dict[str, Any] = {"open_at_end_of_time": open_at_end(tally)}
+    if question.is_conditional:
+        values["assumptions"] = {"satisfied": tally.traces, "violated": tally.rejected}
+    if question.can_be_vacuous:
+        values["vacuous"] = {"scope_not_judged": tally.closed, "not_triggered": tally.idle}
+    if question.can_be_late:
+        values["failed_at_end_of_time"] = tally.late
+    return values
+
+
+def _share(part: int, whole: int) -> str:
+    """`3 of 200 traces (1.5 %)`."""
+    return f"all {whole:,} traces" if part == whole else f"{part:,} of {whole:,} traces ({100 * part / whole:.3g} %)"

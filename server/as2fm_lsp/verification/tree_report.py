@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reports about trees with mocks, for users and programs."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from roaml.mocks.network import EVENT_PROBABILITY, MockedTree
+from roaml.model.expand import ROOT_NUMBER
+from roaml.scxml.names import sent_by
+from roaml.smc.statistics import Bounds
+from roaml.smc.story import Story
+from roaml.text import Location
+from roaml.verification.tree_outcome import COUNTERS, TreeOutcome
+from roaml.views.turns import Turn, turns
+
+MAX_LEAVES = 10
+MAX_LINES = 40
+"""The maximum number of lines of a story; those in between are folded."""
+
+PlaceOf = Callable[[Location], str]
+
+
+def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> str:
+    """For users, without the probability of success, which is a result like that of any property."""
+    return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of))
+
+
+def assumptions(mocked: MockedTree) -> str:
+    """What was assumed of the tree, its host and the world."""
+    options = mocked.options
+    leaves = len(mocked.leaves)
+    known = [leaf for leaf in mocked.leaves if leaf.is_known]
+    certain = f" ({len(known)} that are known to succeed)" if known else ""
+    text = (
+        f"{len(mocked.tree.nodes)} nodes, {leaves} {'leaf' if leaves == 1 else 'leaves'} with mocks{certain}; "
+        f"ticked at {float(options.rate):g} Hz, for at most {options.max_time / 1e9:g} s"
+    )
+    if mocked.assumed:
+        names = ", ".join(f"`{node.name}`" for node in mocked.assumed)
+        text += f"; at each tick, the event of {names} has the probability {EVENT_PROBABILITY:g} (no mock)"
+    return text
+
+
+def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Iterator[str]:
+    failure = outcome.failure
+    yield f"  the tree fails: {_interval(failure.value, failure.bounds)}"
+    if outcome.unfinished:
+        yield f"  not ended at the end of time: {outcome.unfinished} of {outcome.traces} traces"
+    if outcome.exceptions:
+        yield f"  ended by an exception of the library: {outcome.exceptions} of {outcome.traces} traces"
+    if outcome.time is not None:
+        yield f"  time until success: mean {_interval(outcome.time.mean, outcome.time.bounds(outcome.confidence))} s"
+        for quantile in outcome.quantiles:
+            yield f"    {quantile.share:.0%} within {_interval(quantile.value, quantile.bounds)} s"
+    for node, counter, tally in outcome.counts:
+        bounds = tally.bounds(outcome.confidence)
+        mean = _interval(tally.mean, bounds) if bounds.half_width else f"{tally.mean:g} in all traces"
+        yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
+    if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
+        yield "  no leaf can be said to matter: all traces had the same outcome; make more traces with --max-traces"
+    if outcome.influences:
+        yield "  change of the probability of success for each leaf, if that of its mock changes by 1:"
+        for influence in outcome.influences[:MAX_LEAVES]:
+            node = influence.leaf.node
+            place = place_of(node.origin)
+            yield f"    {_interval(influence.value, influence.bounds, sign='+')}  {node.name} ({place})"
+        more = len(outcome.influences) - MAX_LEAVES
+        if more > 0:
+            yield f"    … {more} more with less influence …"
+
+
+def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
+    if bounds.lower == bounds.upper:
+        return f"{value:{sign}.4g}"
+    upper = "∞" if math.isinf(bounds.upper) else f"{bounds.upper:{sign}.4g}"
+    return f"{value:{sign}.4g} in [{bounds.lower:{sign}.4g}, {upper}]"
+
+
+def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
+    """The answers of leaves that chance decided, in the order of the trace."""
+    leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
+    told = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
+    ticks = [step.number for step in story.steps if sent_by(step.action or "") == f"bt_{ROOT_NUMBER}_tick"]
+    rows = []
+    for turn in told:
+        node = leaves[turn.automaton]
+        seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
+        rows.append((f"{seconds:.1f} s", node.name, turn.status, place_of(node.origin)))
+    widths = [max((len(row[i]) for row in rows), default=0) for i in range(3)]
+    lines = [
+        f"  {row[0]:>{widths[0]}}  {row[1]:<{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]}".rstrip() for row in rows
+    ]
+    if len(lines) > MAX_LINES:
+        folded = len(lines) - MAX_LINES
+        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more answers …"]
+    head = f"the shortest trace without success (trace {story.recording.trace}):"
+    return "".join(f"{line}\n" for line in (head, *lines))
+
+
+def _is_chosen(turn: Turn) -> bool:
+    by_chance = any(len(part.edge.destinations) > 1 for part in turn.parts)
+    return by_chance and turn.status in ("SUCCESS", "FAILURE")
+
+
+def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
+    """For programs."""
+    return {
+        "nodes": len(mocked.tree.nodes),
+        "tick_rate": float(mocked.options.rate),
+        "max_time": mocked.options.max_time / 1e9,
+        "traces": outcome.traces,
+        "success": _share_row(outcome.success.value, outcome.success.bounds),
+        "failure": _share_row(outcome.failure.value, outcome.failure.bounds),
+        "unfinished": outcome.unfinished,
+        "exceptions": outcome.exceptions,
+        "time": None
+        if outcome.time is None
+        else _share_row(outcome.time.mean, outcome.time.bounds(outcome.confidence)),
+        "quantiles": [{"share": q.share, **_share_row(q.value, q.bounds)} for q in outcome.quantiles],
+        **{
+            counter: [
+                {"node": node.name, "number": node.number, **_share_row(t.mean, t.bounds(outcome.confidence))}
+                for node, known, t in outcome.counts
+                if known == counter
+            ]
+            for counter in COUNTERS
+        },
+        "influences": [
+            {
+                "node": i.leaf.node.name,
+                "number": i.leaf.node.number,
+                "probability": i.leaf.probability,
+                **_share_row(i.value, i.bounds),
+            }
+            for i in outcome.influences
+        ],
+        "assumed": [{"node": n.name, "number": n.number, "probability": EVENT_PROBABILITY} for n in mocked.assumed],
+    }
+
+
+def _share_row(value: float, bounds: Bounds) -> dict[str, Any]:
+    return {
+        "value": value,
+        "lower": bounds.lower if math.isfinite(bounds.lower) else None,
+        "upper": bounds.upper if math.isfinite(bounds.upper) else None,
+    }

@@ -1,0 +1,362 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The programs of nodes -> instructions (docs/spec/mocks.md#nodes).
+
+A program is a class in the syntax of Python; the comment at the top of `programs/behaviortree_cpp.txt` describes its
+statements. Nothing is executed by Python: the syntax tree is compiled.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import importlib.resources
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple, TypeAlias
+
+FILES = ("behaviortree_cpp.txt", "nav2.txt", "leaves.txt")
+
+_BEFORE = """
+if status == IDLE:
+    if script("_failureIf"):
+        return FAILURE
+    if script("_successIf"):
+        return SUCCESS
+    if script("_skipIf"):
+        return SKIPPED
+    if not script("_while"):
+        return SKIPPED
+else:
+    if status == RUNNING:
+        if not script("_while"):
+            halt_self()
+"""
+_AFTER = """
+if result == SUCCESS:
+    script("_onSuccess")
+if result == FAILURE:
+    script("_onFailure")
+if result == SUCCESS or result == FAILURE:
+    script("_post")
+"""
+
+
+class CodeLabel:
+    """A place in a list of instructions; `index` is set when it is placed."""
+
+    index = -1
+
+
+class SetVariable(NamedTuple):
+    """`target` is a variable; with `element`, the variable of the child with this number."""
+
+    target: str
+    element: ast.expr | None
+    value: ast.expr
+
+
+class Jump(NamedTuple):
+    label: CodeLabel
+
+
+class Test(NamedTuple):
+    """Jumps to `otherwise` unless the condition holds."""
+
+    condition: ast.expr
+    otherwise: CodeLabel
+
+
+class Choose(NamedTuple):
+    """Continues with the probability, and jumps to `otherwise` with the remaining one."""
+
+    probability: ast.expr
+    otherwise: CodeLabel
+
+
+class TickChild(NamedTuple):
+    """Ticks a child; `target` gets the code of its answer."""
+
+    child: ast.expr
+    target: str
+
+
+class Reset(NamedTuple):
+    """Halts a child if it is running, and makes it IDLE."""
+
+    child: ast.expr
+
+
+class Return(NamedTuple):
+    status: ast.expr
+
+
+class Evaluate(NamedTuple):
+    """Executes a script of the node, and jumps to `otherwise` if its value is false."""
+
+    script: str
+    otherwise: CodeLabel | None
+
+
+class Updated(NamedTuple):
+    """Jumps to `otherwise` unless the observed entry was written since this was asked last."""
+
+    otherwise: CodeLabel
+
+
+class WriteOutputs(NamedTuple):
+    """Writes the outputs of a mock."""
+
+
+class HaltSelf(NamedTuple):
+    """Halts the node itself, which is then skipped."""
+
+
+class Read(NamedTuple):
+    """Reads the ports that are bound to entries."""
+
+    ports: tuple[str, ...]
+
+
+class Write(NamedTuple):
+    """Writes the entry to which a port is bound."""
+
+    port: str
+    value: ast.expr
+
+
+class Count(NamedTuple):
+    """Increments a counter that only measurements use."""
+
+    counter: str
+
+
+class Throw(NamedTuple):
+    """The library throws an exception."""
+
+    reason: str
+
+
+Instruction: TypeAlias = (
+    SetVariable
+    | Jump
+    | Test
+    | Choose
+    | TickChild
+    | Reset
+    | Return
+    | Evaluate
+    | Updated
+    | WriteOutputs
+    | HaltSelf
+    | Read
+    | Write
+    | Count
+    | Throw
+)
+
+
+@dataclass(frozen=True)
+class NodeProgram:
+    """The program of a node.
+
+    Attributes:
+        name: of the node.
+        fixed: the initial values of the variables that are known during translation.
+        variables: the initial values of the variables of the automaton.
+        flags: the names of the variables that exist once for each child.
+        tick, halt: the instructions; `halt` is executed only if the node is running.
+        is_stateless: whether resetting the node has no effect.
+    """
+
+    name: str
+    fixed: Mapping[str, int | bool]
+    variables: Mapping[str, int | bool]
+    flags: tuple[str, ...]
+    tick: tuple[Instruction, ...]
+    halt: tuple[Instruction, ...]
+    is_stateless: bool
+
+
+@functools.cache
+def programs() -> Mapping[str, NodeProgram]:
+    """The programs of all nodes, by name."""
+    result: dict[str, NodeProgram] = {}
+    for file in FILES:
+        text = (importlib.resources.files(__package__) / "programs" / file).read_text(encoding="utf-8")
+        for statement in ast.parse(text).body:
+            assert isinstance(statement, ast.ClassDef)
+            program = _program(statement, result)
+            result[program.name] = program
+    return result
+
+
+@functools.cache
+def before(given: frozenset[str]) -> tuple[Instruction, ...]:
+    """What is executed before the tick of a node that has these conditions (docs/spec/mocks.md#conditions)."""
+    return _Assembler(given).function(ast.parse(_BEFORE).body)
+
+
+@functools.cache
+def after(given: frozenset[str]) -> tuple[Instruction, ...]:
+    """What is executed after the tick of a node that has these scripts."""
+    return _Assembler(given).function(ast.parse(_AFTER).body)
+
+
+@functools.cache
+def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
+    """What is executed after a node with these scripts was halted."""
+    return _Assembler(given).function(ast.parse('script("_onHalted")').body)
+
+
+def _program(definition: ast.ClassDef, known: Mapping[str, NodeProgram]) -> NodeProgram:
+    """The program of a class. A class with a base is a program with the same statements and other fixed values."""
+    base = known[definition.bases[0].id] if definition.bases and isinstance(definition.bases[0], ast.Name) else None
+    fixed = dict(base.fixed) if base else {}
+    variables = dict(base.variables) if base else {}
+    flags = list(base.flags) if base else []
+    bodies: dict[str, tuple[Instruction, ...]] = {"tick": base.tick, "halt": base.halt} if base else {}
+    is_stateless = base is not None and base.is_stateless
+    for statement in definition.body:
+        match statement:
+            case ast.FunctionDef(name=name, body=body):
+                bodies[name] = _Assembler().function(body)
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id="variable"), args=[value])):
+                variables[name] = _constant(value)
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id="flags"))):
+                flags.append(name)
+            case ast.Assign(targets=[ast.Name(id="stateless")]):
+                is_stateless = True
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                fixed[name] = _constant(value)
+            case ast.Pass():
+                pass
+            case _:
+                raise AssertionError(ast.dump(statement))
+    halt = bodies.get("halt", _Assembler().function(ast.parse("reset_all()").body))
+    return NodeProgram(definition.name, fixed, variables, tuple(flags), bodies["tick"], halt, is_stateless)
+
+
+def _constant(value: ast.expr) -> int | bool:
+    constant = ast.literal_eval(value)
+    assert isinstance(constant, (int, bool))
+    return constant
+
+
+@dataclass
+class _Assembler:
+    """Compiles the statements of one function. `given` are the scripts of a node; `None` for all."""
+
+    given: frozenset[str] | None = None
+    instructions: list[Instruction] = field(default_factory=list)
+    loops: list[CodeLabel] = field(default_factory=list)
+
+    def function(self, body: list[ast.stmt]) -> tuple[Instruction, ...]:
+        self.block(body)
+        return tuple(self.instructions)
+
+    def place(self, label: CodeLabel) -> None:
+        label.index = len(self.instructions)
+
+    def block(self, body: list[ast.stmt]) -> None:
+        for statement in body:
+            self.statement(statement)
+
+    def statement(self, statement: ast.stmt) -> None:
+        emit = self.instructions.append
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=target)], value=ast.Call(func=ast.Name(id="tick"), args=[child])):
+                emit(TickChild(child, target))
+            case ast.Assign(targets=[ast.Name(id=target)], value=value):
+                emit(SetVariable(target, None, value))
+            case ast.Assign(targets=[ast.Subscript(value=ast.Name(id=target), slice=element)], value=value):
+                emit(SetVariable(target, element, value))
+            case ast.AugAssign(target=ast.Name(id=target), op=operator, value=value):
+                emit(SetVariable(target, None, ast.BinOp(ast.Name(target), operator, value)))
+            case ast.If(test=test, body=body, orelse=otherwise):
+                self.choice(test, body, otherwise)
+            case ast.While(test=test, body=body):
+                self.loop(test, body)
+            case ast.Break():
+                emit(Jump(self.loops[-1]))
+            case ast.Return(value=ast.expr() as value):
+                emit(Return(value))
+            case ast.Expr(value=ast.Call(func=ast.Name(id=function), args=arguments)):
+                self.call(function, arguments)
+            case ast.Pass():
+                pass
+            case _:
+                raise AssertionError(ast.dump(statement))
+
+    def choice(self, test: ast.expr, body: list[ast.stmt], otherwise: list[ast.stmt]) -> None:
+        skip, end = CodeLabel(), CodeLabel()
+        match test:
+            case ast.UnaryOp(op=ast.Not(), operand=ast.Call() as call):
+                self.choice(call, otherwise or [ast.Pass()], body)
+                return
+            case ast.Call(func=ast.Name(id="script"), args=[ast.Constant(value=str(name))]):
+                if self.given is not None and name not in self.given:
+                    if name == "_while":
+                        self.block(body)
+                    return
+                self.instructions.append(Evaluate(name, skip))
+            case ast.Call(func=ast.Name(id="updated")):
+                self.instructions.append(Updated(skip))
+            case ast.Call(func=ast.Name(id="chance"), args=[probability]):
+                self.instructions.append(Choose(probability, skip))
+            case _:
+                self.instructions.append(Test(test, skip))
+        self.block(body)
+        if otherwise:
+            self.instructions.append(Jump(end))
+        self.place(skip)
+        self.block(otherwise)
+        self.place(end)
+
+    def loop(self, test: ast.expr, body: list[ast.stmt]) -> None:
+        again, end = CodeLabel(), CodeLabel()
+        self.place(again)
+        self.instructions.append(Test(test, end))
+        self.loops.append(end)
+        self.block(body)
+        self.loops.pop()
+        self.instructions.append(Jump(again))
+        self.place(end)
+
+    def call(self, function: str, arguments: list[ast.expr]) -> None:
+        emit = self.instructions.append
+        names = tuple(argument.value for argument in arguments if isinstance(argument, ast.Constant))
+        match function:
+            case "reset":
+                emit(Reset(arguments[0]))
+            case "reset_all" | "reset_others":
+                self.reset(arguments)
+            case "read":
+                emit(Read(tuple(str(name) for name in names)))
+            case "write":
+                emit(Write(str(names[0]), arguments[1]))
+            case "count":
+                emit(Count(str(names[0])))
+            case "script":
+                if self.given is None or names[0] in self.given:
+                    emit(Evaluate(str(names[0]), None))
+            case "outputs":
+                emit(WriteOutputs())
+            case "halt_self":
+                emit(HaltSelf())
+            case "throw":
+                emit(Throw(str(names[0])))
+            case _:
+                raise AssertionError(function)
+
+    def reset(self, arguments: list[ast.expr]) -> None:
+        """All children, or all but one, or all from one on."""
+        text = "_k = 0\nwhile _k < COUNT:\n    reset(_k)\n    _k += 1\n"
+        if arguments:
+            text = text.replace("    reset(_k)", f"    if _k != {ast.unparse(arguments[0])}:\n        reset(_k)")
+        self.block(ast.parse(text).body)
+
+
+def walk(program: NodeProgram) -> Iterator[Instruction]:
+    """All instructions of a program."""
+    yield from program.tick
+    yield from program.halt

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The entries of the blackboard that a translated tree needs, with their types (docs/spec/mocks.md#blackboard).
+
+An entry is needed if a script or a node of the libraries reads it. All others may have any C++ type and are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from roaml.forest.forest import port_type
+from roaml.forest.scripts import parsed
+from roaml.libraries import Direction
+from roaml.mocks import assembly
+from roaml.mocks.assembly import NodeProgram
+from roaml.mocks.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
+from roaml.mocks.unfolding import ExecutedNode, ExecutedTree
+from roaml.script.infer import Type, type_of
+from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
+from roaml.text import Decoded
+from roaml.xml_syntax import Attribute
+
+OBSERVING = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
+"""The nodes that ask whether an entry was written; their port is `entry`."""
+
+MAX_VALUES = 6
+"""The maximum number of values that a mock writes to an entry."""
+
+_KIND = {Type.INTEGER: EntryKind.INTEGER, Type.REAL: EntryKind.REAL, Type.TEXT: EntryKind.TEXT}
+_TYPE = {kind: type_ for type_, kind in _KIND.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Board:
+    """Attributes:
+    entries: those that are needed, by name; without those that nothing sets.
+    flags: observed entry -> for each observer the entry that states whether it was written.
+    flag_of: number of an observer -> its flag.
+    values: what mocks write to an entry.
+    """
+
+    entries: Mapping[str, BoardEntry]
+    flags: Mapping[str, tuple[BoardEntry, ...]]
+    flag_of: Mapping[int, BoardEntry]
+    values: Mapping[str, tuple[int | float | str, ...]]
+
+
+def node_scripts(node: ExecutedNode) -> Iterator[tuple[str, Script, bool]]:
+    """The scripts of a node: attribute, script, and whether its value is a condition."""
+    uses = {"code": True, "if": True} if node.type in ("Script", "ScriptCondition", "Precondition") else {}
+    for attribute in node.node.scripts:
+        if attribute.has_value:
+            yield attribute.name, parsed(_text(attribute))[0], attribute.name in _CONDITIONS
+    for port in uses:
+        attribute_of_port = node.node.element.get(port)
+        if attribute_of_port is not None and attribute_of_port.has_value:
+            yield port, parsed(_text(attribute_of_port))[0], node.type != "Script"
+
+
+def _text(attribute: Attribute) -> Decoded:
+    return Decoded(attribute.value, attribute.value_span.start)
+
+
+_CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
+
+
+def build_board(tree: ExecutedTree, given: Mapping[str, str], used: Mapping[int, NodeProgram | None]) -> Board:
+    """
+    Args:
+        given: entry of the root blackboard -> the text that the host sets.
+        used: number of a node -> its program; `None` for mocks.
+    """
+    return _Reader(tree, given, used).board()
+
+
+@dataclass
+class _Reader:
+    tree: ExecutedTree
+    given: Mapping[str, str]
+    used: Mapping[int, NodeProgram | None]
+    kinds: dict[str, EntryKind] = field(default_factory=dict)
+    readers: set[str] = field(default_factory=set)
+    writers: set[str] = field(default_factory=set)
+    texts: dict[str, list[str]] = field(default_factory=dict)
+    mentioned: dict[str, list[int | float | str]] = field(default_factory=dict)
+    observed: dict[int, str] = field(default_factory=dict)
+    copies: list[tuple[str, str]] = field(default_factory=list)
+
+    def board(self) -> Board:
+        for entry, text in (*self.tree.initial.items(), *self.given.items()):
+            self.texts.setdefault(entry, []).append(text)
+        for node in self.tree.nodes:
+            self.ports(node)
+        for _ in range(len(self.tree.nodes) + 2):  # until nothing changes
+            before = dict(self.kinds), len(self.readers)
+            for node in self.tree.nodes:
+                for _, script, _ in node_scripts(node):
+                    self.script(node, script)
+            self.copied()
+            if before == (self.kinds, len(self.readers)):
+                break
+        self.from_texts()
+        return self.result()
+
+    def add(self, entry: str, kind: EntryKind | None) -> None:
+        """A use of an entry with values of a kind."""
+        if kind is None:
+            return
+        known = self.kinds.get(entry)
+        self.kinds[entry] = EntryKind.REAL if {known, kind} == {EntryKind.INTEGER, EntryKind.REAL} else known or kind
+
+    def ports(self, node: ExecutedNode) -> None:
+        program = self.used[node.number]
+        read, written = (set(), set()) if program is None else _ports_of(program)
+        for port, entry, text, _ in node.ports():
+            declared = node.known.port(port) if node.known else None
+            if node.type in OBSERVING and port == "entry":
+                self.observed[node.number] = entry or node.frame.entry(text.strip())
+                continue
+            if node.type == "SetBlackboard" and port == "output_key":
+                if entry is None:
+                    self.writers.add(node.frame.entry(text.strip()))
+                continue
+            if node.type == "SetBlackboard" and port == "value":
+                self.set_value(node, entry, text)
+                continue
+            if entry is None:
+                continue
+            if port in read:
+                self.readers.add(entry)
+            if node.type == "SubTree":
+                continue
+            if port in written or declared is None or declared.direction is not Direction.IN:
+                self.writers.add(entry)
+            self.add(entry, kind_of_cpp(port_type(declared)) if node.type[:6] != "Switch" else None)
+        if node.type.startswith("Switch"):
+            self.switch(node)
+
+    def set_value(self, node: ExecutedNode, entry: str | None, text: str) -> None:
+        key = next((t.strip() for port, bound, t, _ in node.ports() if port == "output_key" and bound is None), None)
+        if key is None:
+            return
+        target = node.frame.entry(key)
+        if entry is None:
+            self.texts.setdefault(target, []).append(text)
+        else:
+            self.copies.append((target, entry))
+
+    def switch(self, node: ExecutedNode) -> None:
+        bound = next((entry for port, entry, _, _ in node.ports() if port == "variable" and entry is not None), None)
+        cases = [text for port, entry, text, _ in node.ports() if port.startswith("case_") and entry is None]
+        if bound is None:
+            return
+        kinds = {read_literal(text)[0] for text in cases}
+        kind = (
+            EntryKind.TEXT
+            if EntryKind.TEXT in kinds
+            else EntryKind.REAL
+            if EntryKind.REAL in kinds
+            else EntryKind.INTEGER
+        )
+        if bound not in self.kinds:
+            self.texts.setdefault(bound, [])
+            self.add(bound, kind)
+        values = [text if kind is EntryKind.TEXT else read_literal(text)[1] for text in cases]
+        self.mentioned.setdefault(bound, []).extend(values)
+
+    def copied(self) -> None:
+        for target, source in self.copies:
+            if target in self.readers:
+                self.readers.add(source)
+            for one, other in ((target, source), (source, target)):
+                if other in self.kinds:
+                    self.add(one, self.kinds[other])
+
+    def script(self, node: ExecutedNode, script: Script) -> None:
+        def entry(name: str) -> Type:
+            kind = self.kinds.get(node.frame.entry(name))
+            return Type.UNKNOWN if kind is None else _TYPE[kind]
+
+        targets = set()
+        for expr in walk(script):
+            match expr:
+                case Assignment(target=target, value=value, operator=operator):
+                    full = node.frame.entry(target.name)
+                    self.writers.add(full)
+                    self.readers.add(full)  # a value that is computed has to be stored
+                    if operator in (":=", "="):
+                        targets.add(id(target))
+                        self.add(full, _KIND.get(type_of(value, entry)))
+                case Comparison(operands=operands):
+                    self.compared(node, operands, entry)
+        for expr in walk(script):
+            if isinstance(expr, Name) and id(expr) not in targets:
+                self.readers.add(node.frame.entry(expr.name))
+
+    def compared(self, node: ExecutedNode, operands: tuple[object, ...], entry: object) -> None:
+        """A comparison of an entry with a constant shows the type of the entry."""
+        names = [operand for operand in operands if isinstance(operand, Name)]
+        constants = [operand.value for operand in operands if isinstance(operand, (Number, String))]
+        for operand in names:
+            full = node.frame.entry(operand.name)
+            for constant in constants:
+                kind = EntryKind.TEXT if isinstance(constant, str) else None
+                kind = kind or (EntryKind.INTEGER if isinstance(constant, int) else EntryKind.REAL)
+                if full not in self.kinds or kind is not EntryKind.TEXT:
+                    self.add(full, kind)
+                if constant not in self.mentioned.setdefault(full, []):
+                    self.mentioned[full].append(constant)
+
+    def from_texts(self) -> None:
+        """Types of entries that get texts only: numbers if all texts are numbers."""
+        for entry, texts in self.texts.items():
+            for text in texts:
+                kind = read_literal(text)[0]
+                known = self.kinds.get(entry)
+                widens = kind is EntryKind.REAL and known is EntryKind.INTEGER
+                if known is None or widens or (kind is EntryKind.TEXT and not self.mentioned.get(entry)):
+                    self.kinds[entry] = kind
+
+    def result(self) -> Board:
+        entries: dict[str, BoardEntry] = {}
+        for name in sorted(self.readers):
+            initial = self.given.get(name, self.tree.initial.get(name))
+            if name not in self.writers and initial is None:
+                continue
+            kind = self.kinds.get(name, EntryKind.INTEGER)
+            literal = None if initial is None else read_literal(initial)[1] if kind is not EntryKind.TEXT else initial
+            entries[name] = BoardEntry(name, kind, literal)
+        flags: dict[str, list[BoardEntry]] = {}
+        flag_of: dict[int, BoardEntry] = {}
+        for number, name in self.observed.items():
+            if name in self.writers or name in self.given or name in self.tree.initial:
+                is_set = name in self.given or name in self.tree.initial
+                flag_of[number] = BoardEntry(f"{name}__updated_{number}", EntryKind.INTEGER, int(is_set))
+                flags.setdefault(name, []).append(flag_of[number])
+        values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
+        return Board(entries, {name: tuple(known) for name, known in flags.items()}, flag_of, values)
+
+    def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
+        """What a mock writes to an entry: the values with which the tree compares it, and one other."""
+        other: list[int | float | str] = [""] if kind is EntryKind.TEXT else [0, 1]
+        mentioned = self.mentioned.get(name, [])
+        fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
+        return tuple(dict.fromkeys((*fitting, *other)))[:MAX_VALUES]
+
+
+def _ports_of(program: NodeProgram) -> tuple[set[str], set[str]]:
+    """The ports that a program reads, and those that it writes."""
+    read: set[str] = set()
+    written: set[str] = set()
+    for instruction in assembly.walk(program):
+        if isinstance(instruction, assembly.Read):
+            read.update(instruction.ports)
+        elif isinstance(instruction, assembly.Write):
+            written.add(instruction.port)
+    return read, written

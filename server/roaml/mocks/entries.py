@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Entries of the blackboard in a translated tree: numbers and texts (docs/spec/mocks.md#blackboard)."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.expr.operators import UnaryOperator
+from roaml.expr.tree import Expr, Number, String, Unary
+from roaml.lower.program import NOWHERE
+
+
+class EntryKind(enum.Enum):
+    INTEGER = "an integer"
+    REAL = "a real number"
+    TEXT = "a text"
+
+
+@dataclass(frozen=True, slots=True)
+class BoardEntry:
+    """An entry that scripts or nodes of the libraries read.
+
+    Attributes:
+        variable: its name in the whole tree.
+        initial: its value before anything writes it; `None` if it does not exist then.
+    """
+
+    variable: str
+    kind: EntryKind
+    initial: int | float | str | None = None
+
+    @property
+    def local(self) -> str:
+        """The variable of an automaton that holds the value that was read last."""
+        return f"entry__{self.variable}"
+
+    @property
+    def zero(self) -> Expr:
+        """A value of its type."""
+        return constant(self.kind, "" if self.kind is EntryKind.TEXT else 0)
+
+    @property
+    def start(self) -> Expr:
+        return self.zero if self.initial is None else constant(self.kind, self.initial)
+
+
+def constant(kind: EntryKind, value: int | float | str) -> Expr:
+    """A value as an expression of a type."""
+    if kind is EntryKind.TEXT:
+        return String(NOWHERE, str(value))
+    number = float(value) if kind is EntryKind.REAL else int(value)
+    literal = Number(NOWHERE, abs(number), kind is EntryKind.REAL)
+    return literal if number >= 0 else Unary(NOWHERE, UnaryOperator.NEGATE, literal)
+
+
+def kind_of_cpp(type_: str) -> EntryKind | None:
+    """The kind of values of a C++ type by its normal name; `None` if it is none or not known."""
+    if type_ in ("double", "float"):
+        return EntryKind.REAL
+    if type_ == "string":
+        return EntryKind.TEXT
+    if type_ in ("bool", "int", "unsigned") or type_.removeprefix("u").startswith("int"):
+        return EntryKind.INTEGER
+    return None
+
+
+def read_literal(text: str) -> tuple[EntryKind, int | float | str]:
+    """The value of a text that is written where an entry may be, with its kind."""
+    stripped = text.strip()
+    if stripped in ("true", "false", "True", "False", "TRUE", "FALSE"):
+        return EntryKind.INTEGER, int(stripped.lower() == "true")
+    for kind, read in ((EntryKind.INTEGER, int), (EntryKind.REAL, float)):
+        try:
+            return kind, read(stripped)
+        except ValueError:
+            continue
+    return EntryKind.TEXT, text

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mocks of leaves, as they are written on the command line: `FollowPath: 0.9 in 2 s` (docs/spec/mocks.md#leaves)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from fractions import Fraction
+
+_MOCK = re.compile(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
+_DURATION = re.compile(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
+_MILLISECONDS = {"ms": 1, "s": 1000, "min": 60_000}
+ALL = "*"
+
+
+class MockError(ValueError):
+    """A mock is not valid; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mock:
+    """Attributes:
+    pattern: the name of a node or of its type; `*` and `?` stand for any characters.
+    probability: of SUCCESS; for nodes that ask about the world, of the event at a tick.
+    duration: for which an action is RUNNING, in ms.
+    """
+
+    pattern: str
+    probability: float
+    duration: Fraction = Fraction(0)
+
+
+def read_mock(text: str) -> Mock:
+    """The mock in a text such as `FollowPath: 0.9 in 2 s`.
+
+    Raises:
+        MockError: it is not valid.
+    """
+    match = _MOCK.match(text.strip())
+    if match is None:
+        raise MockError(f"`{text.strip()}` is not a mock; write one as `NODE: 0.9 in 2 s`")
+    try:
+        probability = float(match["probability"])
+    except ValueError:
+        probability = -1.0
+    if not 0 <= probability <= 1:
+        raise MockError(f"`{match['probability']}` in `{text.strip()}` is not a probability between 0 and 1")
+    if match["duration"] is None:
+        return Mock(match["name"], probability)
+    duration = _DURATION.match(match["duration"].strip())
+    if duration is None:
+        raise MockError(
+            f"`{match['duration']}` in `{text.strip()}` is not a duration such as `2 s`, `250 ms` or `1 min`"
+        )
+    return Mock(match["name"], probability, Fraction(duration[1]) * _MILLISECONDS[duration[2]])
+
+
+def read_mocks(text: str) -> tuple[Mock, ...]:
+    """The mocks in the text of a file: one in each line; `#` begins a comment.
+
+    Raises:
+        MockError: one is not valid.
+    """
+    lines = (line.partition("#")[0].strip() for line in text.splitlines())
+    return tuple(read_mock(line) for line in lines if line)
+
+
+def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
+    """The mock for a node: that of its name, else of its type, else of the first pattern that fits, `*` last.
+
+    Args:
+        succeeds: whether the node is known to succeed always: then `*` does not concern it.
+    """
+    for exact in (name, type_):
+        for mock in mocks:
+            if mock.pattern == exact:
+                return mock
+    patterns = [mock for mock in mocks if mock.pattern != ALL]
+    for mock in patterns:
+        if any(fnmatchcase(word, mock.pattern) for word in (name, type_)):
+            return mock
+    if succeeds:
+        return Mock(type_, 1.0)
+    return next((mock for mock in mocks if mock.pattern == ALL), None)
+
+
+def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
+    """The mocks that are for none of the nodes, which are pairs of name and type; `*` is never among them."""
+    used = {id(mock_for(mocks, name, type_)) for name, type_ in nodes}
+    return tuple(mock for mock in mocks if id(mock) not in used and mock.pattern != ALL)

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scripts of BehaviorTree.CPP -> assignments and conditions (docs/spec/mocks.md#scripts).
+
+All entries that a script reads are read at once before it; all that it assigns are written after it. Nothing else is
+executed in between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NoReturn
+
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Boolean as BooleanExpr
+from roaml.expr.tree import Call, Expr, Member
+from roaml.expr.tree import Conditional as ConditionalExpr
+from roaml.expr.tree import Unary as UnaryExpr
+from roaml.lower.build import binary, both, equal, integer, name
+from roaml.lower.program import NOWHERE
+from roaml.mocks.entries import BoardEntry, EntryKind, constant, read_literal
+from roaml.script import tree as syntax
+from roaml.text import Span
+
+
+class ScriptRefusal(Exception):  # noqa: N818 - a reason, not a mistake
+    """Why a script cannot be translated, and where."""
+
+    def __init__(self, span: Span, reason: str) -> None:
+        super().__init__(reason)
+        self.span = span
+        self.reason = reason
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CompiledScript:
+    """Attributes:
+    reads, writes: entries.
+    assignments: variables of the automaton with their new values, in order.
+    conditions: what must hold before; otherwise the library throws an exception.
+    truth: whether the value of the script is true; `None` if it is a text.
+    """
+
+    reads: tuple[BoardEntry, ...]
+    assignments: tuple[tuple[str, Expr], ...]
+    writes: tuple[BoardEntry, ...]
+    conditions: tuple[Expr, ...]
+    truth: Expr | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """An expression; `kind` is `None` for a condition."""
+
+    expr: Expr
+    kind: EntryKind | None
+
+
+def compiled(parsed: syntax.Script, entry: Callable[[str], BoardEntry | None], *, is_condition: bool) -> CompiledScript:
+    """A script as assignments.
+
+    Args:
+        entry: name -> the entry; `None` if nothing sets it.
+        is_condition: whether its value is used.
+
+    Raises:
+        ScriptRefusal: the script cannot be translated.
+    """
+    return _Compiler(entry).script(parsed, is_condition=is_condition)
+
+
+@dataclass
+class _Compiler:
+    entry: Callable[[str], BoardEntry | None]
+    reads: dict[str, BoardEntry] = field(default_factory=dict)
+    writes: dict[str, BoardEntry] = field(default_factory=dict)
+    assignments: list[tuple[str, Expr]] = field(default_factory=list)
+    conditions: list[Expr] = field(default_factory=list)
+
+    def script(self, parsed: syntax.Script, *, is_condition: bool) -> CompiledScript:
+        value: _Value | None = None
+        for statement in parsed.statements:
+            value = self.value(statement)
+        truth: Expr | None = None
+        if is_condition and value is not None:
+            truth = self.truth(value, parsed.statements[-1].span)
+        return CompiledScript(
+            tuple(self.reads.values()),
+            tuple(self.assignments),
+            tuple(self.writes.values()),
+            tuple(self.conditions),
+            truth,
+        )
+
+    def refuse(self, expr: syntax.Expr, reason: str) -> NoReturn:
+        raise ScriptRefusal(expr.span, reason)
+
+    def find(self, expr: syntax.Name) -> BoardEntry:
+        entry = self.entry(expr.name)
+        if entry is None:
+            self.refuse(expr, f"nothing sets the entry `{expr.name}`; give it a value with --entry {expr.name}=VALUE")
+        return entry
+
+    def value(self, expr: syntax.Expr) -> _Value:
+        match expr:
+            case syntax.Number(value=number):
+                kind = EntryKind.INTEGER if isinstance(number, int) else EntryKind.REAL
+                return _Value(constant(kind, number), kind)
+            case syntax.Boolean(value=truth):
+                return _Value(BooleanExpr(NOWHERE, truth), None)
+            case syntax.String(value=text):
+                return _Value(constant(EntryKind.TEXT, text), EntryKind.TEXT)
+            case syntax.Name():
+                entry = self.find(expr)
+                if entry.variable not in self.writes:
+                    self.reads[entry.variable] = entry
+                return _Value(name(entry.local), entry.kind)
+            case syntax.Unary():
+                return self.unary(expr)
+            case syntax.Binary():
+                return self.binary(expr)
+            case syntax.Comparison():
+                return self.comparison(expr)
+            case syntax.Conditional():
+                return self.conditional(expr)
+            case syntax.Assignment():
+                return self.assignment(expr)
+            case syntax.ErrorExpr():
+                raise ScriptRefusal(expr.span, "the script is not valid")
+
+    def unary(self, expr: syntax.Unary) -> _Value:
+        operand = self.value(expr.operand)
+        match expr.operator:
+            case "!":
+                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NOT, self.truth(operand, expr.operand.span)), None)
+            case "-":
+                number = self.number(operand, expr.operand)
+                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NEGATE, number.expr), number.kind)
+        raise ScriptRefusal(expr.span, f"`{expr.operator}` works on bits, which a model does not have")
+
+    def binary(self, expr: syntax.Binary) -> _Value:
+        left, right = self.value(expr.left), self.value(expr.right)
+        match expr.operator:
+            case "&&" | "||" as operator:
+                symbol = Operator.AND if operator == "&&" else Operator.OR
+                sides = self.truth(left, expr.left.span), self.truth(right, expr.right.span)
+                return _Value(binary(sides[0], symbol, sides[1]), None)
+            case "&" | "|" | "^" as operator:
+                self.refuse(expr, f"`{operator}` works on bits, which a model does not have")
+            case "..":
+                self.refuse(expr, "texts cannot be joined in a model")
+        if EntryKind.TEXT in (left.kind, right.kind):
+            self.refuse(expr, "texts cannot be joined in a model")
+        first, second = self.number(left, expr.left), self.number(right, expr.right)
+        symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[
+            expr.operator
+        ]
+        kind = (
+            EntryKind.REAL if expr.operator == "/" or EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
+        )
+        return _Value(binary(first.expr, symbol, second.expr), kind)
+
+    def comparison(self, expr: syntax.Comparison) -> _Value:
+        values = [self.value(operand) for operand in expr.operands]
+        result: Expr | None = None
+        for position, operator in enumerate(expr.operators):
+            left, right = self.comparable(expr, values[position], values[position + 1])
+            if left.kind is EntryKind.TEXT and operator not in ("==", "!="):
+                self.refuse(expr, f"texts cannot be compared by `{operator}` in a model")
+            symbol = next(known for known in Operator if known.symbol == operator)
+            result = both(result, binary(left.expr, symbol, right.expr))
+        assert result is not None
+        return _Value(result, None)
+
+    def comparable(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+        if left.kind is EntryKind.TEXT and right.kind is EntryKind.TEXT:
+            return left, right
+        if EntryKind.TEXT in (left.kind, right.kind):
+            return self.with_text(expr, left, right)
+        return self.number(left, expr), self.number(right, expr)
+
+    def with_text(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+        """A text that is compared with a number is read as a number."""
+        sides = []
+        for side in (left, right):
+            text = getattr(side.expr, "value", None)
+            if side.kind is EntryKind.TEXT:
+                kind, literal = read_literal(text) if isinstance(text, str) else (EntryKind.TEXT, "")
+                if kind is EntryKind.TEXT:
+                    self.refuse(expr, "a text is compared with a number")
+                sides.append(_Value(constant(kind, literal), kind))
+            else:
+                sides.append(self.number(side, expr))
+        return sides[0], sides[1]
+
+    def conditional(self, expr: syntax.Conditional) -> _Value:
+        test = self.value(expr.test)
+        before = len(self.assignments)
+        yes, no = self.value(expr.yes), self.value(expr.no)
+        if len(self.assignments) > before:
+            self.refuse(expr, "an assignment inside `? :` cannot be translated; use a condition of the node instead")
+        condition = (
+            UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(test.expr, constant(EntryKind.TEXT, "")))
+            if test.kind is EntryKind.TEXT
+            else self.truth(test, expr.test.span)
+        )
+        if EntryKind.TEXT in (yes.kind, no.kind):
+            if yes.kind is not no.kind:
+                self.refuse(expr, "the value is a text or a number")
+            return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), EntryKind.TEXT)
+        first, second = self.number(yes, expr.yes), self.number(no, expr.no)
+        kind = EntryKind.REAL if EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
+        return _Value(ConditionalExpr(NOWHERE, condition, first.expr, second.expr), kind)
+
+    def assignment(self, expr: syntax.Assignment) -> _Value:
+        value = self.value(expr.value)
+        entry = self.find(expr.target)
+        current = _Value(name(entry.local), entry.kind)
+        if expr.operator not in (":=", "="):
+            if entry.variable not in self.writes:
+                self.reads[entry.variable] = entry
+            operation = syntax.Binary(expr.span, expr.operator[0], expr.operator_span, expr.target, expr.value)
+            value = self.binary(operation)
+        converted = self.converted(expr, value, entry)
+        self.assignments.append((entry.local, converted))
+        self.writes[entry.variable] = entry
+        return current
+
+    def converted(self, expr: syntax.Assignment, value: _Value, entry: BoardEntry) -> Expr:
+        """A value as one of the type of an entry, which keeps its type."""
+        if entry.kind is EntryKind.TEXT or value.kind is EntryKind.TEXT:
+            if entry.kind is value.kind:
+                return value.expr
+            text = getattr(value.expr, "value", None)
+            if value.kind is EntryKind.TEXT and isinstance(text, str) and read_literal(text)[0] is not EntryKind.TEXT:
+                return constant(entry.kind, read_literal(text)[1])
+            self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}")
+        number = self.number(value, expr.value)
+        if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
+            floor = Call(NOWHERE, Member(NOWHERE, name("Math"), "floor", NOWHERE), (number.expr,))
+            if self.assignments:
+                self.refuse(expr, f"`{expr.target.name}` is an integer and gets a real number after another assignment")
+            self.conditions.append(equal(floor, number.expr))
+            return floor
+        return number.expr
+
+    def number(self, value: _Value, expr: syntax.Expr) -> _Value:
+        if value.kind is None:
+            as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
+            return _Value(as_number, EntryKind.INTEGER)
+        if value.kind is EntryKind.TEXT:
+            self.refuse(expr, "a number is needed here, and this is a text")
+        return value
+
+    def truth(self, value: _Value, span: Span) -> Expr:
+        if value.kind is None:
+            return value.expr
+        if value.kind is EntryKind.TEXT:
+            raise ScriptRefusal(span, "a text is neither true nor false")
+        return UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(value.expr, integer(0)))

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executed tree of a forest: every node once for each use, with the entries to which its names refer
+(docs/spec/mocks.md#blackboard)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from roaml.forest.entries import entry_of, is_autoremapped
+from roaml.forest.forest import Forest, ports_of
+from roaml.libraries import Node
+from roaml.mocks.refusal import TreeRefusal
+from roaml.model.expand import MAX_NODES, ROOT_NUMBER
+from roaml.model.tree import Tree, TreeNode
+from roaml.text import Location, Span
+
+MAX_DEPTH = 200
+"""The maximum nesting depth of nodes and subtrees."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreeFrame:
+    """One use of a tree: the meaning of its names.
+
+    Attributes:
+        prefix: of the names of its own entries.
+        remapped: name -> entry outside.
+        trees: the trees around it and its own.
+    """
+
+    prefix: str
+    remapped: Mapping[str, str]
+    autoremap: bool
+    outer: TreeFrame | None
+    trees: frozenset[str]
+
+    def entry(self, name: str) -> str:
+        """The full name of the entry to which a name refers."""
+        if name.startswith("@"):
+            return _identifier(name[1:])
+        frame = self
+        while name not in frame.remapped and frame.autoremap and frame.outer is not None and name[:1] != "_":
+            frame = frame.outer
+        return frame.remapped.get(name) or _identifier(frame.prefix + name)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExecutedNode:
+    """A node of the executed tree.
+
+    Attributes:
+        number: 1000 for the root, then counted in pre-order.
+        type: the name of its type; `SubTree` for a subtree.
+        name: its name, otherwise that of its type or of the subtree.
+        known: the declaration of its type; `None` if there is none.
+    """
+
+    number: int
+    type: str
+    name: str
+    node: TreeNode
+    known: Node | None
+    frame: TreeFrame
+    children: tuple[int, ...]
+    origin: Location
+
+    @property
+    def is_leaf(self) -> bool:
+        return not self.children
+
+    @property
+    def automaton(self) -> str:
+        return f"BT_plugin_{self.number}_{self.name}"
+
+    def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
+        """Each port that the tree sets: its name, the entry to which it is bound (or `None`), and its text."""
+        for setting in ports_of(self.node):
+            bound = entry_of(setting)
+            entry = None if bound is None else self.frame.entry(bound)
+            yield setting.attribute.name, entry, setting.value.value, setting.value.span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExecutedTree:
+    """Attributes:
+    name: of the tree.
+    nodes: in pre-order.
+    initial: entry -> the text that a `<SubTree>` gives it.
+    """
+
+    name: str
+    nodes: tuple[ExecutedNode, ...]
+    initial: Mapping[str, str]
+
+
+def unfold(forest: Forest) -> ExecutedTree:
+    """The executed tree of the analysed file.
+
+    Raises:
+        TreeRefusal: there is none, or it cannot be told which one it is.
+    """
+    tree = _main_tree(forest)
+    unfolder = _Unfolder(forest)
+    assert tree.id is not None
+    unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((tree.id.value,))), 0)
+    return ExecutedTree(tree.id.value, tuple(unfolder.nodes[n] for n in sorted(unfolder.nodes)), unfolder.initial)
+
+
+def _main_tree(forest: Forest) -> Tree:
+    file = forest.file
+    named = [tree for tree in file.trees if tree.id is not None]
+    if file.main is not None:
+        if file.main.value in forest.trees:
+            return forest.trees[file.main.value][1]
+        raise TreeRefusal(Location(forest.path, file.main.span), f"there is no tree `{file.main.value}`")
+    used = {
+        node.plugin.value
+        for _, _, node in forest.all_nodes()
+        if node.plugin is not None and (node.is_subtree or forest.names_tree(node))
+    }
+    candidates = named if len(named) == 1 else [tree for tree in named if tree.id and tree.id.value not in used]
+    if len(candidates) == 1:
+        return candidates[0]
+    place = Location(forest.path, file.element.name_span)
+    if not named:
+        raise TreeRefusal(place, "the file has no tree with an `ID`")
+    raise TreeRefusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
+
+
+@dataclass
+class _Unfolder:
+    forest: Forest
+    nodes: dict[int, ExecutedNode] = field(default_factory=dict)
+    initial: dict[str, str] = field(default_factory=dict)
+    count: int = 0
+    prefixes: dict[str, int] = field(default_factory=dict)
+
+    def tree(self, path: str, tree: Tree, frame: TreeFrame, depth: int) -> int:
+        if len(tree.roots) != 1:
+            raise TreeRefusal(Location(path, tree.element.name_span), "a tree has exactly one node at its top")
+        return self.node(path, tree.roots[0], frame, depth)
+
+    def node(self, path: str, node: TreeNode, frame: TreeFrame, depth: int) -> int:
+        origin = Location(path, node.element.name_span)
+        if self.count >= MAX_NODES or depth > MAX_DEPTH:
+            raise TreeRefusal(
+                origin, f"the tree is too large: at most {MAX_NODES} nodes, {MAX_DEPTH} inside each other"
+            )
+        number = ROOT_NUMBER + self.count
+        self.count += 1
+        type_ = node.plugin.value if node.plugin else ""
+        name = node.name.value if node.name else type_
+        if node.is_subtree or self.forest.names_tree(node):
+            if type_ not in self.forest.trees:
+                raise TreeRefusal(origin, f"there is no tree `{type_}`")
+            inner_path, inner = self.forest.trees[type_]
+            child = self.tree(inner_path, inner, self.enter(node, name, type_, frame, origin), depth + 1)
+            self.nodes[number] = ExecutedNode(number, "SubTree", name, node, None, frame, (child,), origin)
+            return number
+        known = self.forest.known_node(node)
+        children = tuple(self.node(path, below, frame, depth + 1) for below in node.children)
+        self.nodes[number] = ExecutedNode(number, type_, name, node, known, frame, children, origin)
+        return number
+
+    def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
+        if type_ in frame.trees:
+            raise TreeRefusal(origin, f"the tree `{type_}` contains itself")
+        word = f"{frame.prefix}{_identifier(name)}"
+        count = self.prefixes[word] = self.prefixes.get(word, 0) + 1
+        prefix = f"{word}__" if count == 1 else f"{word}_{count}__"
+        remapped: dict[str, str] = {}
+        model = self.forest.subtree_models.get(type_)
+        given = {setting.attribute.name for setting in ports_of(node)}
+        defaults = [p for p in model.ports if p.default is not None and p.name not in given] if model else []
+        for port in defaults:
+            self.initial[_identifier(prefix + port.name)] = port.default or ""
+        for setting in ports_of(node):
+            key, bound = setting.attribute.name, entry_of(setting)
+            if bound is None:
+                self.initial[_identifier(prefix + key)] = setting.value.value
+                remapped[key] = _identifier(prefix + key)
+            else:
+                remapped[key] = frame.entry(bound)
+        return TreeFrame(prefix, remapped, is_autoremapped(node), frame, frame.trees | {type_})
+
+
+def _identifier(name: str) -> str:
+    word = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"

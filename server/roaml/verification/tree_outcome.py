@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What random traces of a tree with mocks show: its outcome, its time, its recoveries, and the leaves that matter
+(docs/spec/mocks.md#results)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from roaml.jani.expressions import Binary, Expression, Integer, Name
+from roaml.jani.model import Model
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.properties import (
+    Filter,
+    FilterFunction,
+    Predicate,
+    Probability,
+    ProbabilityOperator,
+    Property,
+    StatePredicate,
+    UnaryPath,
+    UnaryPathOperator,
+)
+from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
+from roaml.mocks.unfolding import ExecutedNode
+from roaml.scxml.names import TREE_ROOT_PREFIX
+from roaml.smc.kernel import Kernel
+from roaml.smc.model import ModelChecker
+from roaml.smc.names import Storage
+from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
+from roaml.smc.run import Options
+from roaml.smc.statistics import Bounds, Mean, clopper_pearson, incomplete_beta
+from roaml.verification.target import VerificationTarget
+
+STATUS = "bt_1000_response__status"
+"""The variable with the last answer of the tree."""
+SUCCEEDS, FAILS = "succeeds", "fails"
+"""The names of the properties of a tree without a system."""
+TRACES = 1000
+"""The number of traces, unless one is given."""
+QUANTILES = (0.5, 0.9, 0.99)
+COUNTERS = ("recoveries", "failed_attempts")
+_SUCCESS, _FAILURE, _RUNNING, _SKIPPED, _HELD = 1, 2, 3, 4, 5
+
+
+def tree_properties(model: Model) -> tuple[Property, ...]:
+    """The properties of a translated tree: it succeeds, and it fails."""
+    return (_eventually(SUCCEEDS, _answers(_SUCCESS)), _eventually(FAILS, _any(_FAILURE, _SKIPPED, _HELD)))
+
+
+def _answers(code: int) -> Expression:
+    return Binary(BinaryOperator.EQUAL, Name(STATUS), Integer(code))
+
+
+def _any(*codes: int) -> Expression:
+    first, *others = map(_answers, codes)
+    for other in others:
+        first = Binary(BinaryOperator.OR, first, other)
+    return first
+
+
+def _eventually(name: str, condition: Expression) -> Property:
+    path = UnaryPath(UnaryPathOperator.FINALLY, condition)
+    probability = Probability(ProbabilityOperator.PMIN, path)
+    return Property(name, Filter(FilterFunction.VALUES, probability, Predicate(StatePredicate.INITIAL)))
+
+
+@dataclass(frozen=True, slots=True)
+class OutcomeShare:
+    """How many of all traces have a property, with the interval for its probability."""
+
+    count: int
+    traces: int
+    bounds: Bounds
+
+    @property
+    def value(self) -> float:
+        return self.count / self.traces
+
+
+@dataclass(frozen=True, slots=True)
+class Quantile:
+    """The time within which a share of the traces has ended, in s, with its interval; infinite if it is not known."""
+
+    share: float
+    value: float
+    bounds: Bounds
+
+
+@dataclass(frozen=True, slots=True)
+class Influence:
+    """The derivative of the probability of success by the probability of a mock. `bounds` is its interval."""
+
+    leaf: MockedLeaf
+    value: float
+    bounds: Bounds
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreeOutcome:
+    """Attributes:
+    success, failure: of the tree; `failure` includes trees that were skipped.
+    unfinished: traces in which the tree had not ended at the end of time.
+    exceptions: traces in which a node got stuck, because the library throws an exception there.
+    time: until the tree succeeds, in s; `None` if it never does.
+    quantiles: of this time.
+    counts: node and counter -> the expected number for a trace.
+    influences: of the leaves, the greatest first; without those whose mock never or always succeeds. Empty if all
+        traces had the same outcome, which shows no influence.
+    shortest: the number of the shortest trace that fails; `None` if there is none.
+    """
+
+    traces: int
+    confidence: float
+    success: OutcomeShare
+    failure: OutcomeShare
+    unfinished: int
+    exceptions: int
+    time: Mean | None
+    quantiles: tuple[Quantile, ...]
+    counts: tuple[tuple[ExecutedNode, str, Mean], ...]
+    influences: tuple[Influence, ...]
+    shortest: int | None
+
+
+def measure(mocked: MockedTree, target: VerificationTarget, options: Options) -> TreeOutcome:
+    """Make traces until the tree has ended, and measure them.
+
+    The model must count (`MockOptions.counts`). The number of traces is fixed before, so intervals hold as they are.
+
+    Raises:
+        ValueError: a trace did something that has no meaning.
+    """
+    return _Measuring(mocked, target, options).run()
+
+
+class _Measuring:
+    def __init__(self, mocked: MockedTree, target: VerificationTarget, options: Options) -> None:
+        self.mocked, self.target, self.options = mocked, target, options
+        ends = _eventually("ends", _any(_SUCCESS, _FAILURE, _SKIPPED, _HELD))
+        checker = ModelChecker(target.model, (ends,))
+        compiled = checker.compiled(checker.asked[0])
+        self.kernel = Kernel(compiled.program, compiled.goal)
+        layout = checker.legend.layout
+        shared = {storage.name: storage for storage in layout.shared}
+        self.status = shared[STATUS]
+        self.clock = tuple(shared[name] for name in target.clock or ())
+        root = f"{TREE_ROOT_PREFIX}{mocked.tree.name}"
+        self.ticks = next(s for i in layout.instances if i.automaton.name == root for s in i.own if s.name == TICKS)
+        self.own = {i.automaton.name: {storage.name: storage for storage in i.own} for i in layout.instances}
+
+    def run(self) -> TreeOutcome:
+        traces = self.options.max_traces or TRACES
+        leaves = [leaf for leaf in self.mocked.leaves if 0 < leaf.probability < 1]
+        counters = [
+            (node, counter, self.own[node.automaton][counter])
+            for node in self.mocked.tree.nodes
+            for counter in COUNTERS
+            if counter in self.own[node.automaton]
+        ]
+        tallies = [self.own[leaf.node.automaton] for leaf in leaves]
+        answers: list[int] = []
+        times: list[float] = []
+        scores: list[list[float]] = []
+        means = [Mean() for _ in counters]
+        shortest: tuple[int, int] | None = None
+        stuck = 0
+        for trace in range(traces):
+            answer, steps, is_stuck = self.trace(trace)
+            answers.append(answer)
+            stuck += is_stuck
+            if answer == _SUCCESS:
+                times.append(float(self.integer(self.ticks) / self.mocked.options.rate))
+            elif shortest is None or steps < shortest[1]:
+                shortest = (trace, steps)
+            means = [mean.add(self.integer(s)) for mean, (_, _, s) in zip(means, counters, strict=True)]
+            scores.append([self.score(leaf, own) for leaf, own in zip(leaves, tallies, strict=True)])
+        successes = answers.count(_SUCCESS)
+        failures = sum(answer in (_FAILURE, _SKIPPED, _HELD) for answer in answers)
+        time = Mean()
+        for seconds in times:
+            time = time.add(seconds)
+        return TreeOutcome(
+            traces,
+            self.options.confidence,
+            self.share(successes, traces, traces - successes - failures),
+            self.share(failures, traces, traces - successes - failures),
+            traces - successes - failures - stuck,
+            stuck,
+            time if times else None,
+            tuple(quantile(share, sorted(times), self.options.confidence) for share in QUANTILES) if times else (),
+            tuple((node, counter, mean) for (node, counter, _), mean in zip(counters, means, strict=True)),
+            self.influences(leaves, scores, [answer == _SUCCESS for answer in answers]),
+            None if shortest is None else shortest[0],
+        )
+
+    def trace(self, number: int) -> tuple[int, int, bool]:
+        """The last answer of the tree in a trace (0 or RUNNING if it has not ended), its steps, and whether a node has
+        got stuck."""
+        verdict = self.kernel.begin(self.options.seed, number, 0)
+        if verdict == UNKNOWN:
+            verdict = self.kernel.advance(self.options.max_steps)
+        if verdict == FAULTY:
+            raise ValueError(f"trace {number} fails")
+        answer = self.integer(self.status) if verdict == TRUE else 0
+        is_stuck = (
+            verdict == FALSE and self.clock_time() < self.mocked.options.max_time / 1e9 - 2 / self.mocked.options.rate
+        )
+        return answer, self.kernel.outcome()[0], is_stuck
+
+    def integer(self, storage: Storage) -> int:
+        return self.kernel.integer(storage.base)
+
+    def clock_time(self) -> float:
+        """In s; the clock may be one step ahead of the tree."""
+        seconds, nanoseconds = map(self.integer, self.clock)
+        return seconds + nanoseconds / 1e9
+
+    def share(self, count: int, traces: int, undecided: int) -> OutcomeShare:
+        return OutcomeShare(count, traces, clopper_pearson(count, traces, self.options.confidence, undecided))
+
+    def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
+        """The derivative of the logarithm of the probability of the trace by the probability of a mock."""
+        p = leaf.probability
+        successes = self.integer(own["successes"]) if "successes" in own else 0
+        failures = self.integer(own["failures"]) if "failures" in own else 0
+        return successes / p - failures / (1 - p)
+
+    def influences(
+        self, leaves: Sequence[MockedLeaf], scores: Sequence[Sequence[float]], outcomes: Sequence[bool]
+    ) -> tuple[Influence, ...]:
+        """The derivatives, by score functions: the expectation of outcome times score. The scores have the expectation
+        0, so subtracting the mean outcome changes nothing but the variance."""
+        traces = len(outcomes)
+        total = sum(outcomes)
+        if total in (0, traces):
+            return ()
+        influences = []
+        for position, leaf in enumerate(leaves):
+            mean = Mean()
+            for row, outcome in zip(scores, outcomes, strict=True):
+                others = (total - outcome) / max(1, traces - 1)  # without the trace itself: no bias
+                mean = mean.add((outcome - others) * row[position])
+            influences.append(Influence(leaf, mean.mean, mean.bounds(self.options.confidence)))
+        return tuple(sorted(influences, key=lambda influence: -abs(influence.value)))
+
+
+def quantile(share: float, values: Sequence[float], confidence: float) -> Quantile:
+    """A quantile of sorted values, with an interval between two of them that holds for every distribution."""
+    count = len(values)
+    tail = (1 - confidence) / 2
+
+    def at_least(rank: int) -> float:
+        """The probability that at least `rank` values are at most the quantile."""
+        return 1.0 if rank <= 0 else incomplete_beta(share, rank, count - rank + 1)
+
+    low = max((rank for rank in range(count + 1) if 1 - at_least(rank) <= tail), default=0)
+    high = next((rank for rank in range(count + 1) if at_least(rank) <= tail), None)
+    lower = values[low - 1] if low > 0 else 0.0
+    upper = values[high - 1] if high is not None and 0 < high <= count else math.inf
+    return Quantile(share, values[min(count - 1, math.ceil(share * count) - 1)], Bounds(lower, upper))

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp verify TREE.xml --mock …`: what it answers, and what it rejects."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+
+HEAD = '<root BTCPP_format="4" main_tree_to_execute="Main">'
+
+
+def tree(tmp_path: Path, content: str) -> str:
+    path = tmp_path / "tree.xml"
+    path.write_text(f'{HEAD}\n<BehaviorTree ID="Main">\n{content}\n</BehaviorTree>\n</root>\n', encoding="utf-8")
+    return str(path)
+
+
+def verified(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, object]:
+    assert run(["verify", *arguments, "--format", "json"]) == 0, capsys.readouterr().err
+    value: dict[str, object] = json.loads(capsys.readouterr().out)
+    return value
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert run(["verify", *arguments]) != 0
+    return capsys.readouterr().err
+
+
+def test_the_results_are_those_of_probability_theory(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two of three in a row, with one retry: the probability, its derivatives, the times and the recoveries."""
+    path = tree(tmp_path, "<RecoveryNode number_of_retries='1'><Drive/><Sequence><Ask/></Sequence></RecoveryNode>")
+    mocks = ("--mock", "Drive: 0.7 in 1 s", "--mock", "Ask: 0.8 in 500 ms", "--max-traces", "3000")
+    measured = verified(capsys, path, *mocks)["tree"]
+    assert isinstance(measured, dict)
+
+    def holds(part: dict[str, float], truth: float) -> bool:
+        return part["lower"] <= truth <= part["upper"]
+
+    drive, ask = 0.7, 0.8
+    success = drive + (1 - drive) * ask * drive
+    assert holds(measured["success"], success)
+    assert holds(measured["recoveries"][0], 1 - drive)
+    influence = {row["node"]: row for row in measured["influences"]}
+    assert holds(influence["Drive"], 1 + ask * (1 - 2 * drive))
+    assert holds(influence["Ask"], (1 - drive) * drive)
+    assert influence["Drive"]["upper"] - influence["Drive"]["lower"] < 0.2
+    # The first tick is at 0.1 s; an action of 1 s ends 10 ticks later.
+    assert measured["quantiles"][0]["value"] == pytest.approx(1.1)
+    assert measured["quantiles"][2]["value"] == pytest.approx(2.6)
+
+
+def test_a_mock_of_a_name_precedes_that_of_a_type(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><Drive name='first'/><Drive/><Drive name='last'/></Sequence>")
+    mocks = ("--mock", "*: 0", "--mock", "Drive: 1", "--mock", "la?t: 0.5", "--mock", "first: 1")
+    measured = verified(capsys, path, *mocks)["tree"]
+    assert isinstance(measured, dict)
+    assert measured["success"]["value"] == 1
+
+
+def test_mocks_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><Drive/><Load/></Sequence>")
+    mocks = tmp_path / "tree.mocks"
+    mocks.write_text("# the robot of the lab\nDrive: 1 in 2 s\n\nLoad: 1 in 1 min  # slow\n", encoding="utf-8")
+    measured = verified(capsys, path, "--mocks", str(mocks), "--tick-rate", "1")["tree"]
+    assert isinstance(measured, dict)
+    assert measured["time"]["value"] == pytest.approx(63)
+
+
+def test_leaves_without_mocks_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><Drive/><Load/><Drive/><Sleep msec='10'/></Sequence>")
+    message = refused(capsys, path, "--mock", "Load: 1")
+    assert "these leaves need mocks: Drive; for example" in message
+
+
+@pytest.mark.parametrize(
+    ("mock", "reason"),
+    [
+        ("Drive", "is not a mock"),
+        ("Drive: often", "is not a probability"),
+        ("Drive: 1.5", "is not a probability"),
+        ("Drive: 0.5 in a while", "is not a duration"),
+    ],
+)
+def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert reason in refused(capsys, tree(tmp_path, "<Drive/>"), "--mock", mock)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("<Mine><Drive/></Mine>", "it is not known what it does with them"),
+        ("<ScriptCondition code='level &gt; 3'/>", "nothing sets the entry `level`"),
+        ("<Script code='x := 1 &amp; 2'/>", "works on bits"),
+        ("<Script code=\"t := 'a'; t := t .. 'b'\"/>", "texts cannot be joined"),
+        ("<Sequence><Script code='k := 1'/><SetBlackboard value='2' output_key='{k}'/></Sequence>", "only known when"),
+        ("<LoopInt queue='{q}' value='{v}'><Drive/></LoopInt>", "a queue in the blackboard"),
+        ("<ManualSelector><Drive/></ManualSelector>", "ManualSelector"),
+    ],
+)
+def test_trees_that_are_rejected(content: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert reason in refused(capsys, tree(tmp_path, content), "--mock", "*: 0.5")
+
+
+def test_an_entry_of_the_host(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<ScriptCondition code='level &gt; 3'/>")
+    for level, success in (("2", 0.0), ("4", 1.0)):
+        measured = verified(capsys, path, "--entry", f"level={level}")["tree"]
+        assert isinstance(measured, dict)
+        assert measured["success"]["value"] == success
+
+
+def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(
+        tmp_path,
+        "<Sequence><IsReady/><RetryUntilSuccessful num_attempts='2'><Drive/></RetryUntilSuccessful></Sequence>",
+    )
+    assert run(["verify", path, "--mock", "*: 0.5 in 1 s", "--expect", "succeeds >= 0.9"]) == 1
+    text = capsys.readouterr().out
+    for part in ("succeeds: 0.", "time until success: mean", "failed attempts of RetryUntilSuccessful", "50% within",
+                 "the shortest trace without success", "ticked at 10 Hz, for at most 600 s"):  # fmt: skip
+        assert part in text
+
+
+def test_mocks_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "main.xml"
+    path.write_text("<roaml/>", encoding="utf-8")
+    assert "mocks, entries and a tick rate are for files of behavior trees" in refused(
+        capsys, str(path), "--mock", "*: 1"
+    )
