@@ -16,6 +16,7 @@ from roaml.jani.properties import identifiers
 from roaml.scxml.names import (
     ASKED,
     CLOCK,
+    OBSERVER_SUFFIX,
     OPEN,
     OPENED,
     PENDING,
