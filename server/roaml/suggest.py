@@ -23,7 +23,7 @@ _MIN_SIMILARITY = 0.6
 MAX_COMPARED = 40
 """The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are selected
 first."""
-_NEIGHBOURS = 5
+_NEIGHBOURS = 3
 """The number of neighbours on each side of a name in a sorted list of candidates."""
 
 
@@ -77,16 +77,16 @@ class _Index:
         for name in self.by_lower:
             for shorter in _shortened(name[:MAX_LENGTH]):
                 same = self._shortened.setdefault(shorter, [])
-                if len(same) < _NEIGHBOURS:
+                if len(same) < 2 * _NEIGHBOURS:
                     same.append(name)
 
     def likely(self, name: str) -> list[str]:
-        """At most `MAX_COMPARED` names that may be similar, those that differ in one letter first."""
+        """At most `6 * _NEIGHBOURS` names that may be similar, those that differ in one letter first."""
         one_letter_away = (match for shorter in _shortened(name) for match in self._shortened.get(shorter, ()))
-        matches = dict.fromkeys(itertools.islice(one_letter_away, MAX_COMPARED))
+        matches = dict.fromkeys(itertools.islice(one_letter_away, 2 * _NEIGHBOURS))
         matches |= dict.fromkeys(_around(name, self._forward))
         matches |= dict.fromkeys(match[::-1] for match in _around(name[::-1], self._backward))
-        return list(matches)[:MAX_COMPARED]
+        return list(matches)
 
 
 @functools.lru_cache(maxsize=8)

@@ -85,6 +85,8 @@ stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
+WIDTH_OF_TREES = 0.05
+"""Half the width of an interval that the fixed number of traces of a tree achieves always."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
 """Fewer traces of a tree take less time than the start of further processes."""
 
@@ -133,7 +135,8 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
     if limits.method == ADAPTIVE:  # a fixed number: all measurements are made on the same traces
-        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES)
+        epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
+        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
         options.jobs = 1
     try:
