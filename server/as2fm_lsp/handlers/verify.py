@@ -244,6 +244,7 @@ class _VerifyCommand:
             await self.bar.step("translating")
             target = api.as_target(system)
             context.results.keep_target(texts, target)
+        target = target.expecting(context.session.settings_of(path).expectations)
         rows: list[Json] = []
         results: list[Result] = []
         verifier: Verifier | None = None
