@@ -145,6 +145,65 @@ def test_properties_share_traces_with_the_same_results(command: Command, robot: 
     assert len(shared) == 2
 
 
+def test_a_result_without_an_expectation_is_neither_good_nor_bad(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    options = (name, "--expect", "never >= 1", "--epsilon", "0.05")
+    done = command("verify", *options)
+    assert done.status == 0
+    assert "\nno expectation set: heads\n" in done.out
+    verdicts = {
+        row: values["verdict"] for row, values in rows(command("verify", *options, "--format", "json").out).items()
+    }
+    assert verdicts == {"heads": "no expectation set", "never": "met"}
+    suites = ET.fromstring(command("verify", *options, "--format", "junit").out)
+    cases = {case.get("name"): case for case in suites.iter("testcase")}
+    skipped = cases["heads"].find("skipped")
+    assert skipped is not None
+    assert skipped.get("message") == "no expectation set"
+    assert cases["never"].find("skipped") is None
+    assert (suites.get("tests"), suites.get("failures"), suites.get("skipped")) == ("2", "0", "1")
+
+
+def test_expectations_in_the_configuration(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    (tmp_path / "as2fm.toml").write_text('[verify.expect]\nheads = ">= 0.9"\nelsewhere = "< 1"\n', encoding="utf-8")
+    done = command("verify", name)
+    assert done.status == 1
+    assert "\n  expected ≥ 0.9: NOT MET" in done.out
+    assert "\nno expectation set: never\n" in done.out
+    assert "elsewhere" not in done.out
+    assert command("verify", name, "--property", "never").status == 0
+    (tmp_path / "as2fm.toml").write_text('[verify.expect]\nheads = ">= 1.5"\n', encoding="utf-8")
+    done = command("verify", name)
+    assert done.status == 2
+    assert "a number from 0 to 1, not 1.5" in done.err
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ('expect = ["x"]', "`verify.expect` must be a table"),
+        ('expect.heads = "often"', "the expectation of `heads` must compare with a number"),
+        ("expect.heads = 1", "the expectation of `heads` must compare with a number"),
+        ("expects = 1", "there is no setting `verify.expects`; there are `expect` and `scheduler`"),
+    ],
+)
+def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Path, written: str, message: str) -> None:
+    (tmp_path / "as2fm.toml").write_text(f"[verify]\n{written}\n", encoding="utf-8")
+    done = command("verify", write(tmp_path, coin()))
+    assert done.status == 2
+    assert message in done.err
+
+
+def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1")
+    assert "expected ≥ 1: met; no trace against it in 200; the interval reaches down to 0.98\n" in done.out
+    assert "expected ≥ 0.1: met\n" in done.out
+    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads")
+    assert re.search(r"expected ≤ 0: met; no trace against it in 200; the interval reaches up to 0\.0[12]", done.out)
+
+
 def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     late(command, robot)
     done = command("verify", "main.xml", "--property", "all_delivered", "--explain")

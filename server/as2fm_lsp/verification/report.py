@@ -15,6 +15,7 @@ from as2fm_lsp.verification import activity_report, ends, scheduler_report, stuc
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
+from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import Result
 from roaml.verification.schedulers import may_differ
@@ -42,7 +43,13 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
         for result in results
         if result.answer is not None and result.choices is not None and may_differ(result.choices)
     ]
-    return "".join(f"{line}\n" for line in (*blocks, *scheduler_report.note(open_)))
+    return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
+
+
+def _without_expectation(results: Sequence[Result]) -> list[str]:
+    """The results that are neither good nor bad, in one line."""
+    names = [result.name for result in results if result.has_no_expectation]
+    return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
@@ -87,6 +94,8 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
         doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
         lines.append(f"{text}; {doubt}" if doubt else text)
+    if is_alone and result.has_no_expectation:
+        lines.append(f"  {NO_EXPECTATION}")
     return "\n".join(lines)
 
 
@@ -184,6 +193,7 @@ def row(result: Result) -> dict[str, Any]:
         exact = result.exact
         values["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
     values["interrupted"] = result.is_interrupted
+    values["verdict"] = _verdict(result)
     values["expectations"] = [
         {
             "expected": verdict.expectation.text,
@@ -195,6 +205,12 @@ def row(result: Result) -> dict[str, Any]:
         for verdict in result.verdicts
     ]
     return values
+
+
+def _verdict(result: Result) -> str:
+    if result.refusal is not None:
+        return "no answer"
+    return NO_EXPECTATION if result.has_no_expectation else "met" if result.is_met else "not met"
 
 
 def warning(result: Result) -> str:
@@ -259,6 +275,8 @@ def _case(result: Result, title: str, text: str) -> Case:
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
     if result.refusal is not None:
         return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+    if result.has_no_expectation:
+        return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
     if result.is_met:
         return case
     missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]

@@ -118,6 +118,11 @@ class Result:
         return next((answer.options.epsilon for answer in self._answers()), 0.0)
 
     @property
+    def has_no_expectation(self) -> bool:
+        """Whether there is an answer that is compared with nothing, so that it is neither good nor bad."""
+        return self.refusal is None and not self.verdicts
+
+    @property
     def is_met(self) -> bool:
         """Whether there is an answer, and every expectation holds."""
         return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)

@@ -95,7 +95,7 @@ def verifier_of(
             raise PropertyError(f"there is no property `{name}`, for which a result is expected")
     checker = checker_of(target, names)
     for asked in checker.asked:
-        for expectation in expectations:
+        for expectation in (*expectations, *target.expectations):
             if expectation.name == asked.question.name:
                 check_range(expectation, asked.question)
     return Verifier(target, checker, options or Options(), expectations, only_uniform)
@@ -126,15 +126,16 @@ class Verifier:
             raise self.checker.refused[name]
         asked = next(asked for asked in self.checker.asked if asked.question.name == name)
         if asked.question.threshold is None:
-            for expectation in self.expectations:
+            for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
         return asked
 
     def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
-        """The expectations of a property: its own, and those in `expectations`."""
+        """The expectations of a property: its own, those in `expectations`, and those of the target."""
         name, threshold = asked.question.name, asked.question.threshold
-        own = tuple(expectation for expectation in self.expectations if expectation.name == name)
+        given = (*self.expectations, *self.target.expectations)
+        own = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
         if threshold is None or any(expectation.threshold == threshold for expectation in own):
             return own
         return (Expectation(name, threshold, is_own=True), *own)
