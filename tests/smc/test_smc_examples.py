@@ -17,7 +17,12 @@ from roaml.verification.exhaustive import exact_values
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = {
-    "delivery_robot/main.xml": {"all_delivered": 1.0, "never_empty": 1.0},
+    "delivery_robot/main.xml": {
+        "all_delivered": 1.0,
+        "never_empty": 1.0,
+        "docks_only_when_low": 1.0,
+        "never_delivers_when_empty": 1.0,
+    },
     "assembly_robot/main.xml": {"block_placed": 1.0, "never_placed_empty": 1.0, "block_dropped": 0.5},
     "assembly_robot/main_with_bug.xml": {"block_placed": 0.5, "never_placed_empty": 0.5, "block_dropped": 0.5},
     "case_study/main.xml": {"recovers_or_succeeds": 1.0},
