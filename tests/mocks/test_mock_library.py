@@ -60,3 +60,12 @@ def compare(drawn: Drawn, seed: int) -> None:
 @given(ANY_TREE, st.integers(0, 2**30))
 def test_random_trees_do_what_the_libraries_do(drawn: Drawn, seed: int) -> None:
     compare(drawn, seed)
+
+
+def test_an_entry_that_is_only_observed() -> None:
+    """Nothing reads the value of the entry; that it was written is seen."""
+    write = Drawn("SetBlackboard", (("value", "{x}"), ("output_key", "y")))
+    asked = Drawn("WasEntryUpdated", (("entry", "{y}"),))
+    tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, write, Drawn("Check"))),))
+    for seed in range(3):
+        compare(tree, seed)
