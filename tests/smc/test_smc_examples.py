@@ -11,8 +11,9 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 from roaml import api
+from roaml.explicit.space import StateLimits
 from roaml.smc.run import Options
-from roaml.verification.storm import exact_values
+from roaml.verification.exhaustive import exact_values
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = {
@@ -50,7 +51,7 @@ def test_examples_have_the_expected_probabilities(name: str) -> None:
 
 def test_the_grid_world_exact_values() -> None:
     checker = api.checker(api.to_jani(api.load(str(ROOT / "examples/grid_world/main.xml"))))
-    exact = exact_values(checker, checker.asked[0], 5000)
+    exact = exact_values(checker, checker.asked[0], StateLimits(5000))
     assert (exact.least, exact.greatest) == (pytest.approx(0.914925, abs=1e-6), pytest.approx(0.914925, abs=1e-6))
 
 
