@@ -61,7 +61,8 @@ def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--format", "json", "--seed", 1)
     assert (done.status, done.err) == (0, "")
     found = rows(done.out)
-    assert {name: row["probability"] for name, row in found.items()} == {"all_delivered": 1.0, "never_empty": 1.0}
+    names = {"all_delivered", "never_empty", "docks_only_when_low", "never_delivers_when_empty"}
+    assert {name: row["probability"] for name, row in found.items()} == dict.fromkeys(names, 1.0)
     assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
     assert not (robot / "main.jani").exists()
 
@@ -142,7 +143,7 @@ def test_properties_share_traces_with_the_same_results(command: Command, robot: 
         for more in ((), ("--separate",))
     )
     assert [{**row, "seconds": 0} for row in shared.values()] == [{**row, "seconds": 0} for row in separate.values()]
-    assert len(shared) == 2
+    assert len(shared) == 4
 
 
 def test_a_result_without_an_expectation_is_neither_good_nor_bad(command: Command, tmp_path: Path) -> None:
@@ -455,12 +456,41 @@ def test_progress_bar() -> None:
 # ------------------------------------------------------------------ other answers
 
 
-def test_exact(command: Command, tmp_path: Path) -> None:
-    found = rows(command("verify", write(tmp_path, coin()), "--exact", "--format", "json").out)
-    assert found["heads"]["exact"] == {"least": pytest.approx(0.3), "greatest": pytest.approx(0.3), "states": 3}
-    refused = command("verify", write(tmp_path, coin()), "--exact", "--max-states", 2)
-    assert refused.status == 2
-    assert "more than 2 states" in refused.err
+@pytest.mark.parametrize("option", ["--exhaustive", "--exact"])
+def test_exhaustive(command: Command, tmp_path: Path, option: str) -> None:
+    name = write(tmp_path, coin())
+    exact = rows(command("verify", name, option, "--format", "json").out)["heads"]["exact"]
+    assert [exact[key] for key in ("least", "greatest", "uniform")] == [pytest.approx(0.3)] * 3
+    assert (exact["states"], exact["shortest"]) == (3, {"failed": 1, "passed": 1})
+    done = command("verify", name, option, "--explain")
+    assert re.match(r"heads: = 0.3 for all schedulers, exact, 3 states, \d+\.\d s\n", done.out)
+    assert "  shortest traces: it fails after 1 step, it holds after 1 step\n" in done.out
+    assert "heads failed in the shortest trace after 1 step" in done.out
+    assert done.status == 0
+
+
+def test_limits_of_an_exhaustive_verification(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    done = command("verify", name, "--exhaustive", "--max-states", 2, "--expect", "heads >= 0")
+    assert done.status == 1
+    assert done.out.startswith("heads: undecided: stopped at 2 states: there are more than 2 (--max-states), ")
+    assert "  expected ≥ 0: undecided\n" in done.out
+    row = rows(command("verify", name, "--exhaustive", "--max-states", 2, "--format", "json").out)["heads"]
+    assert row["undecided"] == "stopped at 2 states: there are more than 2 (--max-states)"
+    junit = command("verify", name, "--exhaustive", "--max-states", 2, "--format", "junit").out
+    assert 'message="undecided: stopped at 2 states' in junit
+    assert command("verify", name, "--exhaustive", "--max-memory", "none").status == 2
+    assert command("verify", name, "--exhaustive", "--max-memory", "100M").status == 0
+
+
+def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    heads = written["properties"][0]["expression"]["values"]["exp"]["exp"]
+    for symbol, goal in (("G", op("¬", op("∧", heads, op("¬", heads)))), ("F", op("∧", heads, op("¬", heads)))):
+        written["properties"] = [{"name": "p", "expression": probability(op(symbol, goal))}]
+        out = command("verify", write(tmp_path, written), "--exhaustive").out
+        proof = "it holds in all 3 states" if symbol == "G" else "none of the 3 states is what it asks for"
+        assert f"  proof: {proof}\n" in out
 
 
 def test_schedulers(command: Command, tmp_path: Path) -> None:

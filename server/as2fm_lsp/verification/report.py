@@ -11,7 +11,7 @@ from typing import Any
 
 from as2fm_lsp import junit
 from as2fm_lsp.junit import Case, CaseOutcome
-from as2fm_lsp.verification import activity_report, ends, scheduler_report, stuck_report
+from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
@@ -61,12 +61,10 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
     lines = []
     if result.refusal is not None:
         lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
+    if result.undecided:
+        lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
     if result.exact is not None:
-        exact = result.exact
-        both = _number(exact.least)
-        if exact.least != exact.greatest:
-            both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
-        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states, {result.seconds:.1f} s")
+        lines += exact_report.lines(result.name, result.exact, result.seconds)
     for sampled in result.sampled:
         lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
         lines.append(f"  by {sampled.words}")
@@ -91,6 +89,9 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
         what = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
         lines.append(f"  interrupted; {what}" if lines else f"{result.name}: interrupted; {what}")
     for verdict in result.verdicts:
+        if result.undecided:
+            lines.append(f"  expected {verdict.expectation.text}: undecided")
+            continue
         doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
         lines.append(f"{text}; {doubt}" if doubt else text)
@@ -190,8 +191,9 @@ def row(result: Result) -> dict[str, Any]:
     if result.tried:
         values["schedulers"] = {"wanted": "lss", "tried": result.tried}
     if result.exact is not None:
-        exact = result.exact
-        values["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
+        values["exact"] = exact_report.row(result.exact)
+    if result.undecided:
+        values["undecided"] = result.undecided
     values["interrupted"] = result.is_interrupted
     values["verdict"] = _verdict(result)
     values["expectations"] = [
@@ -208,7 +210,7 @@ def row(result: Result) -> dict[str, Any]:
 
 
 def _verdict(result: Result) -> str:
-    if result.refusal is not None:
+    if result.refusal is not None or result.undecided:
         return "no answer"
     return NO_EXPECTATION if result.has_no_expectation else "met" if result.is_met else "not met"
 
@@ -275,6 +277,8 @@ def _case(result: Result, title: str, text: str) -> Case:
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
     if result.refusal is not None:
         return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+    if result.undecided:
+        return replace(case, outcome=CaseOutcome.ERROR, message=f"undecided: {result.undecided}", type="undecided")
     if result.has_no_expectation:
         return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
     if result.is_met:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
@@ -17,11 +18,11 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
+from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
 from roaml.verification.expectations import Expectation, Verdict, check_range, judge
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
-from roaml.verification.storm import exact_values, judge_exactly
 from roaml.verification.stuck import Look
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
@@ -306,16 +307,25 @@ class Verifier:
             stuck.shortest(result.stuck for result in sampled),
         )
 
-    def exact(self, asked: CompiledProperty, max_states: int) -> Result:
-        """The exact minimum and maximum of a property, by Storm.
+    def exhaustive(
+        self, asked: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
+    ) -> Result:
+        """The exact values of a property, from all states; undecided where a limit ends their exploration.
+
+        Args:
+            watch: called with the number of states, and of those whose steps are known.
 
         Raises:
-            ExactError: see `roaml.verification.storm.exact_values`.
-            FaultError: the model did something that has no meaning.
+            FaultError: the model executes an undefined operation in some state.
         """
         began = time.monotonic()
-        exact = exact_values(self.checker, asked, max_states)
-        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in self.expected(asked))
+        expectations = self.expected(asked)
+        try:
+            exact = exact_values(self.checker, asked, limits, watch)
+        except UndecidedError as error:
+            open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
+            return Result(asked.question.name, None, open_, time.monotonic() - began, undecided=str(error))
+        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in expectations)
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
     def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:
