@@ -13,7 +13,8 @@ from setuptools import Extension, setup
 from setuptools.command.build_py import build_py
 
 SCHEMAS = Path(__file__).parent / "schemas"
-KERNEL = "server/roaml/smc/kernel.py"
+COMPILED = ("roaml.smc.kernel", "roaml.explicit.search", "roaml.explicit.solver")
+"""The modules that Cython translates, each after those whose types it uses."""
 IS_PURE = os.environ.get("AS2FM_PURE_PYTHON") == "1"
 DIRECTIVES = {
     "annotation_typing": False,
@@ -27,22 +28,26 @@ DIRECTIVES = {
 
 
 def extensions() -> list[Extension]:
-    """The kernel, unless it is not wanted or Cython is missing. If it does not compile, the build goes on without."""
-    return [] if IS_PURE else translated_kernel()
+    """The compiled modules, unless they are not wanted or Cython is missing. If they do not compile, the build goes on
+    without."""
+    return [] if IS_PURE else translated_modules()
 
 
-def translated_kernel() -> list[Extension]:
-    """The kernel as C; nothing if Cython is missing."""
+def translated_modules() -> list[Extension]:
+    """The modules as C; none if Cython is missing."""
     try:
         from Cython.Build import cythonize
     except ImportError:
         return []
     # Without contraction: multiplying and adding in one instruction would round otherwise than Python does.
     flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv", "-ffp-contract=off"]
-    kernel = Extension("roaml.smc.kernel", [KERNEL], extra_compile_args=flags)
-    (made,) = cythonize([kernel], compiler_directives=DIRECTIVES, build_dir="build/cython", quiet=True)
-    made.optional = True  # Cython does not keep that of `kernel`.
-    return [made]
+    wanted = [Extension(name, [f"server/{name.replace('.', '/')}.py"], extra_compile_args=flags) for name in COMPILED]
+    made: list[Extension] = cythonize(
+        wanted, compiler_directives=DIRECTIVES, include_path=["server"], build_dir="build/cython", quiet=True
+    )
+    for module in made:
+        module.optional = True  # Cython does not keep that of `wanted`.
+    return made
 
 
 class BuildWithMore(build_py):
@@ -64,7 +69,9 @@ class BuildWithMore(build_py):
         package = Path(self.build_lib) / "roaml"
         found = [(schema, package / "schemas" / schema.name) for schema in sorted(SCHEMAS.iterdir())]
         if IS_PURE:
-            found += [(Path(kernel.sources[0]), package / "smc" / "kernel.c") for kernel in translated_kernel()]
+            for module in translated_modules():
+                _, *folders, name = module.name.split(".")
+                found.append((Path(module.sources[0]), package.joinpath(*folders, f"{name}.c")))
         return found
 
 

@@ -22,9 +22,11 @@ ROOT = Path(__file__).resolve().parents[1]
 SERVER = ROOT / "server"
 MODULES = sorted(SERVER.rglob("*.py"))
 
-# Who may touch the disk: the user's files, or the package's own resources.
+# Who may touch the disk: the user's files, or the package's own resources; or asks the system for its free memory.
 READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api/", "roaml/interfaces/search.py", "as2fm_lsp/")
 READS_RESOURCES = (
+    "roaml/explicit/memory.py",
+    "roaml/explicit/plain.py",
     "roaml/language/resources.py",
     "roaml/language/grammar.py",
     "roaml/language/validate.py",

@@ -22,7 +22,8 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 
-TUTORIAL = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+TUTORIAL, TREES = DOCS / "tutorial.md", DOCS / "nav2-tree.md"
 FILES = ("xml", "json", "toml")
 
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -112,9 +113,22 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
     assert Path.cwd() == tmp_path / "patrol"
 
 
-def test_links_lead_somewhere() -> None:
-    for target in re.findall(r"\]\(([^)#]+)(?:#[\w-]+)?\)", TUTORIAL.read_text("utf-8")):
-        assert (TUTORIAL.parent / target).exists(), target
+def test_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """The page on trees with mocks; its tree is that of the example."""
+    monkeypatch.chdir(tmp_path)
+    reader = Reader(capsys)
+    for block in blocks(TREES.read_text("utf-8")):
+        reader.take(block)
+    assert reader.status == 0
+    example = DOCS.parent / "examples" / "fetch_tree"
+    assert Path("fetch.xml").read_text("utf-8") == (example / "fetch.xml").read_text("utf-8")
+    assert run(["verify", str(example / "fetch.xml"), "--mocks", str(example / "fetch.mocks")]) == 0
+
+
+@pytest.mark.parametrize("page", [TUTORIAL, TREES], ids=lambda page: page.stem)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)(?:#[\w-]+)?\)", page.read_text("utf-8")):
+        assert (page.parent / target).exists(), target
 
 
 def test_a_change_must_fit_in_one_place() -> None:

@@ -3,29 +3,13 @@
 
 from __future__ import annotations
 
-import importlib.util
-from functools import cache
-from importlib.machinery import SourceFileLoader
-from pathlib import Path
 from typing import Any
 
-import roaml.smc
+from roaml.explicit.plain import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
-
-
-@cache
-def plain_kernel() -> Any:
-    """The module of the kernel as plain Python, whether it was compiled or not."""
-    path = Path(roaml.smc.__file__).with_name("kernel.py")
-    loader = SourceFileLoader("plain_kernel", str(path))
-    spec = importlib.util.spec_from_loader("plain_kernel", loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    loader.exec_module(module)
-    return module
 
 
 def difference(

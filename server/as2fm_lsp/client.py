@@ -26,12 +26,14 @@ class Client:
     Attributes:
         show_references: the command of the client that shows places; "" if it has none.
         show_counterexample: the command that explains why a property fails.
+        debug_counterexample: the command that debugs a trace in which a property fails.
         trigger_suggest: the command that requests completions.
     """
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.show_references = ""
         self.show_counterexample = ""
+        self.debug_counterexample = ""
         self.trigger_suggest = ""
         self._endpoint = endpoint
 
@@ -39,6 +41,7 @@ class Client:
         """Read the names of the client's commands from its `initializationOptions`."""
         self.show_references = str(options.get("showReferences") or "")
         self.show_counterexample = str(options.get("showCounterexample") or "")
+        self.debug_counterexample = str(options.get("debugCounterexample") or "")
         self.trigger_suggest = str(options.get("triggerSuggest") or "")
 
     # ------------------------------------------------------------------ facts

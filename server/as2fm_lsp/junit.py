@@ -17,6 +17,7 @@ class CaseOutcome(enum.Enum):
     PASSED = "system-out"
     FAILED = "failure"
     ERROR = "error"
+    SKIPPED = "skipped"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,10 @@ def render(suite: str, cases: Sequence[Case]) -> str:
     """A report with one suite of tests. Characters that XML does not allow are replaced."""
     failures = sum(case.outcome is CaseOutcome.FAILED for case in cases)
     errors = sum(case.outcome is CaseOutcome.ERROR for case in cases)
+    skipped = sum(case.outcome is CaseOutcome.SKIPPED for case in cases)
     counts = {"tests": str(len(cases)), "failures": str(failures), "errors": str(errors)}
+    if skipped:
+        counts["skipped"] = str(skipped)
     root = ET.Element("testsuites", {"name": "as2fm-lsp", **counts})
     parent = _child(root, "testsuite", {"name": suite, **counts})
     for case in cases:

@@ -33,7 +33,7 @@ def test_the_extension_is_beside_its_source(
     tools = tmp_path_factory.mktemp("tools")
     (tools / "made").write_text("extension")
     compiler(monkeypatch, tools / "cc", copies)
-    target = build(source)
+    (target,) = build([source])
     assert target == source.parent / f"kernel{sysconfig.get_config_var('EXT_SUFFIX')}"
     assert target.read_text() == "extension"
     assert sorted(source.parent.iterdir()) == sorted([source, target])
@@ -55,7 +55,7 @@ def test_a_failed_build_leaves_no_files(
 ) -> None:
     compiler(monkeypatch, tmp_path_factory.mktemp("tools") / "cc", script)
     with pytest.raises(BuildError, match=message):
-        build(source)
+        build([source])
     assert list(source.parent.iterdir()) == [source]
 
 
@@ -66,7 +66,7 @@ def test_an_interrupted_attempt_is_no_answer(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     compiler(monkeypatch, tmp_path_factory.mktemp("tools") / "cc", "kill -TERM $$")
-    assert main(source) == 2
+    assert main([source]) == 2
     assert "ended by signal 15" in capsys.readouterr().err
     assert list(source.parent.iterdir()) == [source]
 
@@ -74,11 +74,11 @@ def test_an_interrupted_attempt_is_no_answer(
 def test_no_compiler(source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sysconfig, "get_config_var", {"LDSHARED": "/nowhere/cc -shared"}.get)
     with pytest.raises(BuildError, match="there is no C compiler"):
-        build(source)
+        build([source])
 
 
 def test_nothing_to_compile(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(BuildError, match="does not contain the kernel as C"):
-        build(tmp_path / "kernel.c")
-    assert main(tmp_path / "kernel.c") == 1
+        build([tmp_path / "kernel.c"])
+    assert main([tmp_path / "kernel.c"]) == 1
     assert "verification runs as plain Python" in capsys.readouterr().err

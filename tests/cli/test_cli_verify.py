@@ -61,7 +61,8 @@ def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--format", "json", "--seed", 1)
     assert (done.status, done.err) == (0, "")
     found = rows(done.out)
-    assert {name: row["probability"] for name, row in found.items()} == {"all_delivered": 1.0, "never_empty": 1.0}
+    names = {"all_delivered", "never_empty", "docks_only_when_low", "never_delivers_when_empty"}
+    assert {name: row["probability"] for name, row in found.items()} == dict.fromkeys(names, 1.0)
     assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
     assert not (robot / "main.jani").exists()
 
@@ -142,7 +143,66 @@ def test_properties_share_traces_with_the_same_results(command: Command, robot: 
         for more in ((), ("--separate",))
     )
     assert [{**row, "seconds": 0} for row in shared.values()] == [{**row, "seconds": 0} for row in separate.values()]
-    assert len(shared) == 2
+    assert len(shared) == 4
+
+
+def test_a_result_without_an_expectation_is_neither_good_nor_bad(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    options = (name, "--expect", "never >= 1", "--epsilon", "0.05")
+    done = command("verify", *options)
+    assert done.status == 0
+    assert "\nno expectation set: heads\n" in done.out
+    verdicts = {
+        row: values["verdict"] for row, values in rows(command("verify", *options, "--format", "json").out).items()
+    }
+    assert verdicts == {"heads": "no expectation set", "never": "met"}
+    suites = ET.fromstring(command("verify", *options, "--format", "junit").out)
+    cases = {case.get("name"): case for case in suites.iter("testcase")}
+    skipped = cases["heads"].find("skipped")
+    assert skipped is not None
+    assert skipped.get("message") == "no expectation set"
+    assert cases["never"].find("skipped") is None
+    assert (suites.get("tests"), suites.get("failures"), suites.get("skipped")) == ("2", "0", "1")
+
+
+def test_expectations_in_the_configuration(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    (tmp_path / "as2fm.toml").write_text('[verify.expect]\nheads = ">= 0.9"\nelsewhere = "< 1"\n', encoding="utf-8")
+    done = command("verify", name)
+    assert done.status == 1
+    assert "\n  expected ≥ 0.9: NOT MET" in done.out
+    assert "\nno expectation set: never\n" in done.out
+    assert "elsewhere" not in done.out
+    assert command("verify", name, "--property", "never").status == 0
+    (tmp_path / "as2fm.toml").write_text('[verify.expect]\nheads = ">= 1.5"\n', encoding="utf-8")
+    done = command("verify", name)
+    assert done.status == 2
+    assert "a number from 0 to 1, not 1.5" in done.err
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ('expect = ["x"]', "`verify.expect` must be a table"),
+        ('expect.heads = "often"', "the expectation of `heads` must compare with a number"),
+        ("expect.heads = 1", "the expectation of `heads` must compare with a number"),
+        ("expects = 1", "there is no setting `verify.expects`; there are `expect` and `scheduler`"),
+    ],
+)
+def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Path, written: str, message: str) -> None:
+    (tmp_path / "as2fm.toml").write_text(f"[verify]\n{written}\n", encoding="utf-8")
+    done = command("verify", write(tmp_path, coin()))
+    assert done.status == 2
+    assert message in done.err
+
+
+def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1")
+    assert "expected ≥ 1: met; no trace against it in 200; the interval reaches down to 0.98\n" in done.out
+    assert "expected ≥ 0.1: met\n" in done.out
+    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads")
+    assert re.search(r"expected ≤ 0: met; no trace against it in 200; the interval reaches up to 0\.0[12]", done.out)
 
 
 def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
@@ -396,12 +456,41 @@ def test_progress_bar() -> None:
 # ------------------------------------------------------------------ other answers
 
 
-def test_exact(command: Command, tmp_path: Path) -> None:
-    found = rows(command("verify", write(tmp_path, coin()), "--exact", "--format", "json").out)
-    assert found["heads"]["exact"] == {"least": pytest.approx(0.3), "greatest": pytest.approx(0.3), "states": 3}
-    refused = command("verify", write(tmp_path, coin()), "--exact", "--max-states", 2)
-    assert refused.status == 2
-    assert "more than 2 states" in refused.err
+@pytest.mark.parametrize("option", ["--exhaustive", "--exact"])
+def test_exhaustive(command: Command, tmp_path: Path, option: str) -> None:
+    name = write(tmp_path, coin())
+    exact = rows(command("verify", name, option, "--format", "json").out)["heads"]["exact"]
+    assert [exact[key] for key in ("least", "greatest", "uniform")] == [pytest.approx(0.3)] * 3
+    assert (exact["states"], exact["shortest"]) == (3, {"failed": 1, "passed": 1})
+    done = command("verify", name, option, "--explain")
+    assert re.match(r"heads: = 0.3 for all schedulers, exact, 3 states, \d+\.\d s\n", done.out)
+    assert "  shortest traces: it fails after 1 step, it holds after 1 step\n" in done.out
+    assert "heads failed in the shortest trace after 1 step" in done.out
+    assert done.status == 0
+
+
+def test_limits_of_an_exhaustive_verification(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, coin())
+    done = command("verify", name, "--exhaustive", "--max-states", 2, "--expect", "heads >= 0")
+    assert done.status == 1
+    assert done.out.startswith("heads: undecided: stopped at 2 states: there are more than 2 (--max-states), ")
+    assert "  expected ≥ 0: undecided\n" in done.out
+    row = rows(command("verify", name, "--exhaustive", "--max-states", 2, "--format", "json").out)["heads"]
+    assert row["undecided"] == "stopped at 2 states: there are more than 2 (--max-states)"
+    junit = command("verify", name, "--exhaustive", "--max-states", 2, "--format", "junit").out
+    assert 'message="undecided: stopped at 2 states' in junit
+    assert command("verify", name, "--exhaustive", "--max-memory", "none").status == 2
+    assert command("verify", name, "--exhaustive", "--max-memory", "100M").status == 0
+
+
+def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    heads = written["properties"][0]["expression"]["values"]["exp"]["exp"]
+    for symbol, goal in (("G", op("¬", op("∧", heads, op("¬", heads)))), ("F", op("∧", heads, op("¬", heads)))):
+        written["properties"] = [{"name": "p", "expression": probability(op(symbol, goal))}]
+        out = command("verify", write(tmp_path, written), "--exhaustive").out
+        proof = "it holds in all 3 states" if symbol == "G" else "none of the 3 states is what it asks for"
+        assert f"  proof: {proof}\n" in out
 
 
 def test_schedulers(command: Command, tmp_path: Path) -> None:

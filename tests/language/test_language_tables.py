@@ -178,7 +178,7 @@ PLAIN = {
     "ascxml.xsd": {"log@expr", "log@label"},
     "roaml.xsd": set(),
     "structs.xsd": set(),
-    "properties.xsd": {"property@expr", "clock@topic_name", "clock@type"},
+    "properties.xsd": {"property@expect", "property@expr", "clock@topic_name", "clock@type"},
     "behaviortree.xsd": {
         *("root@BTCPP_format", "include@ros_pkg"),
         *(f"{port}@{name}" for port in ("input_port", "output_port", "inout_port") for name in PORT_MODEL),

@@ -120,15 +120,15 @@ def as_xml(root: Drawn) -> str:
     counter = itertools.count()
     lines = ['<root BTCPP_format="4" main_tree_to_execute="Main">', '<BehaviorTree ID="Main">']
     lines += _element(root, counter)
-    return "\n".join([*lines, "</BehaviorTree>", "</root>"])
+    models = '<TreeNodesModel><Condition ID="Check"/></TreeNodesModel>'
+    return "\n".join([*lines, "</BehaviorTree>", models, "</root>"])
 
 
 def _element(drawn: Drawn, counter: Iterator[int]) -> Iterator[str]:
     name = f"leaf{next(counter)}"
     ports = "".join(f" {key}={quoteattr(value)}" for key, value in drawn.ports)
     if is_program_leaf(drawn):
-        tag = "Condition" if drawn.type == "Check" else "Action"
-        yield f'<{tag} ID="{drawn.type}" name="{name}"{ports}/>'
+        yield f'<{drawn.type} name="{name}"{ports}/>'
         return
     yield f"<{drawn.type}{ports}>"
     for child in drawn.children:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import copy
-import os
 
 import library_model
 from hypothesis import HealthCheck, given, settings
@@ -25,8 +24,9 @@ from random_trees import (
 )
 from translated_trees import Observed, observe, with_mocks
 
+from examples import TIMES, examples
+
 TICKS = 14
-EXAMPLES = int(os.environ.get("AS2FM_EXAMPLES", "1"))
 ANY_TREE = trees({**CONTROLS, **NAV2_CONTROLS}, {**DECORATORS, **TIMED, **NAV2_DECORATORS}, {**LEAVES, **SLEEP})
 
 
@@ -56,7 +56,16 @@ def compare(drawn: Drawn, seed: int) -> None:
         assert seen.calls == expected.calls, text
 
 
-@settings(max_examples=40 * EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck), derandomize=EXAMPLES == 1)
+@settings(max_examples=examples(40), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
 @given(ANY_TREE, st.integers(0, 2**30))
 def test_random_trees_do_what_the_libraries_do(drawn: Drawn, seed: int) -> None:
     compare(drawn, seed)
+
+
+def test_an_entry_that_is_only_observed() -> None:
+    """Nothing reads the value of the entry; that it was written is seen."""
+    write = Drawn("SetBlackboard", (("value", "{x}"), ("output_key", "y")))
+    asked = Drawn("WasEntryUpdated", (("entry", "{y}"),))
+    tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, write, Drawn("Check"))),))
+    for seed in range(3):
+        compare(tree, seed)

@@ -143,3 +143,9 @@ def test_incomplete_properties(inside: str, expected: str) -> None:
 def test_an_assumption_says_so() -> None:
     inside = '<property id="p" pattern="absence"><event>alarm</event><scope type="globally"/></property>'
     assert said(inside, "assumes")[0] == "Assumed: a message is never published on `/alarm`."
+
+
+def test_the_expectation_is_part_of_the_sentence() -> None:
+    body = '<event>alarm</event><scope type="globally"/>'
+    text, _ = said(f'<property id="p" pattern="absence" expect="&gt;= 0.9">{body}</property>')
+    assert text == "A message is never published on `/alarm`; the expected probability is `>= 0.9`."

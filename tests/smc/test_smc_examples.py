@@ -11,12 +11,18 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 from roaml import api
+from roaml.explicit.space import StateLimits
 from roaml.smc.run import Options
-from roaml.verification.storm import exact_values
+from roaml.verification.exhaustive import exact_values
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = {
-    "delivery_robot/main.xml": {"all_delivered": 1.0, "never_empty": 1.0},
+    "delivery_robot/main.xml": {
+        "all_delivered": 1.0,
+        "never_empty": 1.0,
+        "docks_only_when_low": 1.0,
+        "never_delivers_when_empty": 1.0,
+    },
     "assembly_robot/main.xml": {"block_placed": 1.0, "never_placed_empty": 1.0, "block_dropped": 0.5},
     "assembly_robot/main_with_bug.xml": {"block_placed": 0.5, "never_placed_empty": 0.5, "block_dropped": 0.5},
     "case_study/main.xml": {"recovers_or_succeeds": 1.0},
@@ -45,7 +51,7 @@ def test_examples_have_the_expected_probabilities(name: str) -> None:
 
 def test_the_grid_world_exact_values() -> None:
     checker = api.checker(api.to_jani(api.load(str(ROOT / "examples/grid_world/main.xml"))))
-    exact = exact_values(checker, checker.asked[0], 5000)
+    exact = exact_values(checker, checker.asked[0], StateLimits(5000))
     assert (exact.least, exact.greatest) == (pytest.approx(0.914925, abs=1e-6), pytest.approx(0.914925, abs=1e-6))
 
 

@@ -18,6 +18,7 @@ from test_translate_storm import COINS, JUDGE, LISTENER, reaches, system
 from translating import loaded
 
 from roaml import api
+from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
 from roaml.smc.explore import Explorer, TooManyStatesError
 from roaml.smc.lss import GREATEST, LEAST, Search
@@ -26,7 +27,7 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import FIXED, Options
 from roaml.smc.solve import solve
-from roaml.verification.storm import ExactError, exact_values
+from roaml.verification.exhaustive import UndecidedError, exact_values
 
 ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
@@ -199,10 +200,11 @@ def test_exact_answers() -> None:
         )
     )
     checker = ModelChecker(found)
-    result = exact_values(checker, checker.asked[0], 100)
+    result = exact_values(checker, checker.asked[0], StateLimits(100))
     assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
-    with pytest.raises(ExactError, match="more than 2 states"):
-        exact_values(checker, checker.asked[0], 2)
+    with pytest.raises(UndecidedError, match="there are more than 2 "):
+        exact_values(checker, checker.asked[0], StateLimits(2))
+    assert result.average == pytest.approx(0.375)
     ((successes, traces),) = estimates(found).values()
     assert two_sided(successes, traces, 0.375) > 1e-4
 

@@ -10,14 +10,15 @@ from collections.abc import Mapping
 
 import pytest
 from storm import exact
-from translating import loaded
+from translating import errors, loaded
 
 from as2fm_lsp.verification.report import one_as_text, row, warning
 from roaml import api
+from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
+from roaml.jani.writer import write
 from roaml.smc.run import Options
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION
-from roaml.verification.storm import ExactError
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
     <datamodel><data id="count" type="int32" expr="0" /></datamodel>
@@ -269,8 +270,7 @@ def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str)
     assert bounds.lower <= both.least / assumed.least <= bounds.upper
     assert bounds.half_width < 0.04
     verifier = api.verifier(source)
-    with pytest.raises(ExactError, match="given assumptions"):
-        verifier.exact(verifier.question("g"), 100_000)
+    assert "given assumptions" in verifier.exhaustive(verifier.question("g"), StateLimits(100_000)).undecided
 
 
 def test_assumptions_that_no_trace_satisfies_leave_no_value() -> None:
@@ -295,6 +295,31 @@ def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
     tally = result.answer.tally
     assert tally.rejected == 0
     assert 0 < tally.undecided < tally.traces == 150
+
+
+def test_an_expectation_beside_the_property() -> None:
+    expected = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.95"')
+    source = loaded(system(expected + EXISTS.format("other", "tails")))
+    some, other = api.verify(source, options=Options(method="fixed", max_traces=300), only_uniform=True)
+    assert [verdict.expectation.text for verdict in some.verdicts] == ["≥ 0.95"]
+    assert not some.is_met
+    assert other.has_no_expectation
+    # It does not change what other tools read.
+    assert "0.95" not in "".join(write(api.to_jani(source)))
+
+
+@pytest.mark.parametrize("written", ["often", "&gt;= 1.2", "0.9", "&gt;= nan"])
+def test_an_expectation_that_compares_with_no_probability(written: str) -> None:
+    wrong = EXISTS.format("some", "heads").replace("<property", f'<property expect="{written}"')
+    assert [error.code for error in errors(system(wrong))] == ["property-form"]
+
+
+def test_nothing_is_expected_of_an_assumption() -> None:
+    assumed = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.5"')
+    found = errors(with_assumptions(assumed, EXISTS.format("g", "whistle")))
+    assert [(error.code, error.message) for error in found] == [
+        ("property-form", "an assumption has no value, so nothing can be expected of it")
+    ]
 
 
 VACUOUS = f"""

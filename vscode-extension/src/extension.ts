@@ -3,7 +3,9 @@
 
 import * as vscode from "vscode";
 import { registerCommands } from "./editor/commands";
+import { ChoicesView } from "./editor/choices";
 import { Counterexamples } from "./editor/counterexamples";
+import { Debugging } from "./editor/debugging";
 import { Documents } from "./editor/documents";
 import { JaniView } from "./editor/janiView";
 import { PicturePanels } from "./editor/picturePanels";
@@ -34,7 +36,8 @@ export function activate(context: vscode.ExtensionContext): void {
     const jani = new JaniView(server);
     const pictures = new PicturePanels(context, server, log);
     const tasks = new Tasks(server);
-    const tests = new PropertyTests(server, log);
+    const debugging = new Debugging(server, documents);
+    const tests = new PropertyTests(server, debugging, log);
     const counterexamples = new Counterexamples(server, pictures);
     context.subscriptions.push(
         log,
@@ -46,12 +49,15 @@ export function activate(context: vscode.ExtensionContext): void {
         pictures,
         tests,
         counterexamples,
+        new ChoicesView(log),
+        ...debugging.register(),
         watchMending(),
     );
     server.onState((state) => {
         status.show(state);
     });
-    registerCommands({ context, log, server, status, documents, tasks, plain, jani, pictures, tests, counterexamples });
+    const shown = { plain, jani, pictures, tests, counterexamples, debugging };
+    registerCommands({ context, log, server, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchWishes(context, server, log);
     void start(context, server, log);

@@ -17,6 +17,16 @@ interface Manifest {
         readonly configurationDefaults: Readonly<Record<string, Readonly<Record<string, unknown>>>>;
         readonly walkthroughs: readonly [{ readonly steps: readonly Step[] }];
         readonly commands: readonly { readonly command: string }[];
+        readonly debuggers: readonly [
+            {
+                readonly when: string;
+                readonly configurationAttributes: {
+                    readonly launch: {
+                        readonly properties: Readonly<Record<string, { readonly description: string }>>;
+                    };
+                };
+            },
+        ];
         readonly menus: Readonly<Record<string, readonly { readonly command: string; readonly when: string }[]>>;
     };
 }
@@ -70,4 +80,21 @@ test("each step is completed by an event of the extension, and the last one is t
     assert.match(texts["walkthrough.verify.description"] ?? "", /command:as2fm\.verifySystem/);
     const palette = contributes.menus["commandPalette"]?.find(({ command }) => command === "as2fm.verifySystem");
     assert.match(palette?.when ?? "", /isWorkspaceTrusted/);
+});
+
+test("each attribute of a debug configuration is documented and explained", () => {
+    const { debuggers } = contributes;
+    const attributes = debuggers[0].configurationAttributes.launch.properties;
+    const page = fs.readFileSync("../docs/debugging.md", "utf8");
+    const documented = [...page.matchAll(/^\| ((?:`\w+`(?:, )?)+) \|/gm)].flatMap(([, names = ""]) =>
+        names.split(", "),
+    );
+    for (const [name, { description }] of Object.entries(attributes)) {
+        assert.ok(documented.includes(`\`${name}\``), name);
+        assert.ok(texts[description.replaceAll("%", "")], description);
+    }
+});
+
+test("nothing can be debugged in an untrusted workspace", () => {
+    assert.equal(contributes.debuggers[0].when, "isWorkspaceTrusted");
 });

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m as2fm_lsp.cli.build_kernel`: compile the kernel of the model checker in its installation.
+"""`python -m as2fm_lsp.cli.build_kernel`: compile the model checkers in their installation.
 
-A universal wheel contains the kernel as Python and as C code that Cython has generated from it. If there is a C
-compiler, as on most machines with ROS, this makes verification about a hundred times as fast. If the compilation fails,
-the kernel stays as it is.
+A universal wheel contains their inner loops as Python and as C code that Cython has generated from it. If there is a C
+compiler, as on most machines with ROS, this makes verification about a hundred times as fast. If the compilation of one
+module fails, all stay as they are.
 """
 
 from __future__ import annotations
@@ -13,12 +13,14 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
-import roaml.smc
+import roaml
 from as2fm_lsp.atomic_write import write_file
 
-SOURCE = Path(roaml.smc.__file__).with_name("kernel.c")
+PACKAGE = Path(roaml.__file__).parent
+SOURCES = (PACKAGE / "smc/kernel.c", PACKAGE / "explicit/search.c", PACKAGE / "explicit/solver.c")
 FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
 
 
@@ -26,48 +28,57 @@ class BuildError(Exception):
     """The kernel could not be compiled; the message is a readable reason."""
 
 
-def build(source: Path = SOURCE) -> Path:
-    """Compile the C code, and write the extension beside it.
+def build(sources: Sequence[Path] = SOURCES) -> list[Path]:
+    """Compile the C code, and write each extension beside it.
 
     Returns:
-        The extension, which is complete or missing.
+        The extensions; each is complete.
 
     Raises:
-        BuildError: it cannot be compiled here.
+        BuildError: one cannot be compiled here; nothing has been written.
         InterruptedError: the compiler was ended by a signal.
     """
-    if not source.exists():
+    if not all(source.exists() for source in sources):
         raise BuildError("this installation does not contain the kernel as C code")
     linker = shlex.split(sysconfig.get_config_var("LDSHARED") or "")
     if not linker:
         raise BuildError("this Python does not provide the compiler flags for extensions")
-    target = source.with_name(f"kernel{sysconfig.get_config_var('EXT_SUFFIX')}")
+    targets = [source.with_name(f"{source.stem}{sysconfig.get_config_var('EXT_SUFFIX')}") for source in sources]
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / target.name
-        position = shlex.split(sysconfig.get_config_var("CCSHARED") or "")
-        include = f"-I{sysconfig.get_path('include')}"
-        command = [*linker, *position, *FLAGS, include, str(source), "-o", str(made)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        except OSError as error:
-            raise BuildError(f"there is no C compiler: {error}") from None
-        if done.returncode < 0:
-            raise InterruptedError(f"{linker[0]} was ended by signal {-done.returncode}")
-        if done.returncode != 0:
-            reason = next((line for line in done.stderr.splitlines() if "error" in line), f"{linker[0]} failed")
-            raise BuildError(f"the kernel does not compile: {reason}")
-        write_file(str(target), made.read_bytes())
-    return target
+        made = [
+            _compiled(linker, source, Path(folder) / target.name)
+            for source, target in zip(sources, targets, strict=True)
+        ]
+    for target, extension in zip(targets, made, strict=True):
+        write_file(str(target), extension)
+    return targets
 
 
-def main(source: Path = SOURCE) -> int:
+def _compiled(linker: Sequence[str], source: Path, target: Path) -> bytes:
+    """The extension that the C code of a module becomes."""
+    position = shlex.split(sysconfig.get_config_var("CCSHARED") or "")
+    include = f"-I{sysconfig.get_path('include')}"
+    command = [*linker, *position, *FLAGS, include, str(source), "-o", str(target)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+    except OSError as error:
+        raise BuildError(f"there is no C compiler: {error}") from None
+    if done.returncode < 0:
+        raise InterruptedError(f"{linker[0]} was ended by signal {-done.returncode}")
+    if done.returncode != 0:
+        reason = next((line for line in done.stderr.splitlines() if "error" in line), f"{linker[0]} failed")
+        raise BuildError(f"the kernel does not compile: {reason}")
+    return target.read_bytes()
+
+
+def main(sources: Sequence[Path] = SOURCES) -> int:
     """
     Returns:
         The exit status: 0 if the kernel was compiled, 1 if it cannot be compiled here, 2 if the attempt was
             interrupted.
     """
     try:
-        build(source)
+        build(sources)
     except InterruptedError as error:
         print(f"{error}; the kernel will be compiled at the next attempt", file=sys.stderr)
         return 2

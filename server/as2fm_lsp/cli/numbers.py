@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whole numbers on the command line."""
+"""Whole numbers and sizes on the command line."""
 
 from __future__ import annotations
 
 import argparse
+import re
 
 
 def _whole(text: str) -> int:
@@ -35,3 +36,15 @@ def natural(text: str) -> int:
     if not 0 <= value < 1 << 63:
         raise argparse.ArgumentTypeError("expected a whole number from 0 to 2^63 - 1")
     return value
+
+
+def size(text: str) -> int:
+    """A number of bytes, such as `4G`, `500M` or `100000`.
+
+    Raises:
+        argparse.ArgumentTypeError: it is not one.
+    """
+    match = re.fullmatch(r"(\d{1,15})([KMGT]?)(i?B)?", text, re.IGNORECASE)
+    if match is None or int(match[1]) == 0:
+        raise argparse.ArgumentTypeError("expected a size such as 4G or 500M")
+    return int(match[1]) << (10 * " KMGT".index(match[2].upper() or " "))

@@ -60,6 +60,11 @@ class ProgressBar:
             self._tally = side.tally
         self._show()
 
+    def states(self, question: Question, states: int, expanded: int) -> None:
+        """Update during an exploration of all states."""
+        if self._line.is_due:
+            self._line.show(f"{question.name}: {states:,} states, {states - expanded:,} still to be expanded")
+
     def pulse(self, trace: int, steps: int) -> None:
         """Update within a trace, with its number of steps."""
         self._show(f", trace {trace:,} at step {steps:,}" if steps else "")

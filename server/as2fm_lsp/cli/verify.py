@@ -30,7 +30,7 @@ from as2fm_lsp.cli.model_arguments import (
     report_of,
     settings_of,
 )
-from as2fm_lsp.cli.numbers import natural, positive
+from as2fm_lsp.cli.numbers import natural, positive, size
 from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
@@ -40,6 +40,7 @@ from as2fm_lsp.verification.report import as_json, as_junit, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -52,8 +53,7 @@ from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
-from roaml.verification.results import Result
-from roaml.verification.storm import ExactError
+from roaml.verification.results import Exact, Result
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
@@ -72,7 +72,7 @@ examples:
   as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
   as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
   as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
-  as2fm-lsp verify main.xml --exact                      exact minimum and maximum by Storm, if there are few states
+  as2fm-lsp verify main.xml --exhaustive                 all states: exact minimum, maximum and uniform value
 
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
 combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
@@ -85,6 +85,8 @@ stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
+WIDTH_OF_TREES = 0.05
+"""Half the width of an interval that the fixed number of traces of a tree achieves always."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
 """Fewer traces of a tree take less time than the start of further processes."""
 
@@ -133,18 +135,19 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
     if limits.method == ADAPTIVE:  # a fixed number: all measurements are made on the same traces
-        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES)
+        epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
+        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
         options.jobs = 1
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            tree = load_subject(options, settings, counts=not options.exact)
+            tree = load_subject(options, settings, counts=not options.exhaustive)
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
             verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)
             status.stage("making traces")
-            outcome = None if options.exact else measure(tree.mocked, tree.target, limits)
+            outcome = None if options.exhaustive else measure(tree.mocked, tree.target, limits)
     except MockError as error:
         raise UsageError(str(error)) from None
     except api.ModelError as error:
@@ -185,7 +188,7 @@ class _Verification:
                     with Pool(workers or self.options.jobs, executor) as pool:
                         self.results.append(self._answer_alone(name, pool, bar))
                     interrupted = self.results[-1].is_interrupted
-            looks = self.tree is None and not interrupted and not self.options.exact
+            looks = self.tree is None and not interrupted and not self.options.exhaustive
             if looks and stuck.can_be_stuck(checker):
                 asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
                 self.look = self._look(None if asks_stuck or self.faults else bar)
@@ -200,7 +203,7 @@ class _Verification:
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
         """The results of the properties that share traces; none if there are fewer than two."""
         options, verifier = self.options, self.verifier
-        if options.separate or options.exact or options.scheduler == "lss":
+        if options.separate or options.exhaustive or options.scheduler == "lss":
             return {}
         asked = verifier.sharing()
         if not asked:
@@ -251,8 +254,8 @@ class _Verification:
     def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
         name = asked.question.name
-        if self.options.exact:
-            return self._exact(asked)
+        if self.options.exhaustive:
+            return self._exhaustive(asked, bar, began)
         try:
             self.verifier.check_method(asked)
         except NoThresholdError as error:
@@ -293,11 +296,15 @@ class _Verification:
         own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exact(self, asked: CompiledProperty) -> Result:
+    def _exhaustive(self, asked: CompiledProperty, bar: ProgressBar, began: float) -> Result:
+        """The exact values from all states."""
+        limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
         try:
-            return self.verifier.exact(asked, self.options.max_states)
-        except ExactError as error:
-            raise UsageError(f"{asked.question.name}: {error}") from None
+            return self.verifier.exhaustive(
+                asked, limits, lambda states, done: bar.states(asked.question, states, done)
+            )
+        except KeyboardInterrupt:
+            return Result(asked.question.name, None, (), time.monotonic() - began, is_interrupted=True)
 
     def _print(self) -> None:
         text = self._text()
@@ -312,7 +319,7 @@ class _Verification:
         if self.options.format == "junit":
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
         # A story of a stuck trace ends with the waiting automata.
-        is_told = STANDARD_OUTPUT in self.options.explain and any(result.answer for result in self.results)
+        is_told = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
         is_told = is_told and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
         if self.tree is not None:
@@ -357,8 +364,8 @@ class _Verification:
 
     def _assumptions(self) -> str:
         """The assumptions of all results, in one line."""
-        if self.options.exact:
-            return "computed by Storm over all schedulers"
+        if self.options.exhaustive:
+            return "computed from all reachable states, over all schedulers and for uniform choices"
         if self.options.scheduler == "lss":
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
@@ -395,6 +402,9 @@ class _Verification:
 
         stories: list[Story] = []
         for result in self.results:
+            if result.exact is not None:
+                stories += self._shortest(result, result.exact)
+                continue
             traces = result.traces
             if result.answer is None or traces is None:
                 if result.sampled and (self.options.explain or self.options.traces is not None):
@@ -412,6 +422,18 @@ class _Verification:
                     stories.append(traces.story(seen.trace))
         for file in self.options.explain:
             self._write_stories(stories, file)
+
+    def _shortest(self, result: Result, exact: Exact) -> Iterator[Story]:
+        """The story of the shortest trace that contradicts an expectation."""
+        if self.options.traces is not None:
+            complain(f"{result.name}: --traces writes random traces only, not those of --exhaustive")
+        verdict = unwanted_verdict(result)
+        trace = exact.shortest(verdict)
+        if trace is not None:
+            yield trace.story(self.target.clock)
+        elif self.options.explain:
+            what = "fails" if verdict == FALSE else "holds"
+            print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
         """The stories, one after the other; common parts are written once."""
@@ -501,14 +523,11 @@ def parser() -> ArgumentParser:
     add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: uniformly at random, or by "
         "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
         "warning or note states if other schedulers may give another value")  # fmt: skip
-    add("--exact", action="store_true", help="compute the minimum and the maximum exactly with Storm (needs stormpy)")
-    add(
-        "--max-states",
-        type=positive,
-        default=200_000,
-        metavar="N",
-        help="with --exact: reject models with more states (200000)",
-    )
+    add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
+        "uniform value of each property, and the shortest trace")  # fmt: skip
+    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states, undecided")
+    add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
+        "so much, for example 4G or 500M; undecided then (half of the free memory)")  # fmt: skip
     add_model_arguments(result)
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip

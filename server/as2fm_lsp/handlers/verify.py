@@ -167,6 +167,14 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
                     "Show counterexample", context.client.show_counterexample, arguments=[uri, property_.name]
                 )
                 yield types.CodeLens(on.range(property_.name_span), show)
+            seen = unwanted_trace(known.result) if known and speaks else None
+            traces = known.result.traces if known else None
+            if context.client.debug_counterexample and seen is not None and traces is not None:
+                run = {"seed": traces.options.seed, "trace": seen.trace}
+                debug = types.Command(
+                    "Debug counterexample", context.client.debug_counterexample, arguments=[uri, property_.name, run]
+                )
+                yield types.CodeLens(on.range(property_.name_span), debug)
 
 
 def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
@@ -236,6 +244,7 @@ class _VerifyCommand:
             await self.bar.step("translating")
             target = api.as_target(system)
             context.results.keep_target(texts, target)
+        target = target.expecting(context.session.settings_of(path).expectations)
         rows: list[Json] = []
         results: list[Result] = []
         verifier: Verifier | None = None

@@ -11,10 +11,11 @@ from typing import Any
 
 from as2fm_lsp import junit
 from as2fm_lsp.junit import Case, CaseOutcome
-from as2fm_lsp.verification import activity_report, ends, scheduler_report, stuck_report
+from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import NOT_STUCK, PROBABILITY
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
+from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import Result
 from roaml.verification.schedulers import may_differ
@@ -42,7 +43,13 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
         for result in results
         if result.answer is not None and result.choices is not None and may_differ(result.choices)
     ]
-    return "".join(f"{line}\n" for line in (*blocks, *scheduler_report.note(open_)))
+    return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
+
+
+def _without_expectation(results: Sequence[Result]) -> list[str]:
+    """The results that are neither good nor bad, in one line."""
+    names = [result.name for result in results if result.has_no_expectation]
+    return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
@@ -54,12 +61,10 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
     lines = []
     if result.refusal is not None:
         lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
+    if result.undecided:
+        lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
     if result.exact is not None:
-        exact = result.exact
-        both = _number(exact.least)
-        if exact.least != exact.greatest:
-            both = f"from {_number(exact.least)} to {_number(exact.greatest)}"
-        lines.append(f"{result.name}: {both}, exactly, from {exact.states:,} states, {result.seconds:.1f} s")
+        lines += exact_report.lines(result.name, result.exact, result.seconds)
     for sampled in result.sampled:
         lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
         lines.append(f"  by {sampled.words}")
@@ -84,9 +89,14 @@ def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alon
         clause = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
         lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
     for verdict in result.verdicts:
+        if result.undecided:
+            lines.append(f"  expected {verdict.expectation.text}: undecided")
+            continue
         doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
         lines.append(f"{text}; {doubt}" if doubt else text)
+    if is_alone and result.has_no_expectation:
+        lines.append(f"  {NO_EXPECTATION}")
     return "\n".join(lines)
 
 
@@ -181,9 +191,11 @@ def row(result: Result) -> dict[str, Any]:
     if result.tried:
         values["schedulers"] = {"wanted": "lss", "tried": result.tried}
     if result.exact is not None:
-        exact = result.exact
-        values["exact"] = {"least": _finite(exact.least), "greatest": _finite(exact.greatest), "states": exact.states}
+        values["exact"] = exact_report.row(result.exact)
+    if result.undecided:
+        values["undecided"] = result.undecided
     values["interrupted"] = result.is_interrupted
+    values["verdict"] = _verdict(result)
     values["expectations"] = [
         {
             "expected": verdict.expectation.text,
@@ -195,6 +207,12 @@ def row(result: Result) -> dict[str, Any]:
         for verdict in result.verdicts
     ]
     return values
+
+
+def _verdict(result: Result) -> str:
+    if result.refusal is not None or result.undecided:
+        return "no answer"
+    return NO_EXPECTATION if result.has_no_expectation else "met" if result.is_met else "not met"
 
 
 def warning(result: Result) -> str:
@@ -259,6 +277,10 @@ def _case(result: Result, title: str, text: str) -> Case:
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
     if result.refusal is not None:
         return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+    if result.undecided:
+        return replace(case, outcome=CaseOutcome.ERROR, message=f"undecided: {result.undecided}", type="undecided")
+    if result.has_no_expectation:
+        return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
     if result.is_met:
         return case
     missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]

@@ -53,7 +53,7 @@ def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
         lines.append(f"  {', '.join(of)} (`{operator}` asks for the {extreme}): {looked}")
     lines.append(
         "  help: use --scheduler uniform for uniform choices, --scheduler lss to sample more schedulers, "
-        "or --exact to compute the minimum and the maximum if there are few states"
+        "or --exhaustive to compute the minimum and the maximum from all states"
     )
     return lines
 

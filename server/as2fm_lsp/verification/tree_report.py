@@ -18,6 +18,8 @@ from roaml.verification.tree_outcome import COUNTERS, TreeOutcome
 from roaml.views.turns import Turn, turns
 
 MAX_LEAVES = 10
+FEW = 30
+"""With fewer traces of an outcome, the intervals of influences, which assume many, hold only roughly."""
 MAX_LINES = 40
 """The maximum number of lines of a story; those in between are folded."""
 
@@ -63,7 +65,9 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
     if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield "  no leaf can be said to matter: all traces had the same outcome; make more traces with --max-traces"
     if outcome.influences:
-        yield "  change of the probability of success for each leaf, if that of its mock changes by 1:"
+        rare = min(outcome.success.count, outcome.traces - outcome.success.count)
+        note = f" (only {rare} traces differ from the others: the intervals hold roughly)" if rare < FEW else ""
+        yield f"  change of the probability of success for each leaf, if that of its mock changes by 1{note}:"
         for influence in outcome.influences[:MAX_LEAVES]:
             node = influence.leaf.node
             place = place_of(node.origin)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.diagnostics import Diagnostic, Severity
+    from roaml.explicit.space import StateLimits
     from roaml.jani.model import Model
     from roaml.jani.node import Origin
     from roaml.jani.properties import Property
@@ -62,8 +63,7 @@ if TYPE_CHECKING:
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.refusal import Refusal
-    from roaml.verification.results import Exact, Result, SampledResult, Traces
-    from roaml.verification.storm import ExactError
+    from roaml.verification.results import Exact, Result, SampledResult, ShortestTrace, Traces
     from roaml.verification.stuck import Look, Stuck
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
@@ -103,14 +103,14 @@ else:
         "roaml.smc.model": ("ModelChecker",),
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
         "roaml.smc.record": ("Recorder", "Recording", "TraceStep"),
+        "roaml.explicit.space": ("StateLimits",),
         "roaml.smc.run": ("Answer", "Options", "Tally", "Watch"),
         "roaml.smc.statistics": ("Bounds",),
         "roaml.smc.story": ("Story",),
         "roaml.verification.counterexample": ("Counterexample", "counterexample"),
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
         "roaml.verification.refusal": ("Refusal",),
-        "roaml.verification.results": ("Exact", "Result", "SampledResult", "Traces"),
-        "roaml.verification.storm": ("ExactError",),
+        "roaml.verification.results": ("Exact", "Result", "SampledResult", "ShortestTrace", "Traces"),
         "roaml.verification.stuck": ("Look", "Stuck"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
@@ -144,7 +144,6 @@ __all__ = [
     "End",
     "EventState",
     "Exact",
-    "ExactError",
     "Expectation",
     "Extreme",
     "FaultError",
@@ -186,10 +185,12 @@ __all__ = [
     "Settings",
     "Severity",
     "SharedFileError",
+    "ShortestTrace",
     "Snapshot",
     "SourceFile",
     "SourceMap",
     "Span",
+    "StateLimits",
     "Story",
     "StoryLine",
     "Stuck",

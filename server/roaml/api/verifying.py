@@ -14,6 +14,7 @@ from roaml.project.settings import Settings
 
 if TYPE_CHECKING:
     from roaml.api.systems import LoadedSystem
+    from roaml.comparison import Comparison
     from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
@@ -55,7 +56,7 @@ def target(
             raise ConstantError("a system has no constants; they are for JANI models")
         from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
 
-        return as_target(load(path, ros_paths, settings, texts, overrides))
+        return as_target(load(path, ros_paths, settings, texts, overrides)).expecting(_expected(settings))
     if overrides != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; they are for systems")
     from roaml.jani.constants import with_constants  # noqa: PLC0415
@@ -65,7 +66,11 @@ def target(
         model = with_constants(model, constants)
     except ValueError as error:
         raise ConstantError(str(error)) from None
-    return target_of(model, path, (path,), lambda _: source)
+    return target_of(model, path, (path,), lambda _: source).expecting(_expected(settings))
+
+
+def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
+    return {} if settings is None else settings.expectations
 
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
@@ -80,7 +85,8 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
 
     conditional = [property_.name for property_ in subject.observed if property_.assumptions]
     model = to_jani(subject, has_activity=True)
-    return target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
+    target = target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
+    return target.expecting({p.name: p.expected for p in subject.observed if p.expected is not None})
 
 
 def checker(model: Model, properties: Iterable[str] | None = None) -> ModelChecker:

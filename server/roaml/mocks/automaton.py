@@ -97,6 +97,8 @@ class NodeCode:
         updated: the entry that states whether the observed one was written; `None` if nothing writes it.
         outputs: what a mock writes when it succeeds: entries, each with its possible values.
         elements: of the queue of a loop.
+        flags_of: observed entry -> what states for its observers that it was written.
+        flags_at: the same for ports that write observed entries whose values nothing reads.
         rate: of the tree, in Hz.
         counts: whether counters for measurements are included.
     """
@@ -112,6 +114,7 @@ class NodeCode:
     outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...]
     elements: tuple[Known, ...]
     flags_of: Mapping[str, tuple[BoardEntry, ...]]
+    flags_at: Mapping[str, tuple[BoardEntry, ...]]
     rate: Fraction
     counts: bool
     origin: Location
@@ -445,8 +448,7 @@ class _Explorer:
                 if entries:
                     return self.ask(entries, following, way)
             case assembly.Write(port, expression):
-                if port in self.code.bound:
-                    self.write(self.code.bound[port], _expr(self.value(expression, way.fixed)), way)
+                self.write_port(port, self.value(expression, way.fixed), way)
             case assembly.Evaluate(script, label):
                 no = None if label is None else at(label)
                 following = self.evaluate(self.code.scripts[script], script, following, no)
@@ -507,6 +509,12 @@ class _Explorer:
         for flag in self.code.flags_of.get(entry.variable, ()):
             written = Param("value", integer(1), origin)
             way.body.append(Send(blackboard_write(flag.variable), (written,), origin))
+
+    def write_port(self, port: str, value: Value, way: _Way) -> None:
+        if port in self.code.bound:
+            self.write(self.code.bound[port], _expr(value), way)
+        for flag in self.code.flags_at.get(port, ()):
+            self.write(flag, integer(1), way)
 
     def ask_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
         """Whether the observed entry was written; if so, it counts as seen."""

@@ -87,6 +87,6 @@ def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = Fals
 
 
 def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
-    """The mocks that are for none of the nodes, which are pairs of name and type; `*` is never among them."""
-    used = {id(mock_for(mocks, name, type_)) for name, type_ in nodes}
-    return tuple(mock for mock in mocks if id(mock) not in used and mock.pattern != ALL)
+    """The mocks that fit none of the nodes, which are pairs of name and type; `*` is never among them."""
+    words = {word for node in nodes for word in node}
+    return tuple(m for m in mocks if m.pattern != ALL and not any(fnmatchcase(word, m.pattern) for word in words))

@@ -232,6 +232,7 @@ class _Builder:
             outputs,
             elements,
             board.flags,
+            _flags_at(node, board),
             self.options.rate,
             self.options.counts,
             node.origin,
@@ -398,6 +399,17 @@ class _Builder:
                 read = tuple(read_literal(item)[1] for item in items)
                 return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
         return ()
+
+
+def _flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ...]]:
+    """The flags of observed entries that a node writes and whose values nothing reads."""
+    flags: dict[str, tuple[BoardEntry, ...]] = {}
+    for port, bound, text, _ in node.ports():
+        names_entry = node.type == "SetBlackboard" and port == "output_key" and bound is None
+        entry = node.frame.entry(text.strip()) if names_entry else bound
+        if entry is not None and entry in board.flags and entry not in board.entries:
+            flags[port] = board.flags[entry]
+    return flags
 
 
 def instruction_uses_event(instruction: assembly.Instruction) -> bool:

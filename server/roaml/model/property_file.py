@@ -94,6 +94,7 @@ class WrittenProperty:
     conditions: tuple[Expression, ...]
     scopes: tuple[WrittenScope, ...]
     intervals: tuple[TimeInterval, ...]
+    expect: Name | None = None
 
     @property
     def expressions(self) -> Iterator[Expression]:
@@ -184,6 +185,7 @@ def _property(document: Document, element: Element, section: str) -> WrittenProp
         tuple(expression_from(content) for content in contents if content is not None),
         scopes,
         intervals,
+        name_of(element.get("expect")),
     )
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from roaml.comparison import read_comparison
 from roaml.expr.infer import (
     BadComparison,
     BadOperand,
@@ -213,6 +214,7 @@ class _Linker:
 
     def _property(self, written: WrittenProperty) -> LinkedProperty | None:
         before = len(self.problems)
+        self._check_expectation(written)
         for expression in written.expressions:
             self._check_condition(expression)
         if written.pattern is None and written.formula is None:
@@ -239,6 +241,17 @@ class _Linker:
             self.path,
             sentence(self.file, written),
         )
+
+    def _check_expectation(self, written: WrittenProperty) -> None:
+        expect = written.expect
+        if expect is None:
+            return
+        comparison = read_comparison(expect.value)
+        if written.section == ASSUMES:
+            self.report(ProblemKind.FORM, expect.span, "an assumption has no value, so nothing can be expected of it")
+        elif comparison is None or not 0 <= comparison.number <= 1:
+            message = "`expect` must compare the probability with a number from 0 to 1: `>= 0.9`"
+            self.report(ProblemKind.FORM, expect.span, message)
 
     def _check_condition(self, condition: Expression) -> None:
         if condition.broken:

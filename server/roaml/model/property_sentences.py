@@ -26,6 +26,8 @@ def sentence(file: PropertyFile, written: WrittenProperty) -> str:
     """A sentence that states the requirement of a property, with the names in backquotes; "" if it has neither a
     pattern nor a formula."""
     text = _sentence(file, written)
+    if text and written.expect is not None:
+        text = f"{text[:-1]}; the expected probability is {quoted(written.expect.value)}."
     return f"Assumed: {text[:1].lower()}{text[1:]}" if text and written.section == ASSUMES else text
 
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from roaml.comparison import Comparison, read_comparison
 from roaml.diagnostics import Severity
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
@@ -39,6 +40,7 @@ class Settings:
     severities: code -> the severity that replaces the default of the rule.
     scheduler: "uniform" if `verify` assumes uniform choices even where a property requests the minimum
         or maximum over all schedulers; otherwise empty.
+    expectations: property -> what `verify` expects of it.
     limits: the maximum sizes of a system that is translated.
     overrides: parameters that replace those in system files; not read from a configuration.
     trees: the settings for trees that belong to no system.
@@ -54,6 +56,7 @@ class Settings:
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
     scheduler: str = ""
+    expectations: Mapping[str, Comparison] = field(default_factory=dict)
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
     trees: TreeSettings = NEWEST
@@ -107,6 +110,9 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             continue
         read = _KEYS[key]((key,), value, mistakes)
         if read is None:
+            continue
+        if key == "verify":
+            changes.update(read)
             continue
         name = _FIELDS.get(key, key.replace("-", "_"))
         if key in _FOLDERS:
@@ -220,23 +226,41 @@ def _count(path: Path, value: Any, mistakes: list[SettingMistake]) -> int | None
     return None
 
 
-def _scheduler(path: Path, value: Any, mistakes: list[SettingMistake]) -> str | None:
-    """The scheduler in the table `verify`."""
+def _verify(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Any] | None:
+    """The table `verify`: fields of the settings."""
     if not isinstance(value, dict):
         mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table"))
         return None
-    scheduler = None
+    fields: dict[str, Any] = {}
     for key, said in value.items():
-        if key != "scheduler":
-            close = close_names(key, ("scheduler",))
-            message = f"there is no setting `verify.{key}`; the only one is `scheduler`"
+        if key == "expect":
+            fields["expectations"] = _expectations((*path, key), said, mistakes)
+        elif key != "scheduler":
+            close = close_names(key, ("scheduler", "expect"))
+            message = f"there is no setting `verify.{key}`; there are `expect` and `scheduler`"
             mistakes.append(SettingMistake((*path, key), message, is_key=True, instead=close))
         elif said not in SCHEDULERS:
             message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"
             mistakes.append(SettingMistake((*path, key), message))
         else:
-            scheduler = said
-    return scheduler
+            fields["scheduler"] = said
+    return fields
+
+
+def _expectations(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Comparison]:
+    """Property -> its expectation, in the table `verify.expect`."""
+    if not isinstance(value, dict):
+        mistakes.append(SettingMistake(path, '`verify.expect` must be a table, such as `alarm = ">= 0.95"`'))
+        return {}
+    comparisons = {}
+    for name, said in value.items():
+        comparison = read_comparison(said) if isinstance(said, str) else None
+        if comparison is None:
+            message = f'the expectation of `{name}` must compare with a number, such as ">= 0.95"'
+            mistakes.append(SettingMistake((*path, name), message))
+        else:
+            comparisons[name] = comparison
+    return comparisons
 
 
 def _libraries(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
@@ -266,7 +290,7 @@ _SETS = ("select", "ignore")
 _TREES = {"tree-models": "models", "tree-libraries": "libraries", "behaviortree-cpp": "version"}
 _LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _FOLDERS = ("roots", "ros-path")
-_FIELDS = {"ros-path": "ros_paths", "severity": "severities", "verify": "scheduler"}
+_FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
 _KEYS: dict[str, _Reader] = {
     "roots": _strings,
     "ros-path": _strings,
@@ -275,7 +299,7 @@ _KEYS: dict[str, _Reader] = {
     "ignore": _codes,
     "severity": _severities,
     "warnings-as-errors": _boolean,
-    "verify": _scheduler,
+    "verify": _verify,
     "max-cells": _count,
     "max-parts": _count,
     "tree-models": _strings,

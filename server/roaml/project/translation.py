@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from roaml.comparison import read_comparison
 from roaml.jani.properties import Property
 from roaml.lower import TranslatableSystem
 from roaml.lower.size import size_of
@@ -48,7 +49,16 @@ def _observed(property_: LinkedProperty) -> ObservedProperty:
     ports = tuple(ObservedPort(p.events, tuple(map(_observed_variable, p.variables))) for p in property_.ports)
     conditions = {name: condition.tree for name, condition in property_.conditions.items()}
     origin = Location(property_.path, property_.written.element.name_span)
-    return ObservedProperty(property_.name, property_.property, conditions, ports, origin, property_.sentence)
+    expect = property_.written.expect
+    return ObservedProperty(
+        property_.name,
+        property_.property,
+        conditions,
+        ports,
+        origin,
+        property_.sentence,
+        expected=None if expect is None else read_comparison(expect.value),
+    )
 
 
 def _observed_variable(variable: LinkedVariable) -> ObservedVariable:

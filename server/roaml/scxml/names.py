@@ -61,6 +61,8 @@ BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
 """The pattern of events between nodes of a tree: the number of the child, and the kind of the event."""
+OBSERVER_SUFFIX = "__observer"
+"""Ends the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
 """The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 FIELD_PREFIX = "ros_fields__"

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from roaml.comparison import Comparison
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
 from roaml.observers.properties import Property
@@ -55,6 +56,7 @@ class ObservedProperty:
         conditions: what the inputs of its observer are, as expressions over the ids of the variables.
         comment: what the property requires, as a sentence.
         assumptions: the properties that are assumed for it.
+        expected: what is expected of its probability.
     """
 
     name: str
@@ -64,3 +66,4 @@ class ObservedProperty:
     origin: Location
     comment: str = ""
     assumptions: tuple[ObservedProperty, ...] = ()
+    expected: Comparison | None = None

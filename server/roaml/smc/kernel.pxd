@@ -88,6 +88,8 @@ cdef class Kernel:
     cdef void _take_given(self, int vector, list picks, list ways) noexcept
     @cython.locals(i=int, k=int, move=int, count=int)
     cdef void _apply(self, int vector) noexcept
+    @cython.locals(i=int)
+    cdef void _execute_ways(self, int vector) noexcept
     @cython.locals(location=int, group=int, edge=int)
     cdef int _edge(self, int slot, int pick) noexcept
     @cython.locals(first=int, end=int, unit=double, low=int, high=int, middle=int)

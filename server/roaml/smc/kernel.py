@@ -677,7 +677,24 @@ class Kernel:
         self._apply(vector)
 
     def _apply(self, vector: int) -> None:
-        """Execute the assignments of the chosen ways, change the locations, and update what is enabled."""
+        """Take the chosen ways, and update what is enabled."""
+        self._execute_ways(vector)
+        if self.fault != 0:
+            return
+        for i in range(self.parts):
+            move = self.way_move[self.part_way[i]]
+            if move >= 0:
+                self.moved = 1
+                for k in range(self.move_start[move], self.move_start[move + 1]):
+                    count = self.move_count[k]
+                    if count < 0:
+                        count = self._count(-count - 1)
+                    self._set_ready(self.move_slot[k], count)
+        if self.note_count != 0:
+            self._look_around()
+
+    def _execute_ways(self, vector: int) -> None:
+        """Execute the assignments of the chosen ways, and change the locations."""
         if self.settle >= 0:
             self._execute(self.settle)
         if self.entangled[vector] == 0:
@@ -696,17 +713,6 @@ class Kernel:
             self._execute(self.settle)
             for i in range(self.instances):
                 self._settle_location(i)
-        for i in range(self.parts):
-            move = self.way_move[self.part_way[i]]
-            if move >= 0:
-                self.moved = 1
-                for k in range(self.move_start[move], self.move_start[move + 1]):
-                    count = self.move_count[k]
-                    if count < 0:
-                        count = self._count(-count - 1)
-                    self._set_ready(self.move_slot[k], count)
-        if self.note_count != 0:
-            self._look_around()
 
     def _edge(self, slot: int, pick: int) -> int:
         """Enabled edge number `pick` of a slot."""

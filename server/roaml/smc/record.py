@@ -21,6 +21,9 @@ from roaml.smc.standstill import Standstill
 
 Plain: TypeAlias = "bool | int | float | list[Plain]"
 
+SHORTEST = -1
+"""The number of a trace that was not made at random: the shortest one of all."""
+
 VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
 
 

@@ -54,6 +54,7 @@ from roaml.scxml.names import (
     ASKED,
     CLOCK,
     CLOCK_ACTION,
+    OBSERVER_SUFFIX,
     OPEN,
     OPENED,
     PENDING,
@@ -191,7 +192,7 @@ class _ObserverWriter:
         variables = (*model.variables, *self.values.declared, *self._variables())
         syncs = tuple(self._joined())
         observer = Automaton(
-            f"{self.prefix}__observer",
+            f"{self.prefix}{OBSERVER_SUFFIX}",
             (Location(_OBSERVING, origin=self.origin),),
             (_OBSERVING,),
             tuple(self.edges.values()),

@@ -32,7 +32,7 @@ class Counterexample:
 
 def unwanted_verdict(result: Result) -> int:
     """The verdict of the traces that contradict an expectation."""
-    if result.answer is not None and result.answer.question.is_stuck:
+    if result.asks_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
     return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE

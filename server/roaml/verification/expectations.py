@@ -14,21 +14,21 @@ import math
 import re
 from dataclasses import dataclass
 
+from roaml.comparison import Comparison, read_comparison
 from roaml.jani.operators import BinaryOperator
 from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 
 _RELATIONS = {
     ">=": BinaryOperator.GREATER_EQUAL,
-    "≥": BinaryOperator.GREATER_EQUAL,
     "<=": BinaryOperator.LESS_EQUAL,
-    "≤": BinaryOperator.LESS_EQUAL,
     ">": BinaryOperator.GREATER,
     "<": BinaryOperator.LESS,
     "==": BinaryOperator.EQUAL,
-    "=": BinaryOperator.EQUAL,
 }
-_FORM = re.compile(r"\s*(.+?)\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
+_FORM = re.compile(r"\s*(.+?)\s*((?:>=|<=|==|≥|≤|>|<|=)\s*\S+)\s*")
+NO_EXPECTATION = "no expectation set"
+"""What is said of a result that is neither good nor bad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,7 @@ class Verdict:
         is_certain: whether the verdict is the same for the whole interval.
         is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
         under: a phrase for the scheduler under which it is not met; "" if only one scheduler is considered.
+        unanimous: the traces and the bound of the interval, if none of the traces contradicts an expected 0 or 1.
     """
 
     expectation: Expectation
@@ -59,6 +60,7 @@ class Verdict:
     is_certain: bool
     is_uniform: bool = False
     under: str = ""
+    unanimous: tuple[int, float] | None = None
 
     @property
     def text(self) -> str:
@@ -75,6 +77,10 @@ class Verdict:
         """
         if self.is_certain:
             return ""
+        if self.unanimous is not None and self.is_met:
+            traces, bound = self.unanimous
+            where = "down" if self.expectation.threshold.is_lower else "up"
+            return f"no trace against it in {traces:,}; the interval reaches {where} to {_rounded(bound):g}"
         number = f"{self.expectation.threshold.number:g}"
         met, missed = {
             BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
@@ -92,13 +98,14 @@ def parse(text: str) -> Expectation:
         ValueError: the text does not have this form; the message contains the reason.
     """
     match = _FORM.fullmatch(text)
-    try:
-        number = float(match[3]) if match else math.nan
-    except ValueError:
-        number = math.nan
-    if match is None or math.isnan(number):
+    comparison = read_comparison(match[2]) if match else None
+    if match is None or comparison is None:
         raise ValueError(f"an expectation must have a form like 'NAME >= 0.95', not '{text}'")
-    return Expectation(match[1], Threshold(_RELATIONS[match[2]], number))
+    return expectation_of(match[1], comparison)
+
+
+def expectation_of(name: str, comparison: Comparison) -> Expectation:
+    return Expectation(name, Threshold(_RELATIONS[comparison.relation], comparison.number))
 
 
 class RangeError(ValueError):
@@ -138,4 +145,12 @@ def judge(expectation: Expectation, answer: Answer) -> Verdict:
     else:
         value = (tally.successes + tally.undecided) / tally.traces
     met = threshold.met(value)
-    return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper))
+    unanimous = None
+    if met and not answer.question.is_reward and value == threshold.number and value in (0, 1):
+        unanimous = tally.traces, lower if threshold.is_lower else upper
+    return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper), unanimous=unanimous)
+
+
+def _rounded(bound: float) -> float:
+    """Away from the expected 0 or 1, to three digits."""
+    return math.floor(bound * 1000) / 1000 if bound > 0.5 else math.ceil(bound * 1000) / 1000

@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from roaml.explicit.path import Path, PathRecorder
+from roaml.explicit.space import Space
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
-from roaml.smc.record import Recorder, Recording, TraceStep
+from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
+from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story, tell
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
@@ -20,12 +24,82 @@ from roaml.verification.target import VerificationTarget
 
 
 @dataclass(frozen=True, slots=True)
-class Exact:
-    """The exact minimum and maximum over all schedulers, and the number of states."""
+class ShortestTrace:
+    """The shortest trace of all with a verdict."""
 
-    least: float
-    greatest: float
+    space: Space = field(repr=False)
+    path: Path
+
+    @property
+    def verdict(self) -> int:
+        return self.path.verdict
+
+    @property
+    def steps(self) -> int:
+        """The number of steps."""
+        return len(self.path.steps)
+
+    def story(self, clock: tuple[str, str] | None) -> Story:
+        """The whole trace, with the steps that are relevant for the property.
+
+        Args:
+            clock: see `roaml.smc.story.tell`.
+        """
+        recorder = PathRecorder(self.space, self.path)
+        names = {storage.name for storage in recorder.shared}
+        return tell(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
+
+
+ALL, NONE = "all", "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Exact:
+    """The values from all states.
+
+    Attributes:
+        minimum, maximum: over all schedulers, enclosed by bounds.
+        uniform: the value with uniform choices.
+        states: how many there are.
+        is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
+        proof: `ALL` if the property is an invariant that holds in all states, `NONE` if no state is what it asks
+            for; "" otherwise.
+        traces: the shortest ones in which the property fails or holds, if there are such traces.
+    """
+
+    minimum: Bounds
+    maximum: Bounds
+    uniform: Bounds
     states: int
+    is_precise: bool = True
+    proof: str = ""
+    traces: tuple[ShortestTrace, ...] = field(default=(), repr=False, compare=False)
+
+    @property
+    def least(self) -> float:
+        return _value(self.minimum)
+
+    @property
+    def greatest(self) -> float:
+        return _value(self.maximum)
+
+    @property
+    def average(self) -> float:
+        """With uniform choices."""
+        return _value(self.uniform)
+
+    def shortest(self, verdict: int) -> ShortestTrace | None:
+        """The shortest trace with a verdict, if there is one."""
+        return next((trace for trace in self.traces if trace.verdict == verdict), None)
+
+
+def _value(bounds: Bounds) -> float:
+    """The value within close bounds: an end that is exact, else their middle."""
+    if bounds.lower == bounds.upper:
+        return bounds.lower
+    if math.isinf(bounds.upper) or math.isinf(bounds.lower):
+        return math.nan
+    return next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), (bounds.lower + bounds.upper) / 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +161,7 @@ class Result:
         choices: the knowledge about schedulers other than the uniform one; `None` if only uniform choices are
             considered.
         refusal: why there is no answer; `fault` is its cause.
+        undecided: why all states could not decide it.
         traces: the traces of `answer`, which can be simulated again.
     """
 
@@ -101,6 +176,7 @@ class Result:
     exact: Exact | None = None
     choices: Choices | None = None
     refusal: Refusal | None = None
+    undecided: str = ""
     fault: FaultError | None = field(default=None, repr=False, compare=False)
     traces: Traces | None = field(default=None, repr=False, compare=False)
 
@@ -112,7 +188,9 @@ class Result:
     @property
     def asks_stuck(self) -> bool:
         """Whether the question is about stuck traces."""
-        return any(answer.question.is_stuck for answer in self._answers())
+        traces = () if self.exact is None else self.exact.traces
+        questions = [answer.question for answer in self._answers()] + [t.space.asked.question for t in traces]
+        return any(question.is_stuck for question in questions)
 
     @property
     def epsilon(self) -> float:
@@ -120,9 +198,14 @@ class Result:
         return next((answer.options.epsilon for answer in self._answers()), 0.0)
 
     @property
+    def has_no_expectation(self) -> bool:
+        """Whether there is an answer that is compared with nothing, so that it is neither good nor bad."""
+        return self.refusal is None and not self.undecided and not self.verdicts
+
+    @property
     def is_met(self) -> bool:
         """Whether there is an answer, and every expectation holds."""
-        return self.refusal is None and all(verdict.is_met for verdict in self.verdicts)
+        return self.refusal is None and not self.undecided and all(verdict.is_met for verdict in self.verdicts)
 
     def _answers(self) -> Iterator[Answer]:
         answers = [self.answer, *(sampled.answer for sampled in self.sampled)]

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from roaml.comparison import Comparison
 from roaml.jani.model import Model
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property
 from roaml.scxml.names import assumptions_of
 from roaml.text import SourceFile
+from roaml.verification.expectations import Expectation, expectation_of
 
 CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
 """The variables of a translated system that hold its time: seconds and nanoseconds."""
@@ -35,6 +37,7 @@ class VerificationTarget:
         source_of: path -> the text of the file of an origin; `None` if it is unknown.
         clock: the variables for seconds and nanoseconds, if the model has them.
         assumptions: property -> the property that its assumptions hold, if it has any.
+        expectations: those beside the properties, and those in the configuration.
     """
 
     path: str
@@ -43,12 +46,19 @@ class VerificationTarget:
     source_of: Callable[[str], SourceFile | None]
     clock: tuple[str, str] | None
     assumptions: Mapping[str, Property] = field(default_factory=dict)
+    expectations: tuple[Expectation, ...] = ()
 
     @property
     def properties(self) -> tuple[Property, ...]:
         """What can be verified: the properties of the model, without those about assumptions."""
         assumed = {property_.name for property_ in self.assumptions.values()}
         return tuple(property_ for property_ in self.model.properties if property_.name not in assumed)
+
+    def expecting(self, comparisons: Mapping[str, Comparison]) -> VerificationTarget:
+        """The same target, which expects these values of properties too; of those that it has."""
+        names = {property_.name for property_ in self.properties}
+        more = [expectation_of(name, each) for name, each in comparisons.items() if name in names]
+        return replace(self, expectations=(*self.expectations, *more)) if more else self
 
     def place(self, origin: Origin | None) -> LineColumn | None:
         """The position of an origin; `None` if it is unknown."""

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
@@ -17,11 +18,11 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
+from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
 from roaml.verification.expectations import Expectation, Verdict, check_range, judge
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
-from roaml.verification.storm import exact_values, judge_exactly
 from roaml.verification.stuck import Look
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
@@ -95,7 +96,7 @@ def verifier_of(
             raise PropertyError(f"there is no property `{name}`, for which a result is expected")
     checker = checker_of(target, names)
     for asked in checker.asked:
-        for expectation in expectations:
+        for expectation in (*expectations, *target.expectations):
             if expectation.name == asked.question.name:
                 check_range(expectation, asked.question)
     return Verifier(target, checker, options or Options(), expectations, only_uniform)
@@ -126,15 +127,16 @@ class Verifier:
             raise self.checker.refused[name]
         asked = next(asked for asked in self.checker.asked if asked.question.name == name)
         if asked.question.threshold is None:
-            for expectation in self.expectations:
+            for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
         return asked
 
     def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
-        """The expectations of a property: its own, and those in `expectations`."""
+        """The expectations of a property: its own, those in `expectations`, and those of the target."""
         name, threshold = asked.question.name, asked.question.threshold
-        own = tuple(expectation for expectation in self.expectations if expectation.name == name)
+        given = (*self.expectations, *self.target.expectations)
+        own = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
         if threshold is None or any(expectation.threshold == threshold for expectation in own):
             return own
         return (Expectation(name, threshold, is_own=True), *own)
@@ -305,16 +307,25 @@ class Verifier:
             stuck.shortest(result.stuck for result in sampled),
         )
 
-    def exact(self, asked: CompiledProperty, max_states: int) -> Result:
-        """The exact minimum and maximum of a property, by Storm.
+    def exhaustive(
+        self, asked: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
+    ) -> Result:
+        """The exact values of a property, from all states; undecided where a limit ends their exploration.
+
+        Args:
+            watch: called with the number of states, and of those whose steps are known.
 
         Raises:
-            ExactError: see `roaml.verification.storm.exact_values`.
-            FaultError: the model executed an undefined operation.
+            FaultError: the model executes an undefined operation in some state.
         """
         began = time.monotonic()
-        exact = exact_values(self.checker, asked, max_states)
-        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in self.expected(asked))
+        expectations = self.expected(asked)
+        try:
+            exact = exact_values(self.checker, asked, limits, watch)
+        except UndecidedError as error:
+            open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
+            return Result(asked.question.name, None, open_, time.monotonic() - began, undecided=str(error))
+        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in expectations)
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
     def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:

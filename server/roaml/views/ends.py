@@ -16,6 +16,7 @@ from roaml.jani.properties import identifiers
 from roaml.scxml.names import (
     ASKED,
     CLOCK,
+    OBSERVER_SUFFIX,
     OPEN,
     OPENED,
     PENDING,
@@ -65,7 +66,7 @@ def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
     for property_ in model.properties:
         read = [name for name, _ in identifiers(property_.expression)]
         prefixes = [observer_prefix(name, VIOLATED, SATISFIED) for name in read]
-        prefixes = [prefix for prefix in prefixes if f"{prefix}__observer" in observers]
+        prefixes = [prefix for prefix in prefixes if f"{prefix}{OBSERVER_SUFFIX}" in observers]
         if not prefixes:
             continue
         own = prefixes[0]  # The others are of its assumptions.

@@ -11,7 +11,7 @@ from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.smc.record import VERDICTS, Plain, VariableChange
+from roaml.smc.record import SHORTEST, VERDICTS, Plain, VariableChange
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
@@ -109,9 +109,10 @@ def heading(story: Story) -> str:
     """A sentence that summarises the trace."""
     verdict = VERDICTS.get(story.recording.verdict, "went wrong")
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
-    text = f"{story.property} {verdict} in trace {story.recording.trace} after {steps}"
+    trace = "the shortest trace" if story.recording.trace == SHORTEST else f"trace {story.recording.trace}"
+    text = f"{story.property} {verdict} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
-        text = f"{story.property}: trace {story.recording.trace} gets stuck after {steps}"
+        text = f"{story.property}: {trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):
         text += f" ({story.recording.end.text})"
     if story.is_whole:

@@ -14,7 +14,16 @@ from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.scxml.names import NODE_AUTOMATON, STATUSES, TREE_EVENT, is_generated, is_length, received_by, sent_by
+from roaml.scxml.names import (
+    NODE_AUTOMATON,
+    OBSERVER_SUFFIX,
+    STATUSES,
+    TREE_EVENT,
+    is_generated,
+    is_length,
+    received_by,
+    sent_by,
+)
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
@@ -137,7 +146,14 @@ def turns(story: Story) -> list[Turn]:
     reader = _Reader(story)
     for index in range(len(story.steps)):
         reader.read(index)
-    return [turn for turn in reader.turns if turn.ends or _is_told(turn, reader.inner)]
+    own = {f"{variable.rpartition('__')[0]}{OBSERVER_SUFFIX}" for variable in story.variables}
+    told = (turn for turn in reader.turns if turn.ends or _is_told(turn, reader.inner))
+    return [turn for turn in told if not _observes_another(turn, own)]
+
+
+def _observes_another(turn: Turn, own: Collection[str]) -> bool:
+    """Whether the automaton observes another property than the one that the story is about."""
+    return turn.automaton.endswith(OBSERVER_SUFFIX) and turn.automaton not in own
 
 
 def _is_told(turn: Turn, inner: Collection[int]) -> bool:

@@ -37,6 +37,7 @@ export const SHOW_REFERENCES = "as2fm.showReferences";
 
 /** The command with which lenses show why a property fails. Arguments: the URI of a system, the name of a property. */
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
+export const DEBUG_COUNTEREXAMPLE = "as2fm.debugCounterexample";
 
 const WELL_FORMEDNESS = "xml-syntax";
 const MAX_LOGGED_CHARACTERS = 4000;
@@ -118,6 +119,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
             showCounterexample: SHOW_COUNTEREXAMPLE,
+            debugCounterexample: DEBUG_COUNTEREXAMPLE,
             triggerSuggest: "editor.action.triggerSuggest",
         },
         progressOnInitialization: false,

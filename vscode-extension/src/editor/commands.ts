@@ -4,8 +4,9 @@ import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
-import { SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
+import { DEBUG_COUNTEREXAMPLE, SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
 import type { Counterexamples } from "./counterexamples";
+import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
 import type { JaniView } from "./janiView";
 import type { PicturePanels } from "./picturePanels";
@@ -30,6 +31,7 @@ export interface Parts {
     readonly pictures: PicturePanels;
     readonly tests: PropertyTests;
     readonly counterexamples: Counterexamples;
+    readonly debugging: Debugging;
 }
 
 export function registerCommands(parts: Parts): void {
@@ -37,6 +39,7 @@ export function registerCommands(parts: Parts): void {
     const commands: Record<string, () => unknown> = {
         translate: trusted(() => translate(parts)),
         verifySystem: trusted(() => verify(parts)),
+        debugSystem: trusted(() => debugSystem(parts)),
         showJani: () => withEditor((editor) => parts.jani.open(editor.document.uri, vscode.ViewColumn.Active)),
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
@@ -75,6 +78,19 @@ export function registerCommands(parts: Parts): void {
             return asked && parts.counterexamples.show(asked.system, asked.property);
         }),
     );
+    context.subscriptions.push(
+        vscode.commands.registerCommand(
+            DEBUG_COUNTEREXAMPLE,
+            (of: string | vscode.TestItem, property: string, trace?: Trace) => {
+                const asked = typeof of === "string" ? { system: of, property } : parts.tests.of(of);
+                const uri = asked && server.client?.protocol2CodeConverter.asUri(asked.system);
+                return (
+                    uri &&
+                    parts.debugging.counterexample(uri, asked.property, typeof of === "string" ? trace : undefined)
+                );
+            },
+        ),
+    );
     for (const [name, run] of Object.entries(commands)) {
         context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
     }
@@ -99,6 +115,11 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
     if (await tests.verify(uri, [])) return;
     const name = vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
     void vscode.window.showInformationMessage(vscode.l10n.t("{0} lists no properties that can be verified.", name));
+}
+
+async function debugSystem({ documents, debugging }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    if (system) await debugging.start(system, {});
 }
 
 async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {

@@ -16,6 +16,7 @@ import {
 import { outcomeOf, type Outcome } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE } from "./client";
+import type { Debugging } from "./debugging";
 import type { LanguageServer } from "./server";
 import { done } from "./steps";
 import { isTrusted } from "./trust";
@@ -37,6 +38,7 @@ export class PropertyTests implements vscode.Disposable {
 
     constructor(
         private readonly server: LanguageServer,
+        private readonly debugging: Debugging,
         private readonly log: vscode.LogOutputChannel,
     ) {
         this.controller = vscode.tests.createTestController("as2fm", vscode.l10n.t("AS2FM properties"));
@@ -47,12 +49,18 @@ export class PropertyTests implements vscode.Disposable {
             (request, token) => this.run(request, token),
             true,
         );
+        const debug = this.controller.createRunProfile(
+            vscode.l10n.t("Debug Counterexample"),
+            vscode.TestRunProfileKind.Debug,
+            (request) => this.debug(request),
+        );
         const soon = () => {
             this.refreshSoon();
         };
         this.subscriptions = [
             this.controller,
             profile,
+            debug,
             server.onState(soon),
             vscode.languages.onDidChangeDiagnostics(soon),
             vscode.workspace.onDidChangeTextDocument(({ document }) => {
@@ -164,6 +172,13 @@ export class PropertyTests implements vscode.Disposable {
             run.end();
             for (const each of [...both, cancel]) each.dispose();
         }
+    }
+
+    /** Debug a run in which the first of the properties does not hold. */
+    private async debug(request: vscode.TestRunRequest): Promise<void> {
+        const [item] = chosen(this.controller.items, request.include, request.exclude);
+        const asked = item && this.asked.get(item);
+        if (asked) await this.debugging.counterexample(this.uri(asked.system), asked.property, undefined);
     }
 
     private async runOne(run: vscode.TestRun, item: vscode.TestItem, token: vscode.CancellationToken): Promise<void> {

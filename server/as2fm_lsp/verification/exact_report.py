@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results from all states, for users and programs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.statistics import Bounds
+from roaml.verification.results import ALL, NONE, Exact
+
+_SAME = 1e-6
+
+
+def lines(name: str, exact: Exact, seconds: float) -> list[str]:
+    """For users: the values, and the shortest traces."""
+    states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
+    end = f"{states}, {seconds:.1f} s"
+    quality = "exact" if exact.is_precise else "not exact, the bounds did not become closer"
+    shown: list[str] = []
+    if _same(exact.minimum, exact.maximum) and _same(exact.minimum, exact.uniform):
+        shown.append(f"{name}: = {_number(exact.minimum)} for all schedulers, {quality}, {end}")
+    else:
+        both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
+        shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
+    fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
+    if exact.proof == ALL:
+        shown.append(f"  proof: it holds in all {states}")
+    elif exact.proof == NONE:
+        shown.append(f"  proof: none of the {states} is what it asks for")
+    told = [
+        f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
+        for what, trace in (("fails", fails), ("holds", holds))
+        if trace is not None
+    ]
+    if told:
+        shown.append(f"  shortest traces: it {', it '.join(told)}")
+    return shown
+
+
+def row(exact: Exact) -> dict[str, Any]:
+    """For JSON."""
+    return {
+        "least": _finite(exact.least),
+        "greatest": _finite(exact.greatest),
+        "uniform": _finite(exact.average),
+        "bounds": {
+            name: [_finite(bounds.lower), _finite(bounds.upper)]
+            for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
+        },
+        "precise": exact.is_precise,
+        "proof": exact.proof,
+        "states": exact.states,
+        "shortest": {
+            name: None if (trace := exact.shortest(verdict)) is None else trace.steps
+            for name, verdict in (("failed", FALSE), ("passed", TRUE))
+        },
+    }
+
+
+def _same(a: Bounds, b: Bounds) -> bool:
+    if a == b:
+        return True
+    lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)
+    return upper - lower <= _SAME * max(1.0, abs(lower))
+
+
+def _number(bounds: Bounds) -> str:
+    """A value, or its bounds if they are far apart."""
+    if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
+        return "∞" if bounds.lower > 0 else "-∞"
+    if bounds.upper - bounds.lower > _SAME * max(1.0, abs(bounds.lower)):
+        return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
+    middle = (bounds.lower + bounds.upper) / 2
+    return f"{next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle):.7g}"
+
+
+def _finite(value: float) -> float | str | None:
+    if math.isnan(value):
+        return None
+    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Comparisons with a number as users write them: `>= 0.95`."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+_SPELLINGS = {">=": ">=", "≥": ">=", "<=": "<=", "≤": "<=", ">": ">", "<": "<", "==": "==", "=": "=="}
+_FORM = re.compile(r"\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """`relation` is one of `>=`, `<=`, `>`, `<` and `==`."""
+
+    relation: str
+    number: float
+
+
+def read_comparison(text: str) -> Comparison | None:
+    """The comparison in `text`; `None` if it is not of the form."""
+    match = _FORM.fullmatch(text)
+    try:
+        number = float(match[2]) if match else math.nan
+    except ValueError:
+        return None
+    return None if match is None or math.isnan(number) else Comparison(_SPELLINGS[match[1]], number)

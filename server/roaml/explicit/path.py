@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shortest trace to a state, as a recording that can be told as a story."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roaml.explicit import codes
+from roaml.explicit.space import Space
+from roaml.smc.end import End
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.record import Recorder, Recording, TraceStep
+
+
+class PathStep(NamedTuple):
+    """A step: the vector, and for each of its slots that do something the edge and the destination."""
+
+    vector: int
+    edges: list[int]
+    ways: list[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """The steps to a state, and what is known of the goal there."""
+
+    state: int
+    steps: tuple[PathStep, ...]
+    verdict: int
+
+
+def shortest(space: Space, verdict: int) -> Path | None:
+    """The shortest trace with a verdict on the goal; `None` if no trace has it after finitely many steps."""
+    state = _first(space, verdict)
+    if state is None:
+        return None
+    return Path(state, tuple(path_to(space, state)), verdict)
+
+
+def path_to(space: Space, state: int) -> list[PathStep]:
+    """The steps by which a state was reached first."""
+    search = space.search
+    steps = []
+    while (parent := search.parent_of(state)) >= 0:
+        choice = search.steps_to(parent, state)
+        assert choice is not None
+        steps.append(PathStep(*choice))
+        state = parent
+    return steps[::-1]
+
+
+def _first(space: Space, verdict: int) -> int | None:
+    """The state with the smallest number that decides the goal, or in which a trace ends, with this verdict."""
+    labels = bytes(memoryview(space.search.label)[: space.search.expanded])
+    is_stuck = space.asked.question.is_stuck
+    wanted = bytes(label for label in range(256) if _verdict(label, is_stuck) == verdict)
+    places = (labels.find(label) for label in wanted)
+    return min((place for place in places if place >= 0), default=None)
+
+
+def _verdict(label: int, is_stuck: bool) -> int:
+    status = label & codes.STATUS
+    if status in (FALSE, TRUE) or not label & codes.ENDED:
+        return status
+    if is_stuck:
+        return TRUE if label & codes.GETS_STUCK else FALSE
+    if label & codes.OPEN:
+        return UNKNOWN
+    return TRUE if label & (codes.LASTS if label & codes.HOLDS else codes.FAILS) else FALSE
+
+
+class PathRecorder(Recorder):
+    """Takes the steps of a path, instead of random ones."""
+
+    def __init__(self, space: Space, path: Path) -> None:
+        super().__init__(space.checker, space.asked, 0, len(path.steps))
+        self._path = path
+        self._label = space.search.label_of(path.state)
+
+    def walk(self, recording: Recording) -> Iterator[TraceStep]:
+        kernel = self._kernel
+        kernel.begin(self.seed, 0)
+        self._steps.start()
+        for number, (vector, edges, ways) in enumerate(self._path.steps, 1):
+            kernel.go(vector, edges, ways)
+            yield self._steps.read(number)
+        recording.verdict = self._path.verdict
+        has_ended = self._label & codes.ENDED and self._label & codes.STATUS == UNKNOWN
+        recording.end = End(kernel.standstill()) if has_ended else End.DECIDED
+
+    def rush(self, recording: Recording) -> None:
+        for _ in self.walk(recording):
+            pass

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+# The C types of search.py. This file contains types only: without them the same code runs as plain Python.
+# cython: language_level=3
+
+cimport cython
+from roaml.smc.kernel cimport Kernel
+
+ctypedef unsigned long long u64
+ctypedef long long i64
+
+cdef u64 MASK, HASH_1, HASH_2, HIGH, MOST
+cdef i64 MOST_NUMBERS, MANY
+cdef int LEARNED, LEARNED_STEPS
+cdef int FALSE, TRUE, UNKNOWN, FAULTY
+cdef int TIME, STUCK
+cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
+cdef int STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK
+
+@cython.final
+cdef class StateSearch:
+    cdef Kernel kernel
+    cdef int[::1] way_start, way_cell, settled, cell_watch
+    cdef int places, first_real, variables, leaves, counter, cells
+    cdef i64 most_steps, lower_bound
+    cdef int remembers
+    cdef i64 most_states, most_bytes, most_choices
+    cdef public i64 depth
+    cdef i64 most_depth, layer_end
+    cdef double[::1] box
+    cdef i64[::1] box_bits
+    cdef i64[::1] low, old_low, value, memory
+    cdef int[::1] bits, word, shift, live_start, live, old_word, old_shift
+    cdef u64[::1] mask, old_mask, room, now, following
+    cdef public int words
+    cdef int misfit, has_learned, old_words
+    cdef i64 misfit_value
+    cdef double[::1] chance
+    cdef int[::1] edges, edge_from, slots, picks, ways, moved
+    cdef public u64[::1] keys
+    cdef u64[::1] table
+    cdef u64 table_mask
+    cdef public i64[::1] start
+    cdef public int[::1] parent, code
+    cdef public unsigned char[::1] label
+    cdef public double[::1] reals
+    cdef i64 state_room, key_room, code_room, reals_room
+    cdef public i64 code_end, count, expanded, problem, transitions
+    cdef dict number_of
+    cdef int real_count
+    cdef public int status, is_weighted
+    cdef i64 branches
+
+    @cython.locals(value=i64)
+    cdef i64 _current(self, int cell) noexcept
+    cdef void _set_current(self, int cell, i64 value) noexcept
+    @cython.locals(value=i64, code=u64, at=int, shift=int)
+    cdef void _pack(self, int cell) noexcept
+    @cython.locals(code=u64)
+    cdef i64 _decoded(self, i64 state, int cell) noexcept
+    cdef i64 _signed(self, u64 value) noexcept
+    @cython.locals(cell=int)
+    cdef void _widen(self) except *
+    @cython.locals(at=int, used=int, i=int, k=int)
+    cdef int _squeeze_in(self, int cell) noexcept
+    @cython.locals(trace=int, cell=int, value=i64, i=int)
+    cdef void _learn(self) except *
+    @cython.locals(i=int)
+    cdef void _keep_layout(self) noexcept
+    @cython.locals(least=i64, greatest=i64, span=u64, bits=int, unit=u64, last=i64)
+    cdef void _fit(self, int cell, i64 value) noexcept
+    @cython.locals(cell=int, i=int, old_keys=u64[::1], state=i64, source=i64, target=i64, code=u64)
+    cdef void _repack(self) except *
+    @cython.locals(at=int, used=int, live=int, cell=int, bits=int)
+    cdef void _lay_out(self) except *
+    @cython.locals(value=u64, i=int)
+    cdef u64 _hash_of(self, i64 at) noexcept
+    @cython.locals(state=i64, value=u64, at=u64)
+    cdef void _rehash(self, u64 size) except *
+    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, state=i64, first=i64, i=int, same=int)
+    cdef int _find(self, i64 parent) except? -9
+    cdef i64 _used(self) noexcept
+    cdef void _make_room(self) except *
+    cdef int _emit(self, int word) except -1
+    cdef int _number(self, double value) except -1
+    @cython.locals(first=i64, moved=int, w=int, code=u64, i=int, cell=int, value=i64, place=int, group=int)
+    cdef void _visit(self, i64 state) noexcept
+    @cython.locals(steps=i64, label=int, lasting=int, leaf=int, verdict=int, lower=i64, status=int)
+    cdef int _judged(self) noexcept
+    cdef int _combined(self) noexcept
+    @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int,
+                   weight=double, k=int, j=int)
+    cdef void _expand(self, i64 state) except *
+    @cython.locals(reason=int, added=int, leaf=int)
+    cdef int _end(self) noexcept
+    @cython.locals(count=int, found=int, i=int, slot=int, place=int, group=int, first=int, end=int, edge=int, guard=int)
+    cdef int _open(self, int vector) noexcept
+    @cython.locals(first=int, end=int, total=double, way=int, register=int)
+    cdef void _weigh(self, int edge) noexcept
+    @cython.locals(j=int)
+    cdef void _first_ways(self, int count) noexcept
+    @cython.locals(j=int, edge=int)
+    cdef int _next_ways(self, int count) noexcept
+    @cython.locals(j=int)
+    cdef int _next_edges(self, int count) noexcept
+    @cython.locals(is_plain=int, j=int, edge=int, successor=i64, head=i64, reward=double, leads_on=int, chance=double)
+    cdef int _choose(self, int vector, int count, i64 state, double weight, double exit_reward) except? -9
+    @cython.locals(j=int, i=int, way=int, k=int, cell=int, found=i64)
+    cdef int _successor(self, int vector, int count, i64 state) except? -9

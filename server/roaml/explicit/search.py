@@ -1,0 +1,886 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The search through all states of a program, breadth first.
+
+- Plain Python; Cython compiles it with the types in `search.pxd`, like the kernel, whose code computes the successors.
+- A state is packed into words of 64 bits. A *cell* (see `tables`) has as many bits as the values that it has had need:
+  none while it does not change. When a value does not fit, all states are packed anew.
+- A hash table with open addressing contains the numbers of the states, with half of their hash.
+- The choices of a state are a sequence of 32-bit words. A word from 0 on is a choice with one destination. A choice
+  with n destinations, or with a weight other than 1, or a reward is `-n`, the number of its weight, the number of its
+  reward, and for each destination a state and the number of its probability. These numbers index `reals`.
+- A state is judged when its choices are computed: its *label* says what is known of the goal there.
+"""
+
+from __future__ import annotations
+
+from array import array
+from typing import TYPE_CHECKING, Any
+
+from roaml.explicit.memory import flat
+
+if TYPE_CHECKING:
+    from roaml.explicit.tables import Tables
+    from roaml.smc.kernel import Kernel
+
+MASK = 0xFFFFFFFFFFFFFFFF
+HASH_1 = 0x9E3779B97F4A7C15
+HASH_2 = 0xBF58476D1CE4E5B9
+HIGH = 0xFFFFFFFF
+MOST = 0x7FFFFFFFFFFFFFFF
+MANY = 4096
+"""From this number of states on, cells get more bits than they need, since packing all states anew takes long."""
+LEARNED, LEARNED_STEPS = 32, 1000
+"""With so many states, so many random traces of so many steps show which values are to be expected."""
+MOST_NUMBERS = 0x7FFFFFF0
+"""States and distinct numbers are counted with 31 bits."""
+
+FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
+TIME, STUCK = 1, 3
+"""Reasons why a trace ends (`end.End`)."""
+
+COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES = 0, 1, 2, 3, 4, 5
+"""How far a search has come: all states; it can be continued; a limit of states or memory; an undefined operation; too
+many combinations in one state."""
+
+STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK = 3, 4, 8, 16, 32, 64, 128
+"""The bits of a label. STATUS: FALSE, TRUE or UNKNOWN. If the goal is still unknown on a path that stays here for ever:
+LASTS: it is true if the lasting condition holds for ever, FAILS: it is true if not. HOLDS: the lasting condition, or
+the right side of a bounded until, holds. OPEN: the time ends before the goal is decided. ENDED: nothing changes any
+more; GETS_STUCK: because automata wait for one another."""
+
+
+def compiled() -> bool:
+    """Whether this module is the compiled extension."""
+    return not __file__.endswith(".py")
+
+
+class StateSearch:
+    """The states that have been reached, and the choices of those that have been expanded.
+
+    Args:
+        kernel: of the program and the goal.
+        steps: the number of steps that the goal distinguishes, 0 if none.
+        lower: if positive, the goal is one until with this lower bound, which the solver counts.
+        depth: states after this number of steps are not expanded; negative: no limit.
+
+    Attributes:
+        count: the number of states.
+        expanded: the number of those whose choices are known; they are the first ones.
+        problem: the state whose choices could not be computed.
+    """
+
+    def __init__(
+        self, kernel: Any, tables: Tables, steps: int, lower: int, depth: int, most_states: int, most_bytes: int,
+        most_choices: int,
+    ) -> None:  # fmt: skip
+        self.kernel: Kernel = kernel
+        self.way_start = tables.way_start
+        self.way_cell = tables.way_cell
+        self.settled = tables.settled
+        self.cell_watch = tables.cell_watch
+        self.places = self.kernel.instances
+        self.first_real = self.places + self.kernel.int_count
+        self.variables = self.first_real + self.kernel.real_count
+        self.leaves = self.kernel.leaves
+        self.counter = self.variables + self.leaves
+        self.cells = self.counter + 1
+        self.most_steps = steps
+        self.lower_bound = lower
+        self.remembers = 1 if self.leaves > 1 or steps > 0 else 0
+        self.most_states = min(most_states, MOST_NUMBERS)
+        self.most_bytes = most_bytes
+        self.most_choices = most_choices
+        self.depth = 0
+        self.most_depth = depth
+        self.layer_end = 1
+
+        box = array("d", [0.0])
+        self.box = box
+        self.box_bits = memoryview(box).cast("B").cast("q")
+        self.low = array("q", [0] * self.cells)
+        self.bits = array("i", [0] * self.cells)
+        self.mask = array("Q", [0] * self.cells)
+        self.word = array("i", [0] * self.cells)
+        self.shift = array("i", [0] * self.cells)
+        self.live_start = array("i", [0, 0])
+        self.live = array("i", [0] * self.cells)
+        self.room = array("Q", [0] * self.cells)
+        self.old_words = 1
+        self.old_mask = array("Q", [0] * self.cells)
+        self.old_low = array("q", [0] * self.cells)
+        self.old_word = array("i", [0] * self.cells)
+        self.old_shift = array("i", [0] * self.cells)
+        self.words = 1
+        self.value = array("q", [0] * self.cells)
+        self.memory = array("q", [0] * (self.leaves + 1))
+        self.now = array("Q", [0])
+        self.following = array("Q", [0])
+        self.misfit = -1
+        self.misfit_value = 0
+        self.has_learned = 0
+
+        ways = len(self.kernel.way_target)
+        self.chance = array("d", [0.0] * (ways + 1))
+        for edge in range(len(self.kernel.guard)):
+            before = 0.0
+            for way in range(self.kernel.way_start[edge], self.kernel.way_start[edge + 1]):
+                self.chance[way] = self.kernel.way_sum[way] - before
+                before = self.kernel.way_sum[way]
+        slots = self.kernel.instances + 1
+        self.edges = array("i", [0] * (len(self.kernel.guard) + 1))
+        self.edge_from = array("i", [0] * (slots + 1))
+        self.slots = array("i", [0] * slots)
+        self.picks = array("i", [0] * slots)
+        self.ways = array("i", [0] * slots)
+        self.moved = array("i", [0] * slots)
+
+        self.keys = flat("Q", 64)
+        self.table_mask = 255
+        self.table = flat("Q", 256)
+        self.start = flat("q", 64)
+        self.parent = flat("i", 64)
+        self.label = flat("B", 64)
+        self.state_room = 64
+        self.key_room = 64
+        self.code = flat("i", 256)
+        self.code_room = 256
+        self.code_end = 0
+        self.reals = flat("d", 64)
+        self.reals_room = 64
+        self.number_of: dict[float, int] = {}
+        self.real_count = 0
+        self.count = 0
+        self.expanded = 0
+        self.problem = -1
+        self.status = PART
+        self.branches = 0
+        self.transitions = 0
+        self.is_weighted = 0
+
+        self._number(1.0)
+        self.kernel.begin(0, 0)
+        for leaf in range(self.leaves):
+            self.memory[leaf] = UNKNOWN
+        for cell in range(self.cells):
+            self.low[cell] = self._current(cell)
+            self.value[cell] = self.low[cell]
+        if self.kernel.fault != 0:
+            self.status = FAULT
+        for cell in range(self.places):
+            self._fit(cell, self.low[cell])
+        self._lay_out()
+        self.now = array("Q", [0] * self.words)
+        self.following = array("Q", [0] * self.words)
+        for cell in range(self.cells):
+            self._pack(cell)
+        self.now[:] = self.following
+        self.key_room = self.state_room * self.words
+        self.keys = flat("Q", self.key_room)
+        self._find(-1)
+
+    # ------------------------------------------------------------ public
+
+    def run(self, states: int) -> int:
+        """Expand about so many states; returns how far the search has come."""
+        goal = self.expanded + states
+        try:
+            while self.status == PART and self.expanded < goal:
+                if self.count > MANY and self.has_learned == 0:
+                    self.has_learned = 1
+                    self._learn()
+                self._expand(self.expanded)
+        except (MemoryError, OSError):
+            self.status = MEMORY
+        return self.status
+
+    def key(self, state: int) -> list[int]:
+        """The values of all cells of a state."""
+        return [self._decoded(state, cell) for cell in range(self.cells)]
+
+    def number(self, index: int) -> float:
+        """A weight, reward or probability by its number."""
+        value: float = self.reals[index]
+        return value
+
+    def parent_of(self, state: int) -> int:
+        parent: int = self.parent[state]
+        return parent
+
+    def label_of(self, state: int) -> int:
+        label: int = self.label[state]
+        return label
+
+    def memory_used(self) -> int:
+        """The number of bytes."""
+        return self._used()
+
+    def choices_of(self, state: int) -> list[tuple[float, float, list[tuple[float, int]]]]:
+        """The choices of a state: weight, expected reward, and destinations with their probabilities."""
+        found = []
+        at = self.start[state]
+        while at < self.start[state + 1]:
+            size = self.code[at]
+            if size >= 0:
+                found.append((1.0, 0.0, [(1.0, size)]))
+                at += 1
+                continue
+            weight, reward = self.reals[self.code[at + 1]], self.reals[self.code[at + 2]]
+            at += 3
+            branches = []
+            for _ in range(-size):
+                branches.append((self.reals[self.code[at + 1]], self.code[at]))
+                at += 2
+            found.append((weight, reward, branches))
+        return found
+
+    def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
+        """A choice by which `successor` is reached from `state`: the vector, and for each slot that does something the
+        numbers of the edge among the enabled ones and of the way."""
+        self._visit(state)
+        self.label[state] = self._judged()
+        for i in range(self.kernel.enabled_count):
+            vector = self.kernel.enabled[i]
+            count = self._open(vector)
+            for j in range(count):
+                self.picks[j] = self.edge_from[j]
+            while True:
+                self._first_ways(count)
+                while True:
+                    chance = 1.0
+                    for j in range(count):
+                        chance *= self.chance[self.ways[j]]
+                    if chance > 0.0 and self._successor(vector, count, state) == successor:
+                        picks = [self.picks[j] - self.edge_from[j] for j in range(count)]
+                        ways = [self.ways[j] - self.kernel.way_start[self.edges[self.picks[j]]] for j in range(count)]
+                        return vector, picks, ways
+                    if self._next_ways(count) == 0:
+                        break
+                if self._next_edges(count) == 0:
+                    break
+        return None
+
+    def fault(self) -> tuple[int, int, int, int, float]:
+        """The undefined operation: see `Kernel.problem`."""
+        found: tuple[int, int, int, int, float] = self.kernel.problem()
+        return found
+
+    def visit(self, state: int) -> None:
+        """Make the kernel's state that of a number."""
+        self._visit(state)
+
+    # ------------------------------------------------------------ packing
+
+    def _current(self, cell: int) -> int:
+        """The value of a cell in the kernel; a real number by its bits."""
+        value: int
+        if cell < self.places:
+            value = self.kernel.place[cell]
+        elif cell < self.first_real:
+            value = self.kernel.ints[cell - self.places]
+        elif cell < self.variables:
+            self.box[0] = self.kernel.reals[cell - self.first_real]
+            value = self.box_bits[0]
+        else:
+            value = self.memory[cell - self.variables]
+        return value
+
+    def _set_current(self, cell: int, value: int) -> None:
+        if cell < self.places:
+            self.kernel.place[cell] = value
+        elif cell < self.first_real:
+            self.kernel.ints[cell - self.places] = value
+        elif cell < self.variables:
+            self.box_bits[0] = value
+            self.kernel.reals[cell - self.first_real] = self.box[0]
+        else:
+            self.memory[cell - self.variables] = value
+
+    def _pack(self, cell: int) -> None:
+        """Put the current value of a cell into `following`; if it does not fit, note that."""
+        value = self._current(cell)
+        code = (value - self.low[cell]) & MASK
+        if code > self.mask[cell]:
+            self.misfit = cell
+            self.misfit_value = value
+            return
+        if self.mask[cell] == 0:
+            return
+        at = self.word[cell]
+        shift = self.shift[cell]
+        self.following[at] = (self.following[at] & (MASK ^ (self.mask[cell] << shift))) | (code << shift)
+
+    def _decoded(self, state: int, cell: int) -> int:
+        code = (self.keys[state * self.words + self.word[cell]] >> self.shift[cell]) & self.mask[cell]
+        return self._signed((code + self.low[cell]) & MASK)
+
+    def _signed(self, value: int) -> int:
+        return value - MASK - 1 if value > MOST else value
+
+    def _widen(self) -> None:
+        """Give the cell `misfit` enough bits for `misfit_value`, and pack all states anew."""
+        cell = self.misfit
+        self.misfit = -1
+        self._keep_layout()
+        self._fit(cell, self.misfit_value)
+        # The code of a cell that has not changed so far is 0 in all states, wherever its bits are.
+        if self.old_mask[cell] != 0 or self.low[cell] != self.old_low[cell] or self._squeeze_in(cell) == 0:
+            self._repack()
+
+    def _squeeze_in(self, cell: int) -> int:
+        """Find unused bits for a cell that has had none; returns whether there are any."""
+        for at in range(self.words):
+            used = 0
+            for i in range(self.live_start[at], self.live_start[at + 1]):
+                used += self.bits[self.live[i]]
+            if used + self.bits[cell] <= 64:
+                i = self.live_start[self.words]
+                while i > self.live_start[at + 1]:
+                    self.live[i] = self.live[i - 1]
+                    i -= 1
+                self.live[i] = cell
+                for k in range(at + 1, self.words + 1):
+                    self.live_start[k] += 1
+                self.word[cell] = at
+                self.shift[cell] = used
+                self.mask[cell] = self.room[cell]
+                return 1
+        return 0
+
+    def _learn(self) -> None:
+        """Give all cells enough bits for the values that they have in some random traces."""
+        self._keep_layout()
+        for trace in range(LEARNED):
+            self.kernel.begin(0, trace)
+            for _ in range(LEARNED_STEPS):
+                if self.kernel.step() != UNKNOWN:
+                    break
+                for cell in range(self.variables):
+                    value = self._current(cell)
+                    if ((value - self.low[cell]) & MASK) > self.room[cell]:
+                        self._fit(cell, value)
+        self._repack()
+        self.kernel.begin(0, 0)
+        for cell in range(self.cells):
+            value = self._decoded(0, cell)
+            self.value[cell] = value
+            self._set_current(cell, value)
+        for i in range(self.words):
+            self.now[i] = self.keys[i]
+
+    def _keep_layout(self) -> None:
+        """Remember how the states are packed now."""
+        for i in range(self.cells):
+            self.old_mask[i] = self.mask[i]
+            self.old_low[i] = self.low[i]
+            self.old_word[i] = self.word[i]
+            self.old_shift[i] = self.shift[i]
+        self.old_words = self.words
+
+    def _fit(self, cell: int, value: int) -> None:
+        """Give a cell enough bits for a value."""
+        unit = 1
+        least = self.low[cell]
+        if cell < self.places:
+            # All locations of the instance.
+            last = self.kernel.first_location[cell + 1] if cell + 1 < self.places else len(self.kernel.location_mark)
+            least = self.kernel.first_location[cell]
+            value = last - 1
+            self.low[cell] = least
+        greatest = least + self.room[cell]
+        span = (greatest - value if value < least else value - least) & MASK
+        bits = 0
+        while bits < 62 and span >> bits != 0:
+            bits += 1
+        if self.count > MANY:
+            bits += 2
+        if bits >= 60 or self.first_real <= cell < self.variables:
+            self.bits[cell] = 64
+            self.room[cell] = MASK
+            self.low[cell] = 0
+        else:
+            self.bits[cell] = bits
+            self.room[cell] = (unit << bits) - 1
+            if value < least:
+                self.low[cell] = greatest - ((unit << bits) - 1)
+
+    def _repack(self) -> None:
+        """Pack all states anew."""
+        self._lay_out()
+        self.now = array("Q", [0] * self.words)
+        self.following = array("Q", [0] * self.words)
+        old_keys = self.keys
+        self.key_room = self.state_room * self.words
+        self.keys = flat("Q", self.key_room)
+        for state in range(self.count):
+            source = state * self.old_words
+            target = state * self.words
+            for i in range(self.live_start[self.words]):
+                cell = self.live[i]
+                code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.old_mask[cell]
+                code = (code + self.old_low[cell] - self.low[cell]) & MASK
+                self.keys[target + self.word[cell]] |= code << self.shift[cell]
+        self._rehash(self.table_mask + 1)
+
+    def _lay_out(self) -> None:
+        """Give each cell its place: no cell is in two words."""
+        at = 0
+        used = 0
+        first = True
+        live = 0
+        starts = [0]
+        for cell in range(self.cells):
+            bits = self.bits[cell]
+            self.mask[cell] = self.room[cell]
+            self.word[cell] = 0
+            self.shift[cell] = 0
+            if bits == 0:
+                continue
+            if not first and used + bits > 64:
+                at += 1
+                used = 0
+                starts.append(live)
+            first = False
+            self.word[cell] = at
+            self.shift[cell] = used
+            used += bits
+            self.live[live] = cell
+            live += 1
+        starts.append(live)
+        self.words = at + 1
+        self.live_start = array("i", starts)
+
+    # ------------------------------------------------------------ the table
+
+    def _hash_of(self, at: int) -> int:
+        """The hash of the key at an index of `keys`."""
+        value = HASH_2
+        for i in range(self.words):
+            value = ((value ^ self.keys[at + i]) * HASH_1) & MASK
+            value ^= value >> 32
+        return (value * HASH_2) & MASK
+
+    def _rehash(self, size: int) -> None:
+        self.table = flat("Q", size)
+        self.table_mask = size - 1
+        for state in range(self.count):
+            value = self._hash_of(state * self.words)
+            at = (value >> 7) & self.table_mask
+            while self.table[at] != 0:
+                at = (at + 1) & self.table_mask
+            self.table[at] = ((value >> 32) << 32) | (state + 1)
+
+    def _find(self, parent: int) -> int:
+        """The number of the state with the key `following`; a new one if it has not been reached before. -1 if there
+        are too many."""
+        value = HASH_2
+        for i in range(self.words):
+            value = ((value ^ self.following[i]) * HASH_1) & MASK
+            value ^= value >> 32
+        value = (value * HASH_2) & MASK
+        tag = value >> 32
+        state: int
+        at = (value >> 7) & self.table_mask
+        while True:
+            entry = self.table[at]
+            if entry == 0:
+                break
+            if entry >> 32 == tag:
+                state = (entry & HIGH) - 1
+                first = state * self.words
+                same = 1
+                for i in range(self.words):
+                    if self.keys[first + i] != self.following[i]:
+                        same = 0
+                        break
+                if same != 0:
+                    return state
+            at = (at + 1) & self.table_mask
+        state = self.count
+        if state >= self.most_states:
+            self.status = STATES
+            return -1
+        if state + 2 >= self.state_room or (state + 1) * self.words > self.key_room:
+            self._make_room()
+            if self.status != PART:
+                return -1
+        first = state * self.words
+        for i in range(self.words):
+            self.keys[first + i] = self.following[i]
+        self.parent[state] = parent
+        self.table[at] = (tag << 32) | (state + 1)
+        self.count += 1
+        if self.count * 8 > self.table_mask * 5:
+            self._rehash((self.table_mask + 1) * 2)
+        return state
+
+    def _used(self) -> int:
+        """The bytes in use; what was reserved and never written takes no room."""
+        return self.count * (8 * self.words + 13) + 8 * (self.table_mask + 1) + 4 * self.code_end + 8 * self.real_count
+
+    def _make_room(self) -> None:
+        # While it is copied, it is there twice.
+        if self._used() + self.count * 8 * self.words > self.most_bytes:
+            self.status = MEMORY
+            return
+        self.state_room *= 2
+        self.key_room = self.state_room * self.words
+        self.keys = flat("Q", self.key_room, self.keys)
+        self.start = flat("q", self.state_room, self.start)
+        self.parent = flat("i", self.state_room, self.parent)
+        self.label = flat("B", self.state_room, self.label)
+
+    def _emit(self, word: int) -> int:
+        if self.code_end == self.code_room:
+            if self._used() + 4 * self.code_end > self.most_bytes:
+                self.status = MEMORY
+                return 0
+            self.code_room *= 2
+            self.code = flat("i", self.code_room, self.code)
+        self.code[self.code_end] = word
+        self.code_end += 1
+        return 0
+
+    def _number(self, value: float) -> int:
+        """The index of a number in `reals`."""
+        known = self.number_of.get(value)
+        if known is not None:
+            return known
+        if self.real_count == self.reals_room:
+            self.reals_room *= 2
+            self.reals = flat("d", self.reals_room, self.reals)
+        index = self.real_count
+        self.reals[index] = value
+        self.number_of[value] = index
+        self.real_count += 1
+        return index
+
+    # ------------------------------------------------------------ a state
+
+    def _visit(self, state: int) -> None:
+        """Make the kernel's state that of a number, and update what is enabled. Only the cells that differ from those
+        of the previous state are looked at."""
+        first = state * self.words
+        moved = 0
+        for w in range(self.words):
+            code = self.keys[first + w]
+            if code == self.now[w]:
+                continue
+            self.now[w] = code
+            for i in range(self.live_start[w], self.live_start[w + 1]):
+                cell = self.live[i]
+                value = self._signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & MASK)
+                if value == self.value[cell]:
+                    continue
+                if cell < self.places:
+                    place = self.value[cell]
+                    for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
+                        self.kernel._set_ready(self.kernel.group_slot[group], 0)
+                    self.moved[moved] = cell
+                    moved += 1
+                elif cell < self.variables and self.cell_watch[cell] >= 0:
+                    self.kernel._note(self.cell_watch[cell])
+                self.value[cell] = value
+                self._set_current(cell, value)
+        if self.remembers != 0:
+            for cell in range(self.variables, self.cells):
+                self.memory[cell - self.variables] = self.value[cell]
+        for i in range(moved):
+            place = self.kernel.place[self.moved[i]]
+            for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
+                self.kernel._set_ready(self.kernel.group_slot[group], self.kernel._count(group))
+        if self.kernel.note_count != 0:
+            self.kernel._look_around()
+
+    def _judged(self) -> int:
+        """The label of the state, as far as it does not depend on its choices. `memory` is what its successors
+        remember."""
+        steps = self.memory[self.leaves]
+        label = 0
+        lasting = -1
+        for leaf in range(self.leaves):
+            verdict = self.memory[leaf]
+            if verdict == UNKNOWN:
+                lower = self.kernel.lower[leaf]
+                if lower < 0:
+                    lasting = leaf
+                    if self.kernel._holds(self.kernel.right[leaf]) != 0:
+                        label |= HOLDS
+                elif self.kernel.right[leaf] == -5:
+                    pass
+                elif self.lower_bound > 0:
+                    if self.kernel._holds(self.kernel.right[leaf]) != 0:
+                        label |= HOLDS
+                    if self.kernel._holds(self.kernel.left[leaf]) == 0:
+                        verdict = FALSE
+                elif steps >= lower and self.kernel._holds(self.kernel.right[leaf]) != 0:
+                    verdict = TRUE
+                elif (
+                    self.most_steps > 0 and self.kernel.upper[leaf] >= 0 and steps >= self.kernel.upper[leaf]
+                ) or self.kernel._holds(self.kernel.left[leaf]) == 0:
+                    verdict = FALSE
+            self.kernel.verdict[leaf] = verdict
+            if self.remembers != 0:
+                self.memory[leaf] = verdict
+        status = self._combined()
+        if self.lower_bound > 0 and status != UNKNOWN:
+            status = FALSE
+        label |= status
+        if status == UNKNOWN:
+            for leaf in range(self.leaves):
+                if self.kernel.verdict[leaf] == UNKNOWN:
+                    self.kernel.verdict[leaf] = FALSE
+            if self._combined() == TRUE:
+                label |= FAILS
+            if lasting >= 0:
+                self.kernel.verdict[lasting] = TRUE
+                if self._combined() == TRUE:
+                    label |= LASTS
+            elif label & FAILS != 0:
+                label |= LASTS
+        if self.most_steps > 0 and steps < self.most_steps:
+            self.memory[self.leaves] = steps + 1
+        return label
+
+    def _combined(self) -> int:
+        """The value of the goal's formula by the verdicts of the kernel."""
+        return self.kernel._value(self.kernel.formula_start[0], self.kernel.formula_start[1])
+
+    def _expand(self, state: int) -> None:
+        """Judge a state, and compute its choices if the goal is not decided there."""
+        if state == self.layer_end:
+            self.depth += 1
+            self.layer_end = self.count
+        self.start[state] = self.code_end
+        self._visit(state)
+        label = self._judged()
+        if self.kernel.fault != 0:
+            self.status = FAULT
+            self.problem = state
+            return
+        leads_on = 0
+        if label & STATUS == UNKNOWN and (self.most_depth < 0 or self.depth < self.most_depth):
+            combinations = 0.0
+            exit_reward = 0.0
+            if self.kernel.exit_reward >= 0:
+                self.kernel.reward = 0.0
+                self.kernel._add_reward(self.kernel.exit_reward)
+                exit_reward = self.kernel.reward
+            for i in range(self.kernel.enabled_count):
+                vector = self.kernel.enabled[i]
+                count = self._open(vector)
+                if self.kernel.fault != 0:
+                    self.status = FAULT
+                    self.problem = state
+                    return
+                many = 1.0
+                for j in range(count):
+                    most = 0
+                    for k in range(self.edge_from[j], self.edge_from[j + 1]):
+                        most += self.kernel.way_start[self.edges[k] + 1] - self.kernel.way_start[self.edges[k]]
+                    many *= most
+                if combinations + many > self.most_choices:
+                    self.status = CHOICES
+                    self.problem = state
+                    return
+                combinations += many
+                weight = 1.0
+                for k in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+                    weight *= self.kernel.ready[self.kernel.all_slot[k]]
+                for j in range(count):
+                    weight /= self.edge_from[j + 1] - self.edge_from[j]
+                    self.picks[j] = self.edge_from[j]
+                while True:
+                    leads_on |= self._choose(vector, count, state, weight, exit_reward)
+                    if self.status != PART:
+                        self.problem = state
+                        return
+                    if self._next_edges(count) == 0:
+                        break
+            if leads_on == 0:
+                label |= ENDED
+                label |= self._end()
+        elif label & STATUS == UNKNOWN:
+            leads_on = 1
+        self.label[state] = label
+        self.start[state + 1] = self.code_end
+        self.expanded = state + 1
+        if self.expanded == self.count:
+            self.status = COMPLETE
+
+    def _end(self) -> int:
+        """What is to be added to the label of a state in which nothing changes any more."""
+        reason = self.kernel._reason(0 if self.kernel.enabled_count == 0 else 1)
+        added = 0
+        if reason == STUCK:
+            added = GETS_STUCK
+        if reason == TIME:
+            for leaf in range(self.leaves):
+                if self.kernel.lower[leaf] < 0 and self.kernel._holds(self.kernel.left[leaf]) != 0:
+                    added = OPEN
+        return added
+
+    def _open(self, vector: int) -> int:
+        """Collect the enabled edges of each slot that does something, and the probabilities of their ways; returns the
+        number of these slots."""
+        count = 0
+        found = 0
+        for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
+            slot = self.kernel.active_slot[i]
+            self.slots[count] = slot
+            self.edge_from[count] = found
+            count += 1
+            place = self.kernel.place[self.kernel.slot_instance[slot]]
+            group = self.kernel.group_start[place]
+            while self.kernel.group_slot[group] != slot:
+                group += 1
+            first = self.kernel.edge_start[group]
+            end = self.kernel.edge_start[group + 1]
+            for edge in range(first, end):
+                guard = self.kernel.guard[edge]
+                if end - first > 1 and guard >= 0 and self.kernel._execute(guard) == 0:
+                    continue
+                self.edges[found] = edge
+                found += 1
+                if self.kernel.way_chance[self.kernel.way_start[edge]] >= 0:
+                    self._weigh(edge)
+        self.edge_from[count] = found
+        return count
+
+    def _weigh(self, edge: int) -> None:
+        """Compute the probabilities of the ways of an edge."""
+        first = self.kernel.way_start[edge]
+        end = self.kernel.way_start[edge + 1]
+        if end - first == 1:
+            self.chance[first] = 1.0
+            return
+        total = 0.0
+        for way in range(first, end):
+            register = self.kernel._execute(self.kernel.way_chance[way])
+            if self.kernel.fault != 0:
+                return
+            self.chance[way] = self.kernel.reals[register]
+            total += self.chance[way]
+            if self.chance[way] < 0.0:
+                self.kernel._fail(6, self.kernel.way_chance[way])
+                return
+        if total < 0.999999 or total > 1.000001:
+            self.kernel._fail(6, self.kernel.way_chance[first])
+            return
+        for way in range(first, end):
+            self.chance[way] /= total
+
+    def _first_ways(self, count: int) -> None:
+        for j in range(count):
+            self.ways[j] = self.kernel.way_start[self.edges[self.picks[j]]]
+
+    def _next_ways(self, count: int) -> int:
+        """The next combination of destinations; 0 if there is none."""
+        for j in range(count):
+            edge = self.edges[self.picks[j]]
+            self.ways[j] += 1
+            if self.ways[j] < self.kernel.way_start[edge + 1]:
+                return 1
+            self.ways[j] = self.kernel.way_start[edge]
+        return 0
+
+    def _next_edges(self, count: int) -> int:
+        """The next combination of edges; 0 if there is none."""
+        for j in range(count):
+            self.picks[j] += 1
+            if self.picks[j] < self.edge_from[j + 1]:
+                return 1
+            self.picks[j] = self.edge_from[j]
+        return 0
+
+    def _choose(self, vector: int, count: int, state: int, weight: float, exit_reward: float) -> int:
+        """Write one choice; returns whether it leads to another state."""
+        self.branches = 0
+        is_plain = 1 if weight == 1.0 and self.kernel.step_reward < 0 and self.kernel.exit_reward < 0 else 0
+        for j in range(count):
+            edge = self.edges[self.picks[j]]
+            if self.kernel.way_start[edge + 1] - self.kernel.way_start[edge] > 1:
+                is_plain = 0
+        self._first_ways(count)
+        if is_plain != 0:
+            self.branches = 1
+            successor = self._successor(vector, count, state)
+            if successor < 0:
+                return 0
+            self._emit(successor)
+            self.transitions += 1
+            return 1 if successor != state else 0
+        if weight != 1.0:
+            self.is_weighted = 1
+        head = self.code_end
+        self._emit(0)
+        self._emit(self._number(weight))
+        self._emit(0)
+        reward = exit_reward
+        leads_on = 0
+        while True:
+            chance = 1.0
+            for j in range(count):
+                chance *= self.chance[self.ways[j]]
+            if chance > 0.0:
+                self.branches += 1
+                successor = self._successor(vector, count, state)
+                if successor < 0:
+                    return 0
+                if successor != state:
+                    leads_on = 1
+                if self.kernel.step_reward >= 0:
+                    reward += chance * self.kernel.reward
+                self._emit(successor)
+                self._emit(self._number(chance))
+                self.transitions += 1
+                if self.status != PART:
+                    return 0
+            if self._next_ways(count) == 0:
+                break
+        self.code[head] = -self.branches
+        self.code[head + 2] = self._number(reward)
+        return leads_on
+
+    def _successor(self, vector: int, count: int, state: int) -> int:
+        """The number of the state that the ways in `ways` lead to; -1 if there is none."""
+        for j in range(count):
+            self.kernel.part_slot[j] = self.slots[j]
+            self.kernel.part_way[j] = self.ways[j]
+        self.kernel.parts = count
+        self.kernel.reward = 0.0
+        self.kernel._execute_ways(vector)
+        if self.kernel.fault != 0:
+            self.status = FAULT
+            return -1
+        for i in range(self.words):
+            self.following[i] = self.now[i]
+        for j in range(count):
+            way = self.ways[j]
+            self._pack(self.kernel.slot_instance[self.slots[j]])
+            for k in range(self.way_start[way], self.way_start[way + 1]):
+                self._pack(self.way_cell[k])
+        for k in range(len(self.settled)):
+            self._pack(self.settled[k])
+        if self.remembers != 0:
+            for cell in range(self.variables, self.cells):
+                self._pack(cell)
+        while self.misfit >= 0:
+            self._widen()
+            for i in range(self.words):
+                self.now[i] = self.keys[state * self.words + i]
+            for cell in range(self.cells):
+                self._pack(cell)
+        found = self._find(state)
+        # Back to the state.
+        for j in range(count):
+            way = self.ways[j]
+            cell = self.kernel.slot_instance[self.slots[j]]
+            self.kernel.place[cell] = self.value[cell]
+            for k in range(self.way_start[way], self.way_start[way + 1]):
+                self._set_current(self.way_cell[k], self.value[self.way_cell[k]])
+        for k in range(len(self.settled)):
+            self._set_current(self.settled[k], self.value[self.settled[k]])
+        for k in range(self.kernel.note_count):
+            self.kernel.noted[self.kernel.notes[k]] = 0
+        self.kernel.note_count = 0
+        return found

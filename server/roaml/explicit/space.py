@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Explores the states of a model for a question, within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from roaml.explicit import codes
+from roaml.explicit import search as engine
+from roaml.explicit.memory import available
+from roaml.explicit.tables import tables_of
+from roaml.smc import kernel
+from roaml.smc.batch import TraceProblem
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
+from roaml.smc.names import Storage
+from roaml.smc.program import AT_END, Goal
+
+Watch: TypeAlias = Callable[[int, int], None]
+"""Called during a search with the number of states, and of those that have been expanded."""
+
+STRIDE = 16_384
+"""The number of states between two calls of a watch."""
+MAX_STATES = 0x7FFFFFF0
+MOST_COMBINATIONS = 1 << 20
+"""The maximum number of combinations of edges and destinations in one state: some seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class StateLimits:
+    """
+    Attributes:
+        states: more are not explored.
+        bytes: of memory; `None` for half of what is free.
+        combinations: of edges and destinations in one state. With n automata of k edges on one action there are kⁿ.
+    """
+
+    states: int = MAX_STATES
+    bytes: int | None = None
+    combinations: int = MOST_COMBINATIONS
+
+
+class LimitError(Exception):
+    """A search has ended before all states were known.
+
+    Attributes:
+        states: how many were reached.
+        why: the limit, as a phrase for users.
+    """
+
+    def __init__(self, states: int, why: str) -> None:
+        super().__init__(f"stopped at {states:,} {'state' if states == 1 else 'states'}: {why}")
+        self.states = states
+        self.why = why
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """All states of a model, as far as a goal needs them.
+
+    Attributes:
+        search: the states and their choices.
+        fault_at: the state in which an undefined operation was executed, -1 if none; the states are incomplete then.
+        problem: this operation.
+    """
+
+    checker: ModelChecker
+    asked: CompiledProperty
+    search: Any
+    fault_at: int = -1
+    problem: TraceProblem | None = None
+
+    @property
+    def states(self) -> int:
+        return int(self.search.count)
+
+
+def explore(
+    checker: ModelChecker, asked: CompiledProperty, limits: StateLimits, watch: Watch | None = None, modules: Any = None
+) -> Space:
+    """All states that can be reached before the goal is decided.
+
+    Args:
+        modules: the kernel's and the search's module, for tests.
+
+    Raises:
+        LimitError: there are more states than allowed.
+    """
+    kernel_module, search_module = modules or _modules()
+    compiled = checker.compiled(asked)
+    goal = compiled.goal
+    program = compiled.program
+    steps, lower, depth = _bounds(goal)
+    search = search_module.StateSearch(
+        kernel_module.Kernel(program, goal),
+        tables_of(program, checker.legend, _transient(checker)),
+        steps,
+        lower,
+        depth,
+        limits.states,
+        available() // 2 if limits.bytes is None else limits.bytes,
+        limits.combinations,
+    )
+    while True:
+        status = search.run(STRIDE)
+        if watch is not None:
+            watch(search.count, search.expanded)
+        match status:
+            case codes.PART:
+                continue
+            case codes.COMPLETE:
+                return Space(checker, asked, search)
+            case codes.FAULT:
+                return Space(checker, asked, search, search.problem, TraceProblem(0, *search.fault()))
+            case codes.STATES:
+                raise LimitError(search.count, f"there are more than {limits.states:,} (--max-states)")
+            case codes.MEMORY:
+                size = search.memory_used() / (1 << 30)
+                raise LimitError(search.count, f"they occupy {size:.1f} GiB (--max-memory)")
+            case _:
+                many = f"one of them has more than {limits.combinations:,} combinations of edges"
+                raise LimitError(search.count, many)
+
+
+def _bounds(goal: Goal) -> tuple[int, int, int]:
+    """How a search treats the step bounds of a goal: the number of steps that states distinguish; the lower bound of a
+    single until, which values are computed with; and the number of steps after which nothing matters, or -1."""
+    lower = [bound for bound in goal.lower if bound != AT_END]
+    if not any(bound > 0 for bound in lower) and all(bound < 0 for bound in goal.upper):
+        return 0, 0, -1
+    if len(goal.left) == 1:
+        return 0, lower[0], goal.upper[0]
+    return max(*lower, *goal.upper) + 1, 0, -1
+
+
+def _transient(checker: ModelChecker) -> list[Storage]:
+    layout = checker.legend.layout
+    names = {variable.name for variable in checker.model.variables if variable.transient}
+    shared = [storage for storage in layout.shared if storage.name in names]
+    own = [storage for i in layout.instances for storage in i.own if storage.name in i.transient]
+    return shared + own
+
+
+def _modules() -> tuple[Any, Any]:
+    """The kernel and the search. Both are compiled, or neither: a compiled kernel shows no internals to Python."""
+    if kernel.compiled() and not engine.compiled():
+        from roaml.explicit.plain import plain_kernel  # noqa: PLC0415
+
+        return plain_kernel(), engine
+    return kernel, engine

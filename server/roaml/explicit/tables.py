@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a search needs to know of a program: which cells each way writes, and which cells guards read.
+
+The *cells* of a state are numbered: the location of each instance, the integer variables, the real ones, what is known
+of each until of the goal, and the number of steps, as far as the goal depends on it.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from roaml.jani.expressions import ArrayAccess, Expression, Name
+from roaml.jani.model import Assignment
+from roaml.smc.compile import Legend
+from roaml.smc.names import Storage
+from roaml.smc.program import Ints, Program
+from roaml.smc.registers import REAL, product
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tables:
+    """
+    Attributes:
+        way_start, way_cell: the cells of variables that each way writes.
+        settled: the cells of transient variables.
+        cell_watch: for each cell of a variable, its number among the watched variables, or -1.
+    """
+
+    way_start: Ints
+    way_cell: Ints
+    settled: Ints
+    cell_watch: Ints
+
+
+def tables_of(program: Program, legend: Legend, transient: Iterable[Storage]) -> Tables:
+    """The tables of a program."""
+    way_start, way_cell = [0], list[int]()
+    instance_of = [number for number, _ in legend.locations]
+    for way, (_, destination) in enumerate(legend.ways):
+        names = legend.layout.instances[instance_of[program.way_target[way]]].names
+        written: dict[int, None] = {}
+        for assignment in destination.assignments:
+            storage = names.values[_root(assignment)]
+            assert isinstance(storage, Storage)
+            written.update(dict.fromkeys(_cells(storage, program)))
+        way_cell += written
+        way_start.append(len(way_cell))
+    watch = [-1] * (program.instances + program.int_count + program.real_count)
+    for storage in legend.layout.storages:
+        for cell in _cells(storage, program):
+            watch[cell] = storage.watch
+    settled = [cell for storage in transient for cell in _cells(storage, program)]
+    return Tables(array("i", way_start), array("i", way_cell), array("i", settled), array("i", watch))
+
+
+def _cells(storage: Storage, program: Program) -> range:
+    first = program.instances + storage.base + (program.int_count if storage.kind == REAL else 0)
+    return range(first, first + product(storage.shape))
+
+
+def _root(assignment: Assignment) -> str:
+    target: Expression = assignment.target
+    while isinstance(target, ArrayAccess):
+        target = target.array
+    assert isinstance(target, Name)
+    return target.identifier

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The value of a question over all states: its minimum and maximum over all schedulers, and with uniform choices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from roaml.explicit import codes, solver
+from roaml.explicit.space import Space
+from roaml.smc.goal import NOT
+from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
+from roaml.smc.statistics import Bounds
+
+MAXIMUM, MINIMUM, MEAN = 0, 1, 2
+NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
+_OPEN_SHARE = 1e-6
+"""Up to this probability, the end of the model's time is neglected."""
+
+
+class NoValueError(Exception):
+    """There is no value; the message contains the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalValues:
+    """What a question asks for, enclosed by bounds.
+
+    Attributes:
+        is_precise: whether all bounds are as close as intended.
+    """
+
+    minimum: Bounds
+    maximum: Bounds
+    uniform: Bounds
+    is_precise: bool
+
+
+def values_of(space: Space, modules: Any = None) -> GoalValues:
+    """
+    Args:
+        modules: the solver's module, for tests.
+
+    Raises:
+        NoValueError: the question has none.
+    """
+    return _Question(space, modules or solver).values()
+
+
+class _Question:
+    def __init__(self, space: Space, module: Any) -> None:
+        self.space = space
+        self.module = module
+        self.goal = space.asked.goal
+        self.question = space.asked.question
+        self.is_precise = True
+
+    def values(self) -> GoalValues:
+        if sum(bound == AT_END for bound in self.goal.lower) > 1:
+            raise NoValueError("several `F G` in one property are decided only by traces")
+        if any(bound == AT_END for bound in self.goal.lower):
+            _, share = self.solver(MAXIMUM).probability(UNKNOWN, codes.OPEN, NOTHING)
+            if share > _OPEN_SHARE:
+                raise NoValueError(
+                    "the time ends (max_time) before a deadline of the property; the probability of such traces is up "
+                    f"to {share:.6g}"
+                )
+        minimum, maximum, uniform = (self.bounds(mode) for mode in (MINIMUM, MAXIMUM, MEAN))
+        return GoalValues(minimum, maximum, uniform, self.is_precise)
+
+    def solver(self, mode: int) -> Any:
+        return self.module.Solver(self.space.search, mode)
+
+    def bounds(self, mode: int) -> Bounds:
+        goal = self.goal
+        is_until = len(goal.left) == 1 and goal.lower[0] != AT_END
+        if self.question.is_reward:
+            return self.closed(self.solver(mode), "expected")
+        if self.question.is_stuck:
+            return self.closed(self.solver(mode), "probability", UNKNOWN, codes.GETS_STUCK, NOTHING)
+        if is_until:
+            # The until itself: `¬F ¬a` is at its least where `F ¬a` is at its greatest.
+            is_negated = goal.formula.count(NOT) % 2 == 1
+            target = FALSE if is_negated else TRUE
+            if is_negated and mode != MEAN:
+                mode = MAXIMUM if mode == MINIMUM else MINIMUM
+            if goal.is_bounded and (goal.lower[0] > 0 or goal.upper[0] >= 0):
+                found = self.closed(self.solver(mode), "bounded", target, goal.lower[0], goal.upper[0])
+            else:
+                found = self.closed(self.solver(mode), "probability", target, 0, NOTHING)
+            return Bounds(1 - found.upper, 1 - found.lower) if is_negated else found
+        if mode == MINIMUM:
+            found = self.closed(self.solver(MAXIMUM), "probability", FALSE, 0, NEGATED)
+            return Bounds(1 - found.upper, 1 - found.lower)
+        return self.closed(self.solver(mode), "probability", TRUE, 0, AS_JUDGED)
+
+    def closed(self, solver_: Any, method: str, *arguments: int) -> Bounds:
+        low, high = getattr(solver_, method)(*arguments)
+        if solver_.is_unclear:
+            raise NoValueError("rewards are negative in a part of the model that can be repeated for ever")
+        if solver_.has_ended_early:
+            self.is_precise = False
+        return Bounds(low, high)

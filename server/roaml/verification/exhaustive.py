@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Answers from all states of a model: `verify --exhaustive`."""
+
+from __future__ import annotations
+
+from roaml.explicit.path import shortest
+from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore
+from roaml.explicit.values import GoalValues, NoValueError, values_of
+from roaml.jani.operators import BinaryOperator
+from roaml.smc.fault import FaultError
+from roaml.smc.goal import NOT, CompiledProperty, Question
+from roaml.smc.model import ModelChecker
+from roaml.smc.program import AT_END, FALSE, TRUE
+from roaml.verification.expectations import Expectation, Verdict
+from roaml.verification.results import ALL, NONE, Exact, ShortestTrace
+from roaml.verification.schedulers import asks_for_minimum
+
+_SLACK = 1e-6
+"""By so much a value may miss a number that is compared with `≥`, `≤` or `=`: numbers of models are rounded."""
+
+
+class UndecidedError(Exception):
+    """There is no answer from all states; the message contains the reason."""
+
+
+def exact_values(
+    checker: ModelChecker,
+    asked: CompiledProperty,
+    limits: StateLimits,
+    watch: Watch | None = None,
+) -> Exact:
+    """The exact values of a property, from all states.
+
+    Raises:
+        UndecidedError: a limit was reached, or the property has no value.
+        FaultError: an undefined operation is executed in some state.
+    """
+    if asked.question.is_conditional:
+        raise UndecidedError(
+            "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exhaustive to "
+            "estimate the probability under uniform choices"
+        )
+    reduced = checker.reduced(asked)
+    if reduced is not checker:
+        checker, asked = reduced, reduced.asked[0]
+    try:
+        space = explore(checker, asked, limits, watch)
+    except LimitError as error:
+        raise UndecidedError(str(error)) from None
+    if space.problem is not None:
+        fault = checker.fault(space.problem)
+        raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)
+    try:
+        values = values_of(space)
+    except NoValueError as error:
+        raise UndecidedError(str(error)) from None
+    paths = [path for verdict in (FALSE, TRUE) if (path := shortest(space, verdict)) is not None]
+    return Exact(
+        values.minimum,
+        values.maximum,
+        values.uniform,
+        space.states,
+        values.is_precise,
+        _proof(space, values),
+        tuple(ShortestTrace(space, path) for path in paths),
+    )
+
+
+def _proof(space: Space, values: GoalValues) -> str:
+    """What all states prove beyond a probability of 0 or 1: that nothing else is possible."""
+    goal = space.asked.goal
+    if space.asked.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
+        return ""
+    is_negated = goal.formula.count(NOT) % 2 == 1
+    if values.maximum.upper == 0.0 and not is_negated:
+        return NONE
+    return ALL if values.minimum.lower == 1.0 and is_negated else ""
+
+
+def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
+    """Whether the value that a property asks for, the minimum or the maximum, satisfies an expectation."""
+    threshold = expectation.threshold
+    what, bounds, value = ("least", exact.minimum, exact.least)
+    if not asks_for_minimum(question):
+        what, bounds, value = ("greatest", exact.maximum, exact.greatest)
+    is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
+
+    def is_met(number: float) -> bool:
+        if threshold.relation is BinaryOperator.EQUAL:
+            return abs(number - threshold.number) <= _SLACK
+        slack = 0.0 if is_strict else _SLACK
+        return threshold.met(number + slack) or threshold.met(number - slack)
+
+    met = is_met(value)
+    is_certain = exact.is_precise or is_met(bounds.lower) is is_met(bounds.upper)
+    return Verdict(expectation, met, is_certain, under="" if met else f"by the {what} value, which is {value:.6g}")

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The search through all states: the same as a simple one, compiled and as plain Python; limits; shortest traces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+from smc_random import networks
+
+from roaml import explicit
+from roaml.explicit import codes, solver
+from roaml.explicit.path import PathRecorder, shortest
+from roaml.explicit.plain import plain_kernel, plain_search, plain_solver
+from roaml.explicit.space import LimitError, Space, StateLimits, explore
+from roaml.explicit.values import NoValueError, values_of
+from roaml.smc.explore import Explorer, StateFaultError
+from roaml.smc.model import ModelChecker
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.record import SHORTEST, Recording
+
+
+def space_of(written: Json, limits: StateLimits | None = None, modules: Any = None) -> Space:
+    checker = ModelChecker(model(written))
+    return explore(checker, checker.asked[0], limits or StateLimits(), modules=modules)
+
+
+def plainly(written: Json) -> Space:
+    return space_of(written, modules=(plain_kernel(), plain_search()))
+
+
+def keys(space: Space) -> list[tuple[int, ...]]:
+    return [tuple(space.search.key(state)) for state in range(space.states)]
+
+
+def choices(space: Space) -> list[Any]:
+    return [space.search.choices_of(state) for state in range(space.search.expanded)]
+
+
+@given(networks())
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_all_states_are_those_of_a_simple_search(written: Json) -> None:
+    checker = ModelChecker(model(written))
+    compiled = checker.compiled(checker.asked[0])
+    try:
+        expected = {(*s.place, *s.ints) for s in Explorer(compiled).reachable(100_000)}
+    except StateFaultError:
+        assert space_of(written).problem is not None
+        return
+    space = space_of(written)
+    variables = compiled.program.instances + compiled.program.int_count
+    states = [key[:variables] for key in keys(space)]
+    assert len(set(states)) == len(states)
+    assert set(states) == expected
+
+
+@given(networks())
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_both_searches_and_solvers_do_the_same(written: Json) -> None:
+    ours, plain = space_of(written), plainly(written)
+    assert ours.problem == plain.problem
+    if ours.problem is not None:
+        return
+    assert keys(ours) == keys(plain)
+    assert choices(ours) == choices(plain)
+    assert values_of(ours, solver) == values_of(plain, plain_solver())
+
+
+def test_numbers_that_callers_know_are_those_of_the_compiled_modules() -> None:
+    for name, value in vars(codes).items():
+        if name.isupper():
+            for module in (plain_search(), plain_solver()):
+                assert getattr(module, name, value) == value
+            assert hasattr(plain_search(), name)
+    for name in ("MAXIMUM", "MINIMUM", "MEAN", "NOTHING", "AS_JUDGED", "NEGATED"):
+        assert getattr(explicit.values, name) == getattr(plain_solver(), name)
+
+
+def counting(last: int, steps: int = 1, first: int = 0) -> Json:
+    """Counts up and down between two numbers, and is at the first one at the beginning."""
+    up = edge("l", way("l", x=op("+", "x", steps)), guard=op("<", "x", last))
+    down = edge("l", way("l", x=op("-", "x", steps)), guard=op(">", "x", -last))
+    return document(
+        automaton("a", "l", [up, down]),
+        variables=[variable("x", initial=first)],
+        properties={"p": probability(op("F", op("=", "x", last)))},
+    )
+
+
+@pytest.mark.parametrize("last", [3, 100, 40_000])
+def test_numbers_get_as_many_bits_as_they_need(last: int) -> None:
+    space = space_of(counting(last))
+    assert space.states == 2 * last + 1
+    assert sorted(key[1] for key in keys(space)) == list(range(-last, last + 1))
+
+
+@pytest.mark.parametrize("first", [(1 << 62) - 5, -(1 << 62)])
+def test_numbers_of_64_bits(first: int) -> None:
+    """All states are kept apart, though the distance of two numbers needs more than 64 bits."""
+    far = edge("l", way("m", x=-first), guard=op("=", "x", first))
+    on = edge("m", way("m", x=op("+", "x", 1)), guard=op("<", "x", -first + 9))
+    written = document(
+        automaton("a", "l m", [far, on]),
+        variables=[variable("x", initial=first)],
+        properties={"p": probability(op("F", op("=", "x", 0)))},
+    )
+    assert {key[1] for key in keys(space_of(written))} == {first, *range(-first, -first + 10)}
+
+
+def test_real_numbers_are_states() -> None:
+    step = edge("l", way("l", x=op("/", "x", 2)), guard=op(">", "x", 0.001))
+    written = document(
+        automaton("a", "l", [step]),
+        variables=[variable("x", "real", 1.0)],
+        properties={"p": probability(op("F", op("<", "x", 0.0005)))},
+    )
+    assert space_of(written).states == 11
+
+
+def test_limits_end_a_search() -> None:
+    with pytest.raises(LimitError, match=r"^stopped at 1,000 states: there are more than 1,000 \(--max-states\)$"):
+        space_of(counting(5000), StateLimits(states=1000))
+    with pytest.raises(LimitError, match=r"stopped at [\d,]+ states: they occupy .* GiB \(--max-memory\)"):
+        space_of(counting(5000), StateLimits(bytes=20_000))
+
+
+def test_a_state_with_too_many_combinations_ends_a_search() -> None:
+    parts = [automaton(f"m{n}", "s", [edge("s", way("s"), action="a")] * 3) for n in range(9)]
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+    for part in parts:
+        part["edges"] = [edge("s", way("s", x=k), action="a") for k in (2, 3, 2)]
+    parts[1:] = [automaton(f"m{n}", "s t", [edge("s", way(to), action="a") for to in "stt"]) for n in range(1, 9)]
+    written = document(*parts, variables=[variable("x")], syncs=[["a"] * 9], properties=goals)
+    with pytest.raises(LimitError, match=r"one of them has more than 5,000 combinations of edges"):
+        space_of(written, StateLimits(combinations=5000))
+
+
+def test_undefined_operations_are_in_a_state() -> None:
+    step = edge("l", way("l", x=op("+", "x", 1)), guard=op("<", "x", 5))
+    bad = edge("l", way("l", x=op("%", 1, op("-", "x", 3))), guard=op("=", "x", 3))
+    written = document(
+        automaton("a", "l", [step, bad]),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 9)))},
+    )
+    space = space_of(written)
+    assert space.problem is not None
+    assert space.search.key(space.fault_at)[1] == 3
+
+
+@given(networks())
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> None:
+    """By the steps of the kernel, and no shorter one does: the goal holds in no state that fewer steps lead to."""
+    space = space_of(written)
+    if space.problem is not None:
+        return
+    explorer = Explorer(space.checker.compiled(space.asked))
+    layers, seen = [{explorer.initial}], {explorer.initial}
+    path = shortest(space, TRUE)
+    length = 10_000 if path is None else len(path.steps)
+    while layers[-1] and len(layers) <= length:
+        assert not any(explorer.verdict(state) == TRUE for state in layers[-1])
+        found = {
+            branch.state
+            for state in layers[-1]
+            if explorer.verdict(state) not in (TRUE, FALSE)
+            for _, branches in explorer.choices(state)
+            for branch in branches
+        }
+        layers.append(found - seen)
+        seen |= found
+    if path is not None:
+        recorder = PathRecorder(space, path)
+        recording = Recording(SHORTEST)
+        steps = list(recorder.walk(recording))
+        assert len(steps) == length
+        assert recording.verdict == TRUE
+        assert any(explorer.verdict(state) == TRUE for state in layers[-1])
+
+
+def test_rewards_that_are_negative_in_a_loop_have_no_minimum() -> None:
+    loop = edge("l", way("l", x=op("-", 1, "x")))
+    out = edge("l", way("m", end=True))
+    written = document(
+        automaton("a", "l m", [loop, out]),
+        variables=[variable("x"), variable("end", "bool", False)],
+        properties={"p": {"op": "Emin", "exp": op("-", 0, 1), "accumulate": ["steps"], "reach": "end"}},
+    )
+    with pytest.raises(NoValueError, match="negative"):
+        values_of(space_of(written))

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""BehaviorTree.CPP itself judges: the translation and the library (4.8, by `behaviortreepy`) call the same leaves in
+the same order, and their roots answer the same, for random trees without clocks.
+
+There are wheels of `behaviortreepy` for some platforms only. Without it, this file says so and has no test.
+"""
+
+from __future__ import annotations
+
+import copy
+from importlib import util
+from typing import Any
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from random_trees import CONTROLS, DECORATORS, ENTRIES, LEAVES, Drawn, as_xml, trees
+from translated_trees import Observed, observe, with_mocks
+
+from examples import TIMES, examples
+
+TICKS = 12
+NEWER = ("TryCatch", "SkipUnlessUpdated", "WaitValueUpdate", "Switch2", "LoopInt")
+"""Nodes that 4.8 does not have, or that have another meaning there. A switch compares texts, and the entries are
+numbers."""
+
+
+def without(table: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: ports for name, ports in table.items() if name not in names}
+
+
+TREES = trees(without(CONTROLS, NEWER), without(DECORATORS, NEWER), LEAVES)
+
+
+class Host:
+    """A program that runs a tree with the library. Leaves take what chance has decided from lists."""
+
+    def __init__(self, library: Any, text: str, outcomes: dict[str, list[str]]) -> None:
+        self.library, self.outcomes = library, outcomes
+        self.calls: list[tuple[str, str]] = []
+        self.left: dict[str, int] = {}
+        factory = library.BehaviorTreeFactory()
+        factory.register_simple_condition("Check", self.answer)
+        for duration in range(4):
+            factory.register_simple_stateful_action(
+                f"Act{duration}", self.starting(duration), self.running, self.halted
+            )
+        blackboard = library.Blackboard.create()
+        for entry, value in ENTRIES.items():
+            blackboard.set_int(entry, value)
+        factory.register_behavior_tree_from_text(text)
+        self.tree = factory.create_tree("Main", blackboard)
+
+    def answer(self, node: Any) -> Any:
+        answer = self.outcomes[node.name()].pop(0) if self.outcomes[node.name()] else "FAILURE"
+        self.calls.append((node.name(), answer))
+        return getattr(self.library.NodeStatus, answer)
+
+    def starting(self, duration: int) -> Any:
+        def start(node: Any) -> Any:
+            self.left[node.name()] = duration
+            return self.going_on(node)
+
+        return start
+
+    def running(self, node: Any) -> Any:
+        self.left[node.name()] -= 1
+        return self.going_on(node)
+
+    def going_on(self, node: Any) -> Any:
+        if self.left[node.name()] > 0:
+            self.calls.append((node.name(), "RUNNING"))
+            return self.library.NodeStatus.RUNNING
+        return self.answer(node)
+
+    def halted(self, node: Any) -> None:
+        self.calls.append((node.name(), "halt"))
+
+
+def by_the_library(library: Any, text: str, seen: Observed) -> Observed:
+    host = Host(library, text, copy.deepcopy(seen.outcomes))
+    answers: list[str] = []
+    is_stuck = False
+    for _ in range(len(seen.answers) + seen.is_stuck):
+        try:
+            answers.append(host.tree.tick_exactly_once().name)
+        except RuntimeError:
+            is_stuck = True
+            break
+        if answers[-1] != "RUNNING":
+            break
+    calls = list(host.calls)  # what follows, as the tree is halted when it is deleted, does not count
+    return Observed(answers, calls, seen.outcomes, is_stuck)
+
+
+def compare(library: Any, drawn: Drawn, seed: int) -> None:
+    text = as_xml(drawn)
+    seen = observe(with_mocks(text, {key: str(value) for key, value in ENTRIES.items()}, TICKS), seed)
+    judged = by_the_library(library, text, seen)
+    assert (seen.answers, seen.is_stuck) == (judged.answers, judged.is_stuck), text
+    if not seen.is_stuck:
+        assert seen.calls == judged.calls, text
+
+
+if util.find_spec("behaviortreepy") is None:
+    print("behaviortreepy is not installed: BehaviorTree.CPP itself does not judge the translation of trees")
+else:
+
+    @settings(max_examples=examples(30), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
+    @given(TREES, st.integers(0, 2**30))
+    def test_random_trees_do_what_behaviortree_cpp_does(drawn: Drawn, seed: int) -> None:
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        compare(behaviortreepy, drawn, seed)

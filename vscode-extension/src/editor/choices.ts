@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The view of what can happen next while a run is stopped. A click makes it happen. */
+
+import * as vscode from "vscode";
+import { DEBUG_TYPE } from "./debugging";
+
+const VIEW = "as2fm.choices";
+const CHOOSE = "as2fm.choose";
+
+interface Outcome {
+    readonly number: number;
+    readonly text: string;
+    readonly probability: number;
+}
+
+interface Choice {
+    readonly number: number;
+    readonly text: string;
+    readonly probability: number;
+    readonly isNext: boolean;
+    readonly outcomes: readonly Outcome[];
+    readonly source?: { readonly path: string };
+    readonly line?: number;
+}
+
+/** The answer to the request `choices` (docs/debugging.md). */
+interface Choices {
+    readonly step: number;
+    readonly time: number | null;
+    readonly end: string | null;
+    readonly fault: string | null;
+    readonly isByHand: boolean;
+    readonly choices: readonly Choice[];
+}
+
+interface Entry {
+    readonly choice: Choice;
+    readonly outcome?: Outcome;
+}
+
+export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
+    private readonly changed = new vscode.EventEmitter<undefined>();
+    private readonly view: vscode.TreeView<Entry>;
+    private readonly subscriptions: { dispose(): unknown }[];
+    private session: vscode.DebugSession | undefined;
+    private entries: readonly Entry[] = [];
+
+    readonly onDidChangeTreeData = this.changed.event;
+
+    constructor(private readonly log: vscode.LogOutputChannel) {
+        this.view = vscode.window.createTreeView<Entry>(VIEW, { treeDataProvider: this });
+        this.subscriptions = [
+            this.changed,
+            this.view,
+            vscode.commands.registerCommand(CHOOSE, (entry: Entry) => this.choose(entry)),
+            vscode.commands.registerCommand("as2fm.goToStep", () => this.goToStep()),
+            vscode.debug.registerDebugAdapterTrackerFactory(DEBUG_TYPE, {
+                createDebugAdapterTracker: (session) => ({
+                    onDidSendMessage: (message: { event?: string }) => {
+                        if (message.event === "stopped") void this.update(session);
+                    },
+                    onExit: () => {
+                        if (this.session === session) this.show(undefined, [], "");
+                    },
+                }),
+            }),
+        ];
+    }
+
+    getTreeItem({ choice, outcome }: Entry): vscode.TreeItem {
+        const { Expanded, None } = vscode.TreeItemCollapsibleState;
+        const hasOutcomes = outcome === undefined && choice.outcomes.length > 1;
+        const item = new vscode.TreeItem(outcome?.text ?? choice.text, hasOutcomes ? Expanded : None);
+        item.description = percent((outcome ?? choice).probability);
+        item.tooltip = outcome?.text ?? choice.text;
+        item.iconPath = new vscode.ThemeIcon(
+            outcome || hasOutcomes ? "git-branch" : choice.isNext ? "debug-stackframe" : "circle-outline",
+        );
+        item.command = { command: CHOOSE, title: vscode.l10n.t("Take This Step"), arguments: [{ choice, outcome }] };
+        return item;
+    }
+
+    getChildren(entry?: Entry): Entry[] {
+        if (entry === undefined) return [...this.entries];
+        if (entry.outcome || entry.choice.outcomes.length < 2) return [];
+        return entry.choice.outcomes.map((outcome) => ({ choice: entry.choice, outcome }));
+    }
+
+    dispose(): void {
+        for (const each of this.subscriptions) each.dispose();
+    }
+
+    private async update(session: vscode.DebugSession): Promise<void> {
+        try {
+            const found = (await session.customRequest("choices")) as Choices;
+            const time = found.time === null ? "" : `, ${found.time.toFixed(3)} s`;
+            const hand = found.isByHand ? `, ${vscode.l10n.t("chosen by hand")}` : "";
+            const description = `${vscode.l10n.t("step {0}", found.step)}${time}${hand}`;
+            this.show(
+                session,
+                found.choices.map((choice) => ({ choice })),
+                description,
+                found.fault ?? found.end ?? "",
+            );
+        } catch (error) {
+            this.log.debug(`no choices: ${String(error)}`);
+        }
+    }
+
+    private show(
+        session: vscode.DebugSession | undefined,
+        entries: readonly Entry[],
+        description: string,
+        message = "",
+    ): void {
+        this.session = session;
+        this.entries = entries;
+        this.view.description = description;
+        this.view.message = message;
+        this.changed.fire(undefined);
+    }
+
+    private async choose({ choice, outcome }: Entry): Promise<void> {
+        const drawn = outcome === undefined ? {} : { outcome: outcome.number };
+        await this.request("choose", { choice: choice.number, ...drawn });
+    }
+
+    private async goToStep(): Promise<void> {
+        const prompt = vscode.l10n.t("Go to the state after this number of steps");
+        const isNumber = (text: string) => (/^\d+$/.test(text) ? undefined : vscode.l10n.t("a number of steps"));
+        const text = await vscode.window.showInputBox({ prompt, validateInput: isNumber });
+        if (text !== undefined) await this.request("goToStep", { step: Number(text) });
+    }
+
+    private async request(command: string, options: object): Promise<void> {
+        const session = this.session ?? vscode.debug.activeDebugSession;
+        if (session?.type !== DEBUG_TYPE) return;
+        try {
+            await session.customRequest(command, options);
+        } catch (error) {
+            void vscode.window.showErrorMessage(error instanceof Error ? error.message : String(error));
+        }
+    }
+}
+
+function percent(probability: number): string {
+    return `${Number((probability * 100).toPrecision(3))} %`;
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Debugging runs of a system: the debug type `as2fm`, whose adapter is the installation that the editor uses. */
+
+import * as vscode from "vscode";
+import { safeVariables } from "../server/surroundings";
+import type { Documents } from "./documents";
+import type { LanguageServer } from "./server";
+import { isTrusted } from "./trust";
+
+export const DEBUG_TYPE = "as2fm";
+
+/** A trace of `verify`. */
+export interface Trace {
+    readonly seed: number;
+    readonly trace: number;
+}
+
+export class Debugging implements vscode.DebugConfigurationProvider, vscode.DebugAdapterDescriptorFactory {
+    constructor(
+        private readonly server: LanguageServer,
+        private readonly documents: Documents,
+    ) {}
+
+    register(): vscode.Disposable[] {
+        return [
+            vscode.debug.registerDebugConfigurationProvider(DEBUG_TYPE, this),
+            vscode.debug.registerDebugAdapterDescriptorFactory(DEBUG_TYPE, this),
+            vscode.languages.registerInlineValuesProvider([{ language: "ascxml" }, { language: "scxml" }], {
+                provideInlineValues: inlineValues,
+            }),
+        ];
+    }
+
+    /** Debug a run in which a property does not hold. */
+    async counterexample(system: vscode.Uri, property: string, trace: Trace | undefined): Promise<void> {
+        await this.start(system, trace ? { property, ...trace, stopOnEntry: false } : { property, against: 1 });
+    }
+
+    async start(system: vscode.Uri, attributes: object): Promise<void> {
+        if (!isTrusted()) return;
+        const folder = vscode.workspace.getWorkspaceFolder(system);
+        const name = vscode.workspace.asRelativePath(system);
+        const configuration = { type: DEBUG_TYPE, request: "launch", name, program: system.fsPath, ...attributes };
+        await vscode.debug.startDebugging(folder, configuration);
+    }
+
+    /** Without a launch.json, F5 debugs the system of the active file. */
+    async resolveDebugConfiguration(
+        _folder: vscode.WorkspaceFolder | undefined,
+        given: vscode.DebugConfiguration,
+    ): Promise<vscode.DebugConfiguration | undefined> {
+        if (!isTrusted()) return undefined;
+        const configuration = { ...given };
+        if (configuration.type === "") {
+            configuration.type = DEBUG_TYPE;
+            configuration.request = "launch";
+            configuration.name = vscode.l10n.t("Debug system");
+        }
+        if (typeof configuration["program"] === "string") return configuration;
+        const document = vscode.window.activeTextEditor?.document;
+        const kind = (await this.documents.about(document)).kind;
+        const program = kind === "model" ? document?.uri : await this.documents.system(document);
+        return program && { ...configuration, program: program.fsPath };
+    }
+
+    createDebugAdapterDescriptor(): vscode.DebugAdapterDescriptor {
+        const { state } = this.server;
+        if (state.kind !== "running") throw new Error(vscode.l10n.t("The language server is not running."));
+        const { command, args } = state.server;
+        // Its Python imports no modules from the workspace.
+        return new vscode.DebugAdapterExecutable(command, [...args, "debug"], { env: safeVariables(process.env) });
+    }
+}
+
+const IDENTIFIER = /(?:\b(?:expr|cond|location)=")([^"]*)"/g;
+const NAME = /(?<![\w.'])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*/g;
+const RESERVED = new Set(["true", "false", "Math", "amp", "lt", "gt", "quot", "apos"]);
+
+/** The names in the expressions of the lines around the place where the run has stopped. */
+function inlineValues(
+    document: vscode.TextDocument,
+    viewPort: vscode.Range,
+    context: vscode.InlineValueContext,
+): vscode.InlineValue[] {
+    const values: vscode.InlineValue[] = [];
+    const last = Math.min(viewPort.end.line, context.stoppedLocation.end.line + LINES_AFTER);
+    for (let line = viewPort.start.line; line <= last; line++) {
+        const { text } = document.lineAt(line);
+        for (const expression of text.matchAll(IDENTIFIER)) {
+            const start = expression.index + expression[0].length - 1 - (expression[1] ?? "").length;
+            for (const name of (expression[1] ?? "").matchAll(NAME)) {
+                if (RESERVED.has(name[0].split(".")[0] ?? "")) continue;
+                const from = start + name.index;
+                const range = new vscode.Range(line, from, line, from + name[0].length);
+                values.push(new vscode.InlineValueEvaluatableExpression(range, name[0]));
+            }
+        }
+    }
+    return values;
+}
+
+const LINES_AFTER = 3;
