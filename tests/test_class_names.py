@@ -36,6 +36,7 @@ another one in HL-SCXML. Whoever needs two of them imports the module."""
 
 KEPT = {
     "Choice": "what a user of the simulator chooses, and what an observer does",
+    "Comparison": "of a result with a number, and of two values in a script of BehaviorTree.CPP",
     "End": "why a trace ends, and how an observer judges it",
     "Expectation": "what the command line expects of a result, and what JANI records",
     "Frame": "a subtree while it is expanded, and while names are looked up in it",
@@ -43,7 +44,6 @@ KEPT = {
     "Notation": "a language of diagrams, and one of properties",
     "Session": "of a client of the server, and of a user of the simulator",
     "System": "the system of a system file, and the composition in JANI",
-    "UsageError": "each command of the command line has its own",
     "Verdict": "on an expectation, and of an observer",
 }
 

@@ -34,13 +34,13 @@ exit status: 0 the session has ended; 2 usage error; 3 internal error
 def run(arguments: Sequence[str]) -> int:
     parser().parse_args(arguments)
     from as2fm_lsp.debug.adapter import Adapter  # noqa: PLC0415
-    from as2fm_lsp.debug.framing import Inbox  # noqa: PLC0415
+    from as2fm_lsp.debug.framing import MessageReader  # noqa: PLC0415
 
     # Nothing else may write into the stream of messages.
     output = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     # The reading thread may still wait for input when the program ends, which must not wait for `sys.stdin`.
-    Adapter(Inbox(os.fdopen(os.dup(sys.stdin.fileno()), "rb")), output).run()
+    Adapter(MessageReader(os.fdopen(os.dup(sys.stdin.fileno()), "rb")), output).run()
     return CLEAN
 
 

@@ -17,14 +17,14 @@ from typing import Any, BinaryIO
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.capabilities import CAPABILITIES
-from as2fm_lsp.debug.framing import Inbox, Message, write_message
+from as2fm_lsp.debug.framing import Message, MessageReader, write_message
 from as2fm_lsp.debug.launch import Launch, launch_of, load
 from as2fm_lsp.debug.variables import References, Shown
-from roaml.debugging.breakpoints import Breakpoint, Filter, Variable, breakpoint_of, nodes_named
-from roaml.debugging.debugger import Debugger, Reason, Stop, Unit
-from roaml.debugging.evaluate import EvaluationError, evaluate, parsed
+from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter, WatchedVariable, breakpoint_of, nodes_named
+from roaml.debugging.debugger import Debugger, Stop, StopReason, Unit
+from roaml.debugging.evaluate import WatchError, evaluate, parsed
 from roaml.debugging.frames import Frame
-from roaml.debugging.scopes import Entry, ScopeEntries
+from roaml.debugging.scopes import ScopeEntries, ScopeEntry
 from roaml.debugging.values import shown, type_of
 from roaml.jani.node import Origin
 from roaml.simulation.choices import Choice
@@ -41,7 +41,7 @@ class Adapter:
         output: receives responses and events.
     """
 
-    def __init__(self, inbox: Inbox, output: BinaryIO) -> None:
+    def __init__(self, inbox: MessageReader, output: BinaryIO) -> None:
         self._inbox = inbox
         self._output = output
         self._sequence = 0
@@ -55,7 +55,7 @@ class Adapter:
         self._stop: Stop | None = None
         self._frames: dict[int, Frame] = {}
         self._references = References()
-        self._data: dict[str, Variable] = {}
+        self._data: dict[str, WatchedVariable] = {}
         self._next_breakpoint = 1
         self._wanted: dict[str, tuple[str, list[tuple[int, Arguments]]]] = {}
         self._functions: list[tuple[int, Arguments]] = []
@@ -137,7 +137,7 @@ class Adapter:
             if handler is None:
                 raise RequestError(f"unknown request `{command}`")
             body = handler(Arguments(message.get("arguments")))
-        except (RequestError, EvaluationError) as error:
+        except (RequestError, WatchError) as error:
             text = str(error)
             details = {"id": 1, "format": _escaped(text), "showUser": command in ("launch", "restart")}
             self._send({**response, "success": False, "message": text, "body": {"error": details}})
@@ -267,7 +267,7 @@ class Adapter:
         body: dict[str, Any] = {"reason": stop.reason.value, "threadId": stop.thread, "allThreadsStopped": True}
         if stop.text:
             body["text"] = stop.text
-            if stop.reason is not Reason.EXCEPTION:
+            if stop.reason is not StopReason.EXCEPTION:
                 body["description"] = f"Paused: {stop.text}"
         if stop.breakpoints:
             body["hitBreakpointIds"] = list(stop.breakpoints)
@@ -433,7 +433,7 @@ class Adapter:
         text = arguments.text("expression", None)
         frame = self._frame(arguments) if arguments.has("frameId") else None
         value = evaluate(parsed(text), debugger.values.names(frame))
-        entry = Entry(text, value, expression=text)
+        entry = ScopeEntry(text, value, expression=text)
         body: dict[str, Any] = {"result": shown(value), "type": type_of(value)}
         body["variablesReference"] = self._references.of_value(value, entry, None)
         if isinstance(value, list):
@@ -443,7 +443,7 @@ class Adapter:
     def _exception_info(self, arguments: Arguments) -> Body:
         self._stopped  # noqa: B018
         stop = self._stop
-        if stop is None or stop.reason is not Reason.EXCEPTION:
+        if stop is None or stop.reason is not StopReason.EXCEPTION:
             raise RequestError("the run has not stopped at an exception")
         return {"exceptionId": stop.filter, "description": stop.text, "breakMode": "always"}
 
@@ -485,11 +485,11 @@ class Adapter:
             line = debugger.places.next_line(known, each.number("line") + 1 - self._first_line)
             try:
                 if line is None:
-                    raise EvaluationError("no line from here on is executed in this system")
+                    raise WatchError("no line from here on is executed in this system")
                 name = f"{os.path.basename(path)}:{line}"
                 set_.append((line, self._breakpoint(number, name, each)))
                 body |= {"verified": True, "line": line - 1 + self._first_line}
-            except EvaluationError as error:
+            except WatchError as error:
                 body["message"] = str(error)
             bodies.append(body)
         debugger.breakpoints.lines[known] = set_
@@ -518,10 +518,10 @@ class Adapter:
             body: dict[str, Any] = {"id": number, "verified": False}
             try:
                 if not debugger.session.has_event(name) and not nodes_named(debugger.sources, name):
-                    raise EvaluationError(f"there is no topic, service, action, event or node `{name}`")
+                    raise WatchError(f"there is no topic, service, action, event or node `{name}`")
                 set_.append((name, self._breakpoint(number, name, each)))
                 body["verified"] = True
-            except EvaluationError as error:
+            except WatchError as error:
                 body["message"] = str(error)
             bodies.append(body)
         debugger.breakpoints.names = set_
@@ -536,15 +536,15 @@ class Adapter:
 
     def _set_filters(self) -> list[dict[str, Any]]:
         bodies: list[dict[str, Any]] = []
-        set_: dict[Filter, Breakpoint] = {}
+        set_: dict[ExceptionFilter, Breakpoint] = {}
         for name, condition in self._filters:
             try:
-                filter_ = next((each for each in Filter if each.value == name), None)
+                filter_ = next((each for each in ExceptionFilter if each.value == name), None)
                 if filter_ is None:
-                    raise EvaluationError(f"there is no filter `{name}`")
+                    raise WatchError(f"there is no filter `{name}`")
                 set_[filter_] = breakpoint_of(0, name, condition)
                 bodies.append({"verified": True})
-            except EvaluationError as error:
+            except WatchError as error:
                 bodies.append({"verified": False, "message": str(error)})
         if self._debugger is not None:
             self._debugger.breakpoints.filters = set_
@@ -576,24 +576,24 @@ class Adapter:
             body: dict[str, Any] = {"id": number, "verified": False}
             try:
                 if variable is None:
-                    raise EvaluationError(f"there is no variable `{data}`")
+                    raise WatchError(f"there is no variable `{data}`")
                 set_.append((variable, self._breakpoint(number, f"{data} changes", each)))
                 body["verified"] = True
-            except EvaluationError as error:
+            except WatchError as error:
                 body["message"] = str(error)
             bodies.append(body)
         debugger.breakpoints.variables = set_
         debugger.breakpoints_changed()
         return {"breakpoints": bodies}
 
-    def _variable(self, debugger: Debugger, data: str) -> Variable | None:
+    def _variable(self, debugger: Debugger, data: str) -> WatchedVariable | None:
         if data in self._data:
             return self._data[data]
         owner, _, name = data.rpartition("/")
         automata = list(debugger.session.automata)
         if owner in automata and name:
-            return Variable(automata.index(owner), name)
-        return Variable(-1, name) if not owner and name else None
+            return WatchedVariable(automata.index(owner), name)
+        return WatchedVariable(-1, name) if not owner and name else None
 
     def _breakpoint_locations(self, arguments: Arguments) -> Body:
         path = os.path.realpath(self._path(arguments.object("source")))

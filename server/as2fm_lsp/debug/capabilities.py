@@ -5,15 +5,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from roaml.debugging.breakpoints import Filter
+from roaml.debugging.breakpoints import ExceptionFilter
 
 _FILTERS = {
-    Filter.VIOLATED: ("A property is violated", "A property is decided, and does not hold in this run", True),
-    Filter.SATISFIED: ("A property is satisfied", "A property is decided, and holds in this run", False),
-    Filter.FAILURE: ("A node fails", "A node of the behavior tree returns FAILURE", False),
-    Filter.CHANCE: ("Chance decides", "The next step is drawn by probabilities of the model", False),
-    Filter.END: ("Nothing is possible any more", "No step changes anything: the run is at its end", True),
-    Filter.TIME: ("Time passes", "The time of the model has advanced", False),
+    ExceptionFilter.VIOLATED: ("A property is violated", "A property is decided, and does not hold in this run", True),
+    ExceptionFilter.SATISFIED: ("A property is satisfied", "A property is decided, and holds in this run", False),
+    ExceptionFilter.FAILURE: ("A node fails", "A node of the behavior tree returns FAILURE", False),
+    ExceptionFilter.CHANCE: ("Chance decides", "The next step is drawn by probabilities of the model", False),
+    ExceptionFilter.END: ("Nothing is possible any more", "No step changes anything: the run is at its end", True),
+    ExceptionFilter.TIME: ("Time passes", "The time of the model has advanced", False),
 }
 
 CAPABILITIES: dict[str, Any] = {

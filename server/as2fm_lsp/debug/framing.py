@@ -71,7 +71,7 @@ def write_message(stream: BinaryIO, message: Mapping[str, Any]) -> None:
     stream.flush()
 
 
-class Inbox:
+class MessageReader:
     """The messages that have arrived and are not handled yet; a thread reads them."""
 
     def __init__(self, stream: BinaryIO) -> None:

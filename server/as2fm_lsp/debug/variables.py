@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from roaml.debugging.breakpoints import Variable
-from roaml.debugging.scopes import Entry
+from roaml.debugging.breakpoints import WatchedVariable
+from roaml.debugging.scopes import ScopeEntry
 from roaml.debugging.values import SEPARATOR, Value, shown, type_of
 
 
@@ -16,7 +16,7 @@ from roaml.debugging.values import SEPARATOR, Value, shown, type_of
 class Shown:
     """A variable with its value at the previous stop; `None` if it had none."""
 
-    entry: Entry
+    entry: ScopeEntry
     before: Value | None
 
 
@@ -35,7 +35,7 @@ class References:
         """What is behind a reference; `None` if there is no such reference."""
         return self._children[reference - 1] if 1 <= reference <= len(self._children) else None
 
-    def of_value(self, value: Value, entry: Entry, before: Value | None) -> int:
+    def of_value(self, value: Value, entry: ScopeEntry, before: Value | None) -> int:
         """A reference for the parts of a value; 0 if it has none."""
         if isinstance(value, (dict, list)) and value:
             return self.add(tuple(_parts(value, entry, before)))
@@ -64,16 +64,16 @@ class References:
         return variable
 
 
-def _parts(value: dict[str, Value] | list[Value], entry: Entry, before: Value | None) -> Iterable[Shown]:
+def _parts(value: dict[str, Value] | list[Value], entry: ScopeEntry, before: Value | None) -> Iterable[Shown]:
     if isinstance(value, dict):
         for name, member in value.items():
             old = before.get(name) if isinstance(before, dict) else None
             expression = f"{entry.expression}.{name}" if entry.expression else ""
             owner = entry.variable
-            variable = None if owner is None else Variable(owner.instance, f"{owner.name}{SEPARATOR}{name}")
-            yield Shown(Entry(name, member, "", expression, variable), old)
+            variable = None if owner is None else WatchedVariable(owner.instance, f"{owner.name}{SEPARATOR}{name}")
+            yield Shown(ScopeEntry(name, member, "", expression, variable), old)
         return
     for number, element in enumerate(value):
         old = before[number] if isinstance(before, list) and number < len(before) else None
         expression = f"{entry.expression}[{number}]" if entry.expression else ""
-        yield Shown(Entry(f"[{number}]", element, "", expression), old)
+        yield Shown(ScopeEntry(f"[{number}]", element, "", expression), old)

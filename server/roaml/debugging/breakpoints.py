@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from roaml.debugging.evaluate import EvaluationError, Scope, condition, evaluate, parsed
+from roaml.debugging.evaluate import Scope, WatchError, condition, evaluate, parsed
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
@@ -32,7 +32,7 @@ class Line(NamedTuple):
     line: int
 
 
-class Filter(enum.Enum):
+class ExceptionFilter(enum.Enum):
     """Something that may happen anywhere and stops the run."""
 
     VIOLATED = "violated"
@@ -43,7 +43,7 @@ class Filter(enum.Enum):
     TIME = "time"
 
 
-class Variable(NamedTuple):
+class WatchedVariable(NamedTuple):
     """A variable of an instance, or of the model (`instance` is -1); a struct contains several of the network."""
 
     instance: int
@@ -75,7 +75,7 @@ class Breakpoint:
             return True
         try:
             return condition(self.condition, scope)
-        except EvaluationError:
+        except WatchError:
             return False
 
     def stops(self) -> bool:
@@ -89,7 +89,7 @@ def breakpoint_of(
 ) -> Breakpoint:
     """
     Raises:
-        EvaluationError: the condition, the hit condition or the message cannot be read.
+        WatchError: the condition, the hit condition or the message cannot be read.
     """
     for part in _BRACES.findall(message):
         parsed(part)
@@ -105,7 +105,7 @@ def breakpoint_of(
 def _hit_condition(text: str) -> Callable[[int], bool]:
     match = re.fullmatch(r"\s*(>=|<=|==|=|>|<|%)?\s*(\d{1,9})\s*", text)
     if match is None or (match[1] == "%" and int(match[2]) == 0):
-        raise EvaluationError(f"`{text}` is not a hit condition; write for example `5`, `>= 5` or `% 2`")
+        raise WatchError(f"`{text}` is not a hit condition; write for example `5`, `>= 5` or `% 2`")
     relation, number = match[1] or "==", int(match[2])
     return {
         ">=": lambda hits: hits >= number,
@@ -125,7 +125,7 @@ def logged(message: str, scope: Scope) -> str:
     def value(match: re.Match[str]) -> str:
         try:
             return shown(evaluate(parsed(match[1]), scope))
-        except EvaluationError as error:
+        except WatchError as error:
             return f"{{{error}}}"
 
     return _BRACES.sub(value, message)
@@ -137,8 +137,8 @@ class Breakpoints:
 
     lines: dict[str, list[tuple[int, Breakpoint]]] = field(default_factory=dict)
     names: list[tuple[str, Breakpoint]] = field(default_factory=list)
-    variables: list[tuple[Variable, Breakpoint]] = field(default_factory=list)
-    filters: dict[Filter, Breakpoint] = field(default_factory=dict)
+    variables: list[tuple[WatchedVariable, Breakpoint]] = field(default_factory=list)
+    filters: dict[ExceptionFilter, Breakpoint] = field(default_factory=dict)
 
     def reset(self) -> None:
         """Begin to count hits again."""
@@ -153,7 +153,7 @@ class Breakpoints:
         yield from self.filters.values()
 
 
-class Places:
+class BreakpointPlaces:
     """The lines at which a run can stop."""
 
     def __init__(self, session: Session, sources: Sources) -> None:
@@ -220,7 +220,7 @@ class Places:
 class Matcher:
     """Finds the breakpoints that steps reach."""
 
-    def __init__(self, session: Session, sources: Sources, places: Places, breakpoints: Breakpoints) -> None:
+    def __init__(self, session: Session, sources: Sources, places: BreakpointPlaces, breakpoints: Breakpoints) -> None:
         self._session = session
         self._places = places
         self._statements: dict[Line, list[Breakpoint]] = {}
@@ -266,7 +266,7 @@ class Matcher:
             hits += ((each, first) for each in self._events.get(sent_by(step.action or ""), ()))
             if actors:
                 hits += ((each, first) for each in self._events.get(event, ()))
-        chance = self._filters.get(Filter.CHANCE)
+        chance = self._filters.get(ExceptionFilter.CHANCE)
         if chance is not None:
             hits += ((chance, part.instance) for part in actors if len(part.edge.destinations) > 1)
         return hits
@@ -291,20 +291,22 @@ class Matcher:
         for each in decided:
             if each.verdict == "failed":
                 hits += ((breakpoint_, first) for breakpoint_ in self._properties.get(each.name, ()))
-            verdict = self._filters.get(Filter.VIOLATED if each.verdict == "failed" else Filter.SATISFIED)
+            verdict = self._filters.get(
+                ExceptionFilter.VIOLATED if each.verdict == "failed" else ExceptionFilter.SATISFIED
+            )
             if verdict is not None:
                 hits.append((verdict, first))
-        failure = self._filters.get(Filter.FAILURE)
+        failure = self._filters.get(ExceptionFilter.FAILURE)
         if failure is not None and _fails(step):
             hits.append((failure, first))
-        time = self._filters.get(Filter.TIME)
+        time = self._filters.get(ExceptionFilter.TIME)
         if time is not None and _passes_time(self._session, step):
             hits.append((time, first))
         return hits
 
     @property
     def end(self) -> Breakpoint | None:
-        return self._filters.get(Filter.END)
+        return self._filters.get(ExceptionFilter.END)
 
 
 def _fails(step: TraceStep) -> bool:
@@ -324,7 +326,7 @@ def _fails(step: TraceStep) -> bool:
     return STATUSES["FAILURE"] in (*changed, *assigned)
 
 
-def _is_part(instance: int, name: str, variable: Variable) -> bool:
+def _is_part(instance: int, name: str, variable: WatchedVariable) -> bool:
     owner = variable.name
     return instance == variable.instance and (name == owner or name.startswith((f"{owner}{SEPARATOR}", f"{owner}.")))
 

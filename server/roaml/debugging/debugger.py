@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from roaml.debugging.breakpoints import Breakpoint, Breakpoints, Filter, Matcher, Places, logged
+from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
 from roaml.debugging.evaluate import Scope
-from roaml.debugging.frames import TREE_THREAD, Frame, Stacks, Thread, node_of, threads
+from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, Stacks, node_of, threads
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
@@ -41,7 +41,7 @@ class Unit(enum.Enum):
     END = "end"
 
 
-class Reason(enum.Enum):
+class StopReason(enum.Enum):
     """Why a run has stopped, in DAP's words where it has some."""
 
     ENTRY = "entry"
@@ -65,7 +65,7 @@ class Stop:
         filter: what has happened, if the reason is an exception.
     """
 
-    reason: Reason
+    reason: StopReason
     thread: int
     text: str = ""
     breakpoints: tuple[int, ...] = ()
@@ -112,11 +112,11 @@ class Debugger:
         self._follow()
 
     @cached_property
-    def places(self) -> Places:
-        return Places(self.session, self.sources)
+    def places(self) -> BreakpointPlaces:
+        return BreakpointPlaces(self.session, self.sources)
 
     @cached_property
-    def threads(self) -> tuple[Thread, ...]:
+    def threads(self) -> tuple[DebugThread, ...]:
         return threads(self.session, self.sources)
 
     @cached_property
@@ -183,7 +183,7 @@ class Debugger:
     def interrupt(self) -> Stop:
         """End the movement here."""
         self._settle()
-        return self._stop(Reason.PAUSE)
+        return self._stop(StopReason.PAUSE)
 
     def _settle(self) -> None:
         """Go to where the movement is."""
@@ -208,7 +208,7 @@ class Debugger:
             movement.steps += 1
             if stop is None and movement.steps >= MAX_STEPS:
                 self._settle()
-                stop = self._stop(Reason.PAUSE, f"{MAX_STEPS:,} steps were taken without reaching a breakpoint")
+                stop = self._stop(StopReason.PAUSE, f"{MAX_STEPS:,} steps were taken without reaching a breakpoint")
         if stop is not None:
             self._movement = None
         return stop
@@ -219,7 +219,7 @@ class Debugger:
         except FaultError as fault:
             self._looked_at, self._upcoming, self.fault = self.session.position, None, fault
             self._values = self._stacks = None
-            return self._stop(Reason.EXCEPTION, fault.message, filter_="fault")
+            return self._stop(StopReason.EXCEPTION, fault.message, filter_="fault")
         if step is None:
             return self._end()
         decided = self._follow()
@@ -233,13 +233,13 @@ class Debugger:
         reached = self._reached(matcher.after(step, decided))
         if reached:
             return self._stop_at(reached)
-        return self._stop(Reason.STEP) if self._is_far_enough(movement.unit, step) else None
+        return self._stop(StopReason.STEP) if self._is_far_enough(movement.unit, step) else None
 
     def _backwards(self, movement: _Movement) -> Stop | None:
         """Look at the step before `movement.position`; the session itself only moves where it may stop."""
         if movement.position == 0:
             self.session.jump(0)
-            return self._stop(Reason.ENTRY, "this is the start of the run")
+            return self._stop(StopReason.ENTRY, "this is the start of the run")
         step = self.session.steps[movement.position - 1]
         matcher = self._match()
         if not movement.is_first and (hits := matcher.after(step, self._verdicts.at(movement.position))):
@@ -253,7 +253,7 @@ class Debugger:
                 return self._stop_at(reached)
         if movement.unit is Unit.STEP:
             self.session.jump(movement.position)
-            return self._stop(Reason.STEP)
+            return self._stop(StopReason.STEP)
         return None
 
     def _is_far_enough(self, unit: Unit, step: TraceStep) -> bool:
@@ -275,7 +275,7 @@ class Debugger:
         except FaultError:
             self.upcoming()
         self._follow()
-        return self._stop(Reason.GOTO)
+        return self._stop(StopReason.GOTO)
 
     def choose(self, choice: Choice, outcome: Outcome | None) -> Stop:
         """Take a step by hand; other steps that followed here are discarded."""
@@ -286,7 +286,7 @@ class Debugger:
         self._looked_at = -1
         decided = self._follow()
         after = self._reached(self._match().after(self.session.steps[position], decided))
-        return self._stop_at(after) if after else self._stop(Reason.STEP)
+        return self._stop_at(after) if after else self._stop(StopReason.STEP)
 
     def restart_frame(self, frame: Frame) -> Stop:
         """Go back to where a frame began: a handler received its event, a state was entered, a node was ticked."""
@@ -361,8 +361,8 @@ class Debugger:
         text = "no step is possible" if end is None else end.text
         breakpoint_ = self._match().end
         if breakpoint_ is not None:
-            return self._stop(Reason.EXCEPTION, text, filter_=Filter.END.value)
-        return self._stop(Reason.END, text)
+            return self._stop(StopReason.EXCEPTION, text, filter_=ExceptionFilter.END.value)
+        return self._stop(StopReason.END, text)
 
     def _stop_at(self, reached: list[tuple[Breakpoint, int]]) -> Stop:
         breakpoints = self.breakpoints
@@ -371,38 +371,38 @@ class Debugger:
         first = reached[0][0]
         for filter_, breakpoint_ in breakpoints.filters.items():
             if breakpoint_ is first:
-                return self._stop(Reason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
-        reason = Reason.BREAKPOINT
+                return self._stop(StopReason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
+        reason = StopReason.BREAKPOINT
         if any(breakpoint_ is first for _, breakpoint_ in breakpoints.names):
-            reason = Reason.FUNCTION_BREAKPOINT
+            reason = StopReason.FUNCTION_BREAKPOINT
         elif any(breakpoint_ is first for _, breakpoint_ in breakpoints.variables):
-            reason = Reason.DATA_BREAKPOINT
+            reason = StopReason.DATA_BREAKPOINT
         return self._stop(reason, first.name, numbers, "", instance)
 
-    def _text(self, filter_: Filter) -> str:
+    def _text(self, filter_: ExceptionFilter) -> str:
         decided = self._verdicts.at(self.session.position)
         match filter_:
-            case Filter.VIOLATED:
+            case ExceptionFilter.VIOLATED:
                 names = [each.name for each in decided if each.verdict == "failed"]
                 return f"violated: {', '.join(names)}"
-            case Filter.SATISFIED:
+            case ExceptionFilter.SATISFIED:
                 names = [each.name for each in decided if each.verdict == "passed"]
                 return f"satisfied: {', '.join(names)}"
-            case Filter.FAILURE:
+            case ExceptionFilter.FAILURE:
                 step = self.session.steps[self.session.position - 1]
                 number = sent_by(step.action or "").split("_")[1]
                 node = self.sources.nodes.get(int(number))
                 return f"{node.plugin if node else 'node'} (bt_{number}) fails"
-            case Filter.CHANCE:
+            case ExceptionFilter.CHANCE:
                 return "the next step is decided by chance"
-            case Filter.TIME:
+            case ExceptionFilter.TIME:
                 return f"time passes to {self.session.time:g} s"
-            case Filter.END:
+            case ExceptionFilter.END:
                 return "no step changes anything any more"
 
     def _stop(
         self,
-        reason: Reason,
+        reason: StopReason,
         text: str = "",
         breakpoints: tuple[int, ...] = (),
         filter_: str = "",
@@ -413,7 +413,7 @@ class Debugger:
 
     def entry(self) -> Stop:
         """The stop at the start of the run."""
-        return self._stop(Reason.ENTRY)
+        return self._stop(StopReason.ENTRY)
 
     def _thread_at(self, instance: int) -> int:
         """The thread of an instance, otherwise that of the first one that takes part in the next step."""

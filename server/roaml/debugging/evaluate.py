@@ -32,7 +32,7 @@ Scope = Callable[[str], "Value | None"]
 """The value of a name; `None` if there is no such name."""
 
 
-class EvaluationError(ValueError):
+class WatchError(ValueError):
     """An expression that has no value; the message contains the reason."""
 
 
@@ -40,33 +40,33 @@ def parsed(text: str) -> Expr:
     """The syntax tree of an expression.
 
     Raises:
-        EvaluationError: the text is not an expression.
+        WatchError: the text is not an expression.
     """
     expr, findings = parser.parse(Decoded(text, 0))
     if any(isinstance(part, ErrorExpr) for part in walk(expr)):
-        raise EvaluationError(findings[0].message if findings else "the expression is not complete")
+        raise WatchError(findings[0].message if findings else "the expression is not complete")
     return expr
 
 
 def evaluate(expr: Expr, scope: Scope) -> Value:
     """
     Raises:
-        EvaluationError: the expression has no value: an unknown name, a wrong type, a division by zero, an index
+        WatchError: the expression has no value: an unknown name, a wrong type, a division by zero, an index
             outside of its array.
     """
     try:
         return _value(expr, scope)
     except (OverflowError, ValueError) as error:
-        if isinstance(error, EvaluationError):
+        if isinstance(error, WatchError):
             raise
-        raise EvaluationError(str(error)) from None
+        raise WatchError(str(error)) from None
 
 
 def condition(expr: Expr, scope: Scope) -> bool:
     """The value of a condition.
 
     Raises:
-        EvaluationError: as for `evaluate`, or the value is not a `bool`.
+        WatchError: as for `evaluate`, or the value is not a `bool`.
     """
     return _boolean(evaluate(expr, scope))
 
@@ -78,7 +78,7 @@ def _value(expr: Expr, scope: Scope) -> Value:
         case Name():
             value = scope(expr.name)
             if value is None:
-                raise EvaluationError(f"there is no variable `{expr.name}` here")
+                raise WatchError(f"there is no variable `{expr.name}` here")
             return value
         case Member():
             return _member(expr, scope)
@@ -97,7 +97,7 @@ def _value(expr: Expr, scope: Scope) -> Value:
         case ObjectLiteral():
             return {member.key: _value(member.value, scope) for member in expr.members}
         case ErrorExpr():
-            raise EvaluationError("the expression is not complete")
+            raise WatchError("the expression is not complete")
 
 
 def _member(expr: Member, scope: Scope) -> Value:
@@ -126,17 +126,17 @@ def _dotted(expr: Expr) -> str | None:
 
 def _part(owner: Value, name: str) -> Value:
     if not isinstance(owner, Mapping) or name not in owner:
-        raise EvaluationError(f"{shown(owner)} has no member `{name}`")
+        raise WatchError(f"{shown(owner)} has no member `{name}`")
     return owner[name]
 
 
 def _element(owner: Value, index: Value) -> Value:
     if not isinstance(owner, (list, str)):
-        raise EvaluationError(f"{shown(owner)} is not an array")
+        raise WatchError(f"{shown(owner)} is not an array")
     if not isinstance(index, int) or isinstance(index, bool):
-        raise EvaluationError(f"the index {shown(index)} is not an integer")
+        raise WatchError(f"the index {shown(index)} is not an integer")
     if not 0 <= index < len(owner):
-        raise EvaluationError(f"index {index} is outside of the array, whose length is {len(owner)}")
+        raise WatchError(f"index {index} is outside of the array, whose length is {len(owner)}")
     return ord(owner[index]) if isinstance(owner, str) else owner[index]
 
 
@@ -164,18 +164,18 @@ def _binary(expr: Binary, scope: Scope) -> Value:
 def _check_comparable(left: Value, right: Value, symbol: str) -> None:
     kinds = {"number" if type_of(value) in ("int", "real") else type(value).__name__ for value in (left, right)}
     if len(kinds) > 1 or isinstance(left, dict):
-        raise EvaluationError(f"`{symbol}` cannot compare {shown(left)} with {shown(right)}")
+        raise WatchError(f"`{symbol}` cannot compare {shown(left)} with {shown(right)}")
 
 
 def _quotient(a: float, b: float) -> float:
     if b == 0:
-        raise EvaluationError("division by zero")
+        raise WatchError("division by zero")
     return a / b
 
 
 def _remainder(a: float, b: float) -> float:
     if b == 0:
-        raise EvaluationError("division by zero")
+        raise WatchError("division by zero")
     return a % abs(b)
 
 
@@ -197,12 +197,12 @@ def _call(expr: Call, scope: Scope) -> Value:
         case Member(object=Name(name="Math"), name=name) if name in FUNCTIONS:
             function = FUNCTIONS[name]
         case _:
-            raise EvaluationError("only functions of `Math` can be called")
+            raise WatchError("only functions of `Math` can be called")
     if name == "random":
-        raise EvaluationError("`Math.random()` has no value here; it draws one when it is executed")
+        raise WatchError("`Math.random()` has no value here; it draws one when it is executed")
     given = len(expr.arguments)
     if not len(function.parameters) - function.optional <= given <= len(function.parameters):
-        raise EvaluationError(f"`{function.signature}` does not have {given} arguments")
+        raise WatchError(f"`{function.signature}` does not have {given} arguments")
     arguments = [_number(_value(argument, scope), f"Math.{name}") for argument in expr.arguments]
     return _FUNCTIONS[name](arguments)
 
@@ -210,7 +210,7 @@ def _call(expr: Call, scope: Scope) -> Value:
 def _power(arguments: Sequence[float]) -> float:
     power = arguments[0] ** arguments[1]
     if isinstance(power, complex):
-        raise EvaluationError("the power of a negative number with a fraction is not a number")
+        raise WatchError("the power of a negative number with a fraction is not a number")
     return float(power)
 
 
@@ -229,11 +229,11 @@ _FUNCTIONS: Mapping[str, Callable[[Sequence[float]], Value]] = {
 
 def _number(value: Value, symbol: str) -> int | float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise EvaluationError(f"`{symbol}` needs numbers, not {shown(value)}")
+        raise WatchError(f"`{symbol}` needs numbers, not {shown(value)}")
     return value
 
 
 def _boolean(value: Value) -> bool:
     if not isinstance(value, bool):
-        raise EvaluationError(f"{shown(value)} is not a condition; compare it, for example with `==`")
+        raise WatchError(f"{shown(value)} is not a condition; compare it, for example with `==`")
     return value

@@ -25,7 +25,7 @@ FIRST_MACHINE_THREAD = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Thread:
+class DebugThread:
     """A machine, or the tree; `instance` is -1 for the tree."""
 
     number: int
@@ -51,13 +51,13 @@ class Frame:
     role: str
 
 
-def threads(session: Session, sources: Sources) -> tuple[Thread, ...]:
+def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
     """The threads of a system, in the order of its machines, the tree first."""
-    found = [Thread(TREE_THREAD, "tree", -1)] if sources.nodes else []
+    found = [DebugThread(TREE_THREAD, "tree", -1)] if sources.nodes else []
     number = FIRST_MACHINE_THREAD
     for instance, automaton in enumerate(session.automata_of_model):
         if session.is_machine(instance) and not _is_node(automaton.name, sources):
-            found.append(Thread(number, who(automaton.name), instance))
+            found.append(DebugThread(number, who(automaton.name), instance))
             number += 1
     return tuple(found)
 
@@ -90,7 +90,7 @@ class Stacks:
         actors = [] if upcoming is None else session.actors(upcoming)
         self._parts: Mapping[int, AutomatonStep] = {part.instance: part for part in actors}
 
-    def stack(self, thread: Thread) -> list[Frame]:
+    def stack(self, thread: DebugThread) -> list[Frame]:
         """The frames of a thread, the innermost first."""
         if thread.instance >= 0:
             automaton = self._session.automata_of_model[thread.instance].name

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from roaml.debugging.breakpoints import Variable
+from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.evaluate import Scope
 from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
@@ -20,7 +20,7 @@ from roaml.smc.record import Plain, TraceStep
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ScopeEntry:
     """A named value of a scope.
 
     Attributes:
@@ -33,7 +33,7 @@ class Entry:
     value: Value
     type: str = ""
     expression: str = ""
-    variable: Variable | None = None
+    variable: WatchedVariable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class ScopeEntries:
     """A scope of a frame; `hint` is its kind in DAP's words."""
 
     name: str
-    entries: tuple[Entry, ...]
+    entries: tuple[ScopeEntry, ...]
     hint: str = ""
 
 
@@ -76,7 +76,7 @@ class Values:
             found.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
             message = self.message(frame.instance)
             if message:
-                entries = (Entry(name, value, type_of(value), name) for name, value in message.items())
+                entries = (ScopeEntry(name, value, type_of(value), name) for name, value in message.items())
                 found.append(ScopeEntries("Message", tuple(entries), "arguments"))
         if frame.node:
             found.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
@@ -91,7 +91,7 @@ class Values:
         yield ScopeEntries("Time", tuple(self._time()), "globals")
         yield ScopeEntries("Properties", tuple(self._properties()), "globals")
 
-    def _own(self, instance: int) -> Iterator[Entry]:
+    def _own(self, instance: int) -> Iterator[ScopeEntry]:
         stored = self._stored.get(instance, {})
         automaton = self._session.automata_of_model[instance]
         types = self._sources.variable_types(automaton)
@@ -102,53 +102,53 @@ class Values:
                 shown |= {
                     each for each in stored if each == name or each.startswith((f"{name}{SEPARATOR}", f"{name}."))
                 }
-                yield Entry(name, value, str(type_), name, Variable(instance, name))
+                yield ScopeEntry(name, value, str(type_), name, WatchedVariable(instance, name))
         for name, value in untyped_values({n: v for n, v in stored.items() if n not in shown}).items():
-            yield Entry(name, value, type_of(value), name, Variable(instance, name))
+            yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
 
-    def _ports(self, node: int) -> Iterator[Entry]:
+    def _ports(self, node: int) -> Iterator[ScopeEntry]:
         for key, port in self._sources.nodes[node].ports:
             if isinstance(port, PortConstant):
-                yield Entry(key, port.text, "constant")
+                yield ScopeEntry(key, port.text, "constant")
             else:
                 value = self._blackboard_values().get(port.variable)
                 text = f"{{{port.variable}}}"
-                yield Entry(key, text if value is None else value, f"blackboard entry {port.variable}")
+                yield ScopeEntry(key, text if value is None else value, f"blackboard entry {port.variable}")
 
     def _blackboard_values(self) -> dict[str, Value]:
         stored = self._stored.get(self._instances.get(BLACKBOARD, -2), {})
         return untyped_values(stored)
 
-    def _blackboard(self) -> Iterator[Entry]:
+    def _blackboard(self) -> Iterator[ScopeEntry]:
         instance = self._instances.get(BLACKBOARD, -2)
         for name, value in self._blackboard_values().items():
-            yield Entry(name, value, type_of(value), name, Variable(instance, name))
+            yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
 
-    def _nodes(self) -> Iterator[Entry]:
+    def _nodes(self) -> Iterator[ScopeEntry]:
         for node in self._state.nodes:
-            yield Entry(f"{node.type} (bt_{node.number})", node.status.value, "status", f"bt_{node.number}")
+            yield ScopeEntry(f"{node.type} (bt_{node.number})", node.status.value, "status", f"bt_{node.number}")
 
-    def _messages(self) -> Iterator[Entry]:
+    def _messages(self) -> Iterator[ScopeEntry]:
         for event in self._state.events:
             parameters: Value = self._parameters(event.event)
             waiting = ", not received yet" if event.is_waiting else ""
-            yield Entry(event.text, parameters, f"sent by {event.sender} in step {event.step}{waiting}")
+            yield ScopeEntry(event.text, parameters, f"sent by {event.sender} in step {event.step}{waiting}")
 
-    def _shared(self) -> Iterator[Entry]:
+    def _shared(self) -> Iterator[ScopeEntry]:
         stored = self._stored.get(-1, {})
         own = {name: v for name, v in stored.items() if name in self._state.shared or is_length(name)}
         for name, value in untyped_values(own).items():
             if name in self._state.shared:
-                yield Entry(name, value, type_of(value), name, Variable(-1, name))
+                yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(-1, name))
 
-    def _time(self) -> Iterator[Entry]:
-        yield Entry("step", self._session.position, "number of steps", "step")
+    def _time(self) -> Iterator[ScopeEntry]:
+        yield ScopeEntry("step", self._session.position, "number of steps", "step")
         if self._state.time is not None:
-            yield Entry("time", self._state.time, "s", "time")
+            yield ScopeEntry("time", self._state.time, "s", "time")
 
-    def _properties(self) -> Iterator[Entry]:
+    def _properties(self) -> Iterator[ScopeEntry]:
         for name, verdict in self._verdicts.items():
-            yield Entry(name, verdict, "verdict")
+            yield ScopeEntry(name, verdict, "verdict")
 
     # ------------------------------------------------------------ messages
 

@@ -19,7 +19,7 @@ from roaml.model.property_file import (
 )
 from roaml.model.syntax import Expression, Name
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, ScopeKind
-from roaml.observers.sentences import Clause, Times, formula_sentence, pattern_formula, pattern_sentence
+from roaml.observers.sentences import SentenceClause, Times, formula_sentence, pattern_formula, pattern_sentence
 
 
 def sentence(file: PropertyFile, written: WrittenProperty) -> str:
@@ -84,7 +84,7 @@ def _sentence(file: PropertyFile, written: WrittenProperty) -> str:
     return pattern_sentence(pattern, scope_of(written) or ScopeKind.GLOBALLY, clauses, _times(written))
 
 
-def clause(condition: Expression, ports: Mapping[str, Port]) -> Clause:
+def clause(condition: Expression, ports: Mapping[str, Port]) -> SentenceClause:
     """A condition as a clause: an event variable alone states that the event is sent, other conditions hold.
 
     Args:
@@ -94,7 +94,7 @@ def clause(condition: Expression, ports: Mapping[str, Port]) -> Clause:
     port = ports.get(tree.name) if isinstance(tree, NameExpr) else None
     if port is not None and port.name is not None:
         return event_clause(port)
-    return Clause(quoted(condition.text), "holds")
+    return SentenceClause(quoted(condition.text), "holds")
 
 
 def quoted(text: str) -> str:
@@ -102,7 +102,7 @@ def quoted(text: str) -> str:
     return f"`{' '.join(text.split()).replace('`', chr(39)) or '…'}`"
 
 
-def event_clause(port: Port) -> Clause:
+def event_clause(port: Port) -> SentenceClause:
     """A clause for the sending of the event of a port."""
     name = quoted(port.name.value) if port.name is not None else "…"
     by = f" by {quoted(port.origin.value)}" if port.origin is not None else ""
@@ -120,12 +120,16 @@ def event_clause(port: Port) -> Clause:
                 return _is(f"{'feedback' if event == 'feedback' else 'a result'} of {name}", f"sent{to}")
         return _is("a goal", f"sent to {name}{by}")
     if port.kind == NODE:
-        return Clause(name, "answers") if event == "response" else _is(name, "halted" if event == "halt" else "ticked")
+        return (
+            SentenceClause(name, "answers")
+            if event == "response"
+            else _is(name, "halted" if event == "halt" else "ticked")
+        )
     return _is(name, f"sent{by}{to}")
 
 
-def _is(subject: str, participle: str) -> Clause:
-    return Clause(subject, participle, "is")
+def _is(subject: str, participle: str) -> SentenceClause:
+    return SentenceClause(subject, participle, "is")
 
 
 def _times(written: WrittenProperty) -> Times:

@@ -31,7 +31,7 @@ _MAX_DEPTH = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Clause:
+class SentenceClause:
     """A condition as a clause: `/charge` (subject) is (auxiliary) called (verb)."""
 
     subject: str
@@ -46,7 +46,7 @@ class Clause:
         return " ".join(filter(None, (self.subject, self.auxiliary, adverb, self.verb)))
 
 
-UNKNOWN = Clause("…", "")
+UNKNOWN = SentenceClause("…", "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Times:
     within: str = ""
 
 
-def pattern_sentence(pattern: Pattern, scope: ScopeKind, clauses: Mapping[str, Clause], times: Times) -> str:
+def pattern_sentence(pattern: Pattern, scope: ScopeKind, clauses: Mapping[str, SentenceClause], times: Times) -> str:
     """A pattern in a scope.
 
     Args:
@@ -68,7 +68,7 @@ def pattern_sentence(pattern: Pattern, scope: ScopeKind, clauses: Mapping[str, C
     return _sentence(f"{text}{_condition_of_scope(scope)}")
 
 
-def formula_sentence(formula: Formula, clauses: Mapping[str, Clause]) -> str:
+def formula_sentence(formula: Formula, clauses: Mapping[str, SentenceClause]) -> str:
     """A formula of past-time metric temporal logic that must hold at every step."""
     return _sentence(f"at every step, {_formula(formula, clauses, _MAX_DEPTH)}")
 
@@ -99,7 +99,7 @@ def pattern_formula(pattern: Pattern, scope: ScopeKind, conditions: Mapping[str,
 
 
 class _Clauses:
-    def __init__(self, clauses: Mapping[str, Clause]) -> None:
+    def __init__(self, clauses: Mapping[str, SentenceClause]) -> None:
         self.left = clauses.get(LEFT, UNKNOWN)
         self.right = clauses.get(RIGHT, UNKNOWN)
         self.open = clauses.get(OPEN, UNKNOWN)
@@ -172,7 +172,7 @@ def _distance(times: Times, direction: str) -> str:
 # --------------------------------------------------------------------- formulas
 
 
-def _formula(formula: Formula, clauses: Mapping[str, Clause], depth: int) -> str:
+def _formula(formula: Formula, clauses: Mapping[str, SentenceClause], depth: int) -> str:
     def inner(part: Formula) -> str:
         text = _formula(part, clauses, depth - 1)
         is_simple = isinstance(part, (Atom, Constant)) or (isinstance(part, Not) and isinstance(part.operand, Atom))

@@ -17,7 +17,7 @@ from roaml.ide.completion.elements import elements
 from roaml.ide.completion.item import CompletionItem, Completions, ItemKind, Rank, escaped, plain
 from roaml.ide.completion.json_documents import in_json
 from roaml.ide.completion.place import AttributeName, AttributeValue, Content, EndTag, Place, StartTag, place_at
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.completion.values import in_attribute, in_text
 from roaml.ide.syntax import Typed, xml_file
 from roaml.project.workspace import Snapshot
@@ -84,7 +84,7 @@ def _value(request: Request, place: AttributeValue) -> tuple[Span, Iterable[Comp
     if place.typed.type is None and not any(typed.element.name == "BehaviorTree" for typed in place.parents):
         return None
     type_ = place.typed.type or request.file.grammar.elements["Action"]
-    subject = Subject(place.typed.element, type_, place.parents)
+    subject = CompletionSubject(place.typed.element, type_, place.parents)
     span_and_items = in_attribute(request, subject, place.attribute.name, place.span)
     if span_and_items is None:
         return None
@@ -109,7 +109,7 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
         span = Span(place.text.start + lead, max(place.text.start + lead, place.text.start + len(text.rstrip())))
         if not span.contains(request.offset):
             span = Span(request.offset, request.offset)
-        subject = Subject(parent.element, parent.type, place.parents[:-1])
+        subject = CompletionSubject(parent.element, parent.type, place.parents[:-1])
         in_content = in_text(request, subject, span)
         if in_content is not None and (text.strip() or not parent.type.children):
             return in_content

@@ -10,7 +10,7 @@ from roaml.ide.completion import property_files
 from roaml.ide.completion.elements import likely
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.ports import ports_to_add
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.frames import names_in
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, AttributeType, ElementType
@@ -30,7 +30,7 @@ def attributes(request: Request, parents: tuple[Typed, ...], typed: Typed, *, ba
         type_ = _plugin_type()
     if type_ is None:
         return
-    subject = Subject(element, type_, parents)
+    subject = CompletionSubject(element, type_, parents)
     given = {attribute.name for attribute in element.attributes}
     if is_node and bare:
         yield from ports_to_add(request, subject)
@@ -51,7 +51,7 @@ def _plugin_type() -> ElementType:
     return BEHAVIOR_TREE.elements["Action"]
 
 
-def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare: bool) -> CompletionItem:
+def _item(request: Request, subject: CompletionSubject, attribute: AttributeType, *, bare: bool) -> CompletionItem:
     about = Symbol(subject.key, SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
     insert = ""
     if bare:
@@ -66,7 +66,7 @@ def _item(request: Request, subject: Subject, attribute: AttributeType, *, bare:
     )
 
 
-def _remappings(request: Request, subject: Subject, given: set[str]) -> Iterator[CompletionItem]:
+def _remappings(request: Request, subject: CompletionSubject, given: set[str]) -> Iterator[CompletionItem]:
     """The variables of the tree of a subtree node."""
     id_ = subject.element.get("ID") if subject.element else None
     path, tree = request.trees.trees.get(id_.value if id_ else "", ("", None))

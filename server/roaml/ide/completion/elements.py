@@ -12,7 +12,7 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import plugins, port_list
 from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.completion.values import candidates
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
@@ -46,7 +46,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     if bare and "field" in parent.type.children:
         yield from fields_to_add(request, parent.element)
     if bare and "param" in parent.type.children:
-        yield from parameters_to_add(request, Subject(parent.element, parent.type, parents[:-1]))
+        yield from parameters_to_add(request, CompletionSubject(parent.element, parent.type, parents[:-1]))
     if request.file.grammar is BEHAVIOR_TREE and parent.type.any_child is not None:
         yield from _tree_nodes(request, parents, bare=bare)
         return
@@ -77,7 +77,7 @@ def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool
 def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:
     """A whole element: its name, its essential attributes, and its end."""
     made = Snippet().text(type_.name)
-    subject = Subject(None, type_, parents)
+    subject = CompletionSubject(None, type_, parents)
     for attribute in type_.attributes.values():
         if request.file.grammar is XML_PROPERTIES:
             is_wanted = property_files.is_wanted(parents, type_, attribute)
@@ -94,7 +94,7 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
     return str(made)
 
 
-def likely(request: Request, subject: Subject, attribute: AttributeType) -> list[str]:
+def likely(request: Request, subject: CompletionSubject, attribute: AttributeType) -> list[str]:
     """The likely value of an attribute, if it has only a few choices."""
     if attribute.value == "ros-type":
         return []

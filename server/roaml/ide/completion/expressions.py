@@ -18,7 +18,7 @@ from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, StructKi
 from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
@@ -94,7 +94,7 @@ def _object(text: str) -> str:
 
 
 def in_expression(
-    request: Request, subject: Subject, part: str, start: int
+    request: Request, subject: CompletionSubject, part: str, start: int
 ) -> tuple[Span, list[CompletionItem]] | None:
     """The completions at the caret in an expression that begins at `start`.
 
@@ -240,7 +240,7 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
 # ----------------------------------------------------------------- required types
 
 
-def _wanted(request: Request, subject: Subject, part: str) -> Type | None:
+def _wanted(request: Request, subject: CompletionSubject, part: str) -> Type | None:
     """The required type of the value, if it is known."""
     known = subject.type.attributes.get(part)
     if known is not None and known.value_type in ("bool", "int"):

@@ -9,7 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, Type, leaves
 from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.language import ElementType
 from roaml.model.machine import Declaration, RosSend
 from roaml.model.ros import InterfaceType
@@ -18,7 +18,7 @@ from roaml.roles import SymbolKind
 from roaml.xml_syntax import Element
 
 
-def field_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def field_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The names that a `<field>` may have: first the fields that are not set yet."""
     holder = subject.parents[-1].element if subject.parents else None
     statement = request.communicate(holder) if holder is not None else None

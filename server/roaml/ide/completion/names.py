@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.parameters import parameter_names
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import uses
@@ -21,7 +21,7 @@ from roaml.roles import SymbolKind
 _SHOWN = 3
 
 
-def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
+def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The symbols of a kind that `subject` may refer to."""
     if kind in HANDLES:
         yield from _handles(request, kind)
@@ -29,7 +29,7 @@ def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[C
         yield from _PROVIDERS[kind](request, subject)
 
 
-def undefined(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
+def undefined(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """Names for a new definition: those that are used but not defined."""
     if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
@@ -61,7 +61,7 @@ _KINDS = {SymbolKind.STATE: ItemKind.STATE, SymbolKind.VARIABLE: ItemKind.VARIAB
 # ------------------------------------------------------------------- machines
 
 
-def _states(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _states(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     for state in request.chart.states if request.chart else ():
         if state.id is not None:
             about = Symbol(request.path, SymbolKind.STATE, state.id.value, request.chart.scope if request.chart else "")
@@ -82,7 +82,7 @@ def _declared(declaration: Declaration) -> str:
     return " : ".join(filter(None, (name, declaration.type.value if declaration.type else "")))
 
 
-def _ports(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _ports(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """Ports of a plugin that can be read or written there; in a tree file, those of the plugin that is described."""
     if request.machine is None:
         id_ = subject.parents[-1].element.get("ID") if subject.parents else None
@@ -136,7 +136,7 @@ def _missing_ports(request: Request) -> Iterator[CompletionItem]:
 # --------------------------------------------------------------------- events
 
 
-def _events_received(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _events_received(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """Events to wait for: those that a machine sends."""
     for system in request.systems:
         for event in system.events.values():
@@ -195,8 +195,8 @@ def _machines(channel: Channel) -> dict[str, None]:
     return dict.fromkeys(endpoint.automaton.name for endpoint in channel.endpoints)
 
 
-def _of_kind(kind: SymbolKind) -> Callable[[Request, Subject], Iterator[CompletionItem]]:
-    def provide(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _of_kind(kind: SymbolKind) -> Callable[[Request, CompletionSubject], Iterator[CompletionItem]]:
+    def provide(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
         element = subject.element
         if subject.type.text and subject.parents:
             element = subject.parents[-1].element  # `<topic>` is inside of the declaration
@@ -216,7 +216,7 @@ def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
     return by_name
 
 
-def _plugin_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _plugin_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
         yield CompletionItem(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
@@ -246,7 +246,7 @@ def port_list(outline: MachineOutline) -> str:
     )
 
 
-def _tree_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _tree_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     for name, (path, _) in request.trees.trees.items():
         if name:
             file = path.replace("\\", "/").rpartition("/")[2]
@@ -261,7 +261,7 @@ def _some(names: Iterable[str]) -> str:
     return ", ".join(listed[:_SHOWN]) + more
 
 
-_PROVIDERS: Mapping[SymbolKind, Callable[[Request, Subject], Iterator[CompletionItem]]] = {
+_PROVIDERS: Mapping[SymbolKind, Callable[[Request, CompletionSubject], Iterator[CompletionItem]]] = {
     SymbolKind.STATE: _states,
     SymbolKind.PORT: _ports,
     SymbolKind.EVENT: _events_received,

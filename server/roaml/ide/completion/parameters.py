@@ -7,19 +7,19 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.model.machine import Send
 from roaml.roles import SymbolKind
 
 
-def parameter_names(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def parameter_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The names that a `<param>` may have: the parameters that the `<send>` around the caret does not send yet."""
     for statement in request.chart.statements if request.chart else ():
         if isinstance(statement, Send) and any(typed.element is statement.element for typed in subject.parents):
             yield from _missing(request, statement, subject)
 
 
-def parameters_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def parameters_to_add(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The `<param>` elements for a `<send>`: each missing parameter, and all of them at once."""
     for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
@@ -40,7 +40,7 @@ def _param(made: Snippet, name: str) -> Snippet:
     return made.text(f'<param name="{name}" expr="').stop().text('"/>')
 
 
-def _missing(request: Request, send: Send, subject: Subject) -> Iterator[CompletionItem]:
+def _missing(request: Request, send: Send, subject: CompletionSubject) -> Iterator[CompletionItem]:
     if send.event is None:
         return
     given = {param.name.value for param in send.params if param.name and param.element is not subject.element}

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
 from roaml.model.machine import Machine
 from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES
@@ -29,7 +29,7 @@ _BY_TYPE = {
 }
 
 
-def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The files that the attribute may name: first those that this file does not refer to yet."""
     analysis = request.analysis
     kinds, plugin = _wanted(subject)
@@ -45,7 +45,7 @@ def paths(request: Request, subject: Subject) -> Iterator[CompletionItem]:
         yield CompletionItem(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
 
 
-def _wanted(subject: Subject) -> tuple[tuple[FileKind, ...], bool | None]:
+def _wanted(subject: CompletionSubject) -> tuple[tuple[FileKind, ...], bool | None]:
     """The expected kind of the file, and whether a machine must be a plugin (`None`: either)."""
     if subject.type.name == "include":
         return (FileKind.TREE,), None

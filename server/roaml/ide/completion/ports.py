@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.names import channels, plugins
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.frames import names_in
 from roaml.language import ElementType
@@ -90,7 +90,7 @@ def _type_of(request: Request, name: str) -> ElementType | None:
     return request.file.grammar.elements.get(name)
 
 
-def port_values(request: Request, subject: Subject, key: str) -> list[CompletionItem]:
+def port_values(request: Request, subject: CompletionSubject, key: str) -> list[CompletionItem]:
     """The possible values of the port `key` of a node: blackboard variables, and constants if its type determines
     them."""
     element = subject.element
@@ -113,7 +113,7 @@ def port_values(request: Request, subject: Subject, key: str) -> list[Completion
     return [*items, *_variables(request, key, port)]
 
 
-def _in_tree(subject: Subject) -> bool:
+def _in_tree(subject: CompletionSubject) -> bool:
     return any(typed.element.name == "BehaviorTree" for typed in subject.parents)
 
 
@@ -161,7 +161,7 @@ def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> I
             yield from channels(request, CHANNEL_KINDS[use.kind], use.type)
 
 
-def ports_to_add(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The attributes for ports that are not set: each port, and all required ones at once."""
     element = subject.element
     assert element is not None

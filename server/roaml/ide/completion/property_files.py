@@ -10,7 +10,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type, leaves
 from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.in_property_file import SYMBOL_KINDS
 from roaml.ide.property_values import names_of_port
 from roaml.ide.syntax import Typed
@@ -132,14 +132,14 @@ def has_effect(parents: tuple[Typed, ...], type_: ElementType, attribute: Attrib
 # ---------------------------------------------------------------------- values
 
 
-def port_at(request: Request, subject: Subject) -> Port | None:
+def port_at(request: Request, subject: CompletionSubject) -> Port | None:
     """The port that an element is or is in."""
     elements = [*(parent.element for parent in subject.parents), *([subject.element] if subject.element else [])]
     ports = request.property_file.ports if request.property_file is not None else ()
     return next((port for port in ports if any(port.element is element for element in elements)), None)
 
 
-def referred(request: Request, kind: SymbolKind, subject: Subject) -> Iterator[CompletionItem]:
+def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """What the system has of a kind of symbol that ports name."""
     system, port = next(iter(request.systems), None), port_at(request, subject)
     if system is None:
@@ -184,7 +184,7 @@ def _is_named(channel: Channel, port: Port) -> bool:
     return name in written
 
 
-def fields(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def fields(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The fields of what a port carries."""
     for path, type_, owner in _fields(request, port_at(request, subject)):
         symbol = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner) if owner else None
@@ -203,7 +203,7 @@ def _fields(request: Request, port: Port | None) -> Iterator[tuple[str, Type, st
         yield ".".join(path), type_, owner.name if isinstance(owner, Struct) else ""
 
 
-def port_types(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def port_types(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The types that the machines declare for what a port names."""
     port = port_at(request, subject)
     kind = SYMBOL_KINDS.get(port.kind) if port is not None else None
@@ -214,7 +214,7 @@ def port_types(request: Request, subject: Subject) -> Iterator[CompletionItem]:
                     yield CompletionItem(endpoint.use.type, ItemKind.TYPE, detail="declared", rank=Rank.BEST)
 
 
-def variable_type(request: Request, subject: Subject) -> Type:
+def variable_type(request: Request, subject: CompletionSubject) -> Type:
     """The type of the value of a variable, as far as it is known."""
     match subject.type.name:
         case "goal_id" | "result_code":
@@ -229,13 +229,13 @@ def variable_type(request: Request, subject: Subject) -> Type:
     return BASE_TYPES.get(written.value.strip(), UNKNOWN) if written is not None else UNKNOWN
 
 
-def field_type(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def field_type(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     type_ = variable_type(request, subject)
     if type_ != UNKNOWN and subject.element is not None and subject.element.get("field") is not None:
         yield CompletionItem(str(type_), ItemKind.TYPE, detail="of the field", rank=Rank.BEST)
 
 
-def new_ids(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def new_ids(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """A name for a variable: that of its field, or of its port."""
     field = subject.element.get("field") if subject.element is not None else None
     port = port_at(request, subject)

@@ -21,7 +21,7 @@ from roaml.project.workspace import Snapshot
 from roaml.xml_syntax import Element
 
 
-class Subject(NamedTuple):
+class CompletionSubject(NamedTuple):
     """The element whose attribute or content is completed; `element` is `None` while it is only being proposed."""
 
     element: Element | None

@@ -8,12 +8,14 @@ from roaml.forest.scripts import AFTERWARDS, CONDITIONS
 from roaml.ide.completion.expressions import beginning
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.ports import node_name
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.model.tree import is_variable_name
 from roaml.text import Span
 
 
-def in_script(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
+def in_script(
+    request: Request, subject: CompletionSubject, name: str, span: Span
+) -> tuple[Span, list[CompletionItem]] | None:
     """The completions at the caret if the attribute `name` is a script; `None` if it is not."""
     forest, element = request.forest, subject.element
     if forest is None or element is None or not any(typed.element.name == "BehaviorTree" for typed in subject.parents):

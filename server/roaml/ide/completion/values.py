@@ -14,7 +14,7 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.names import referred, undefined
 from roaml.ide.completion.paths import paths
 from roaml.ide.completion.ports import port_values
-from roaml.ide.completion.request import Request, Subject
+from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.completion.scripts import in_script
 from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
@@ -28,7 +28,9 @@ _EXPRESSIONS = ("expression", "location")
 _OF_ROS = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
-def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> tuple[Span, list[CompletionItem]] | None:
+def in_attribute(
+    request: Request, subject: CompletionSubject, name: str, span: Span
+) -> tuple[Span, list[CompletionItem]] | None:
     """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
     known = subject.type.attributes.get(name)
     if property_files.is_property_file(request) and (subject.type.name, name) == ("property", "expr"):
@@ -45,7 +47,7 @@ def in_attribute(request: Request, subject: Subject, name: str, span: Span) -> t
     return span, list(candidates(request, subject, known))
 
 
-def candidates(request: Request, subject: Subject, attribute: AttributeType) -> Iterator[CompletionItem]:
+def candidates(request: Request, subject: CompletionSubject, attribute: AttributeType) -> Iterator[CompletionItem]:
     """The possible whole values of an attribute."""
     for choice in attribute.simple.choices:
         about = Symbol(
@@ -68,7 +70,7 @@ def candidates(request: Request, subject: Subject, attribute: AttributeType) -> 
     yield from _of_value(request, subject, attribute.name, attribute.value, attribute.value_type)
 
 
-def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
+def in_text(request: Request, subject: CompletionSubject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
     """The possible texts of an element."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
@@ -77,7 +79,9 @@ def in_text(request: Request, subject: Subject, span: Span) -> tuple[Span, list[
     return span, [*items, *_of_value(request, subject, type_.name, type_.value, type_.value_type)]
 
 
-def _of_value(request: Request, subject: Subject, name: str, value: str, value_type: str) -> Iterator[CompletionItem]:
+def _of_value(
+    request: Request, subject: CompletionSubject, name: str, value: str, value_type: str
+) -> Iterator[CompletionItem]:
     match value:
         case "type" if property_files.is_property_file(request):
             yield from property_files.field_type(request, subject)
@@ -135,7 +139,7 @@ def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
             yield CompletionItem(label, ItemKind.TYPE, about=Symbol("", SymbolKind.ROS_TYPE, label, kind), rank=rank)
 
 
-def _constants(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _constants(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """Typical initial values of a variable."""
     if property_files.is_property_file(request):
         yield from initial_values(property_files.variable_type(request, subject))
@@ -143,14 +147,14 @@ def _constants(request: Request, subject: Subject) -> Iterator[CompletionItem]:
         yield from initial_values(_data_type(request, subject))
 
 
-def _bounds(request: Request, subject: Subject) -> Iterator[CompletionItem]:
+def _bounds(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The smallest and the greatest value of an integer type."""
     inner, _ = unwrap(_data_type(request, subject))
     for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
         yield CompletionItem(str(number), ItemKind.VALUE, detail=str(inner))
 
 
-def _data_type(request: Request, subject: Subject) -> Type:
+def _data_type(request: Request, subject: CompletionSubject) -> Type:
     """The declared type of the variable of a value."""
     element = subject.element
     if subject.type.name != "data" and subject.parents:
@@ -182,7 +186,7 @@ def _children(request: Request) -> Iterator[CompletionItem]:
             yield CompletionItem(data.id.value, ItemKind.VARIABLE, detail=data.type.text)
 
 
-def _remaining_probability(subject: Subject) -> Iterator[CompletionItem]:
+def _remaining_probability(subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The remaining probability to 1."""
     if not subject.parents:
         return
