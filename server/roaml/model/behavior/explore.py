@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
 from roaml.expr.format import format_expr
-from roaml.expr.tree import Expr, Name, access_path
+from roaml.expr.tree import ErrorExpr, Expr, Name, access_path, walk
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Domain, Knowledge, is_literal, variables_in
 from roaml.model.behavior.phases import (
     ANY_ID,
@@ -788,7 +788,7 @@ class _Explorer:
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
         """The content of a variable for the id of a goal after an assignment; `None` for a constant."""
-        if not isinstance(location, Name) or value is None:
+        if not isinstance(location, Name) or value is None or any(isinstance(e, ErrorExpr) for e in walk(value)):
             return ANY_ID
         if access_path(value) == ("_action", "goal_id"):
             goal = self.goal_here
