@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import argparse
 from fractions import Fraction
-from pathlib import Path
 
+from roaml.disk import UnreadableReason, read
 from roaml.model.kinds import FileKind, kind_of
+from roaml.text import decode
 
 MAX_RATE = 10_000
 
@@ -32,11 +33,10 @@ def names_tree(path: str) -> bool:
     """Whether a path names a file with behavior trees."""
     if path.endswith(".jani"):
         return False
-    try:
-        text = Path(path).read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return False
-    return kind_of(path, text) is FileKind.TREE
+    data = read(path)
+    if isinstance(data, UnreadableReason):
+        return False  # reported where the file is read
+    return kind_of(path, decode(path, data).text) is FileKind.TREE
 
 
 def _rate(text: str) -> Fraction:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from roaml.api.simulating import session
     from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
+    from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
     from roaml.explicit.space import StateLimits
     from roaml.jani.model import Model
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
+        "roaml.comparison": ("Comparison",),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
@@ -136,6 +138,7 @@ __all__ = [
     "CheckResult",
     "Choice",
     "Choices",
+    "Comparison",
     "CompiledProperty",
     "ConstantError",
     "Counterexample",

@@ -16,10 +16,10 @@ from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Tex
 
 def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
     """The spans around an offset, the innermost first, each contained in the next; the last one is the whole text, even
-    if it is empty."""
+    if it is empty. There are none for a file without a text."""
     source = analysis.source(path)
     if source is None:
-        return (Span(0, 0),)
+        return ()
     spans = [Span(0, len(source.text))]
     if (file := xml_file(analysis, path)) is not None:
         around = path_at(file, offset)
