@@ -212,6 +212,8 @@ class Solver:
         for k in range(total):
             last = self.bound[k]
             self._component(first, last)
+            if self.is_unclear != 0:
+                return  # there is no result
             first = last
 
     def _components(self, first: int, last: int, own: int, inner: int, free: int) -> None:
@@ -686,6 +688,8 @@ class Solver:
 
     def _iterate(self, first: int, last: int) -> None:
         """Bounds for the states of a component; those of later components are known."""
+        if self.is_unclear != 0:
+            return
         self._gather(first, last)
         self.size = 0
         gap = 0.0
