@@ -169,7 +169,7 @@ export function systems(stage: Stage): void {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Check Workspace");
-        await window.page.locator(".xterm-rows", { hasText: "8 files checked: 1 error" }).waitFor();
+        await window.page.locator(".xterm-rows", { hasText: "9 files checked: 1 error" }).waitFor();
         await window.screenshot("task");
         // Editor and task find the same, and it is shown once.
         await window.run("View: Focus Problems");
