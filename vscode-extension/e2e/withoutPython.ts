@@ -20,7 +20,7 @@ export function withoutPython(): void {
             NO_PROXY: "*",
         };
         await install(nowhere, async (said) => {
-            await said("pip could not get the packages", "no-index");
+            await said("pip could not download the packages", "no-index");
         });
     });
 
