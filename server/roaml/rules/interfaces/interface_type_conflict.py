@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.types import leaves, same_kind
 from roaml.interfaces.registry import NotFound
+from roaml.model.machine import Declaration
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, CLOCK_TYPE, Channel, System
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS
@@ -21,34 +22,40 @@ from roaml.text import TextEdit
 def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
-    for kind, channel_kind in CHANNEL_KINDS.items():
+    for kind in CHANNEL_KINDS:
         for declaration, _, channel in declared(context, kind):
-            if declaration.type is None:
-                continue
-            mine = declaration.type.value
-            name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
-            others = tuple(_others(context.system, kind, channel))
-            has_other_side = not all(is_same_side for _, _, is_same_side in others)
-            for type_, related, is_same_side in others:
-                if normal(type_) == normal(mine) or not _known(context, kind, mine, type_):
-                    continue
-                clash = ""
-                if channel_kind is SymbolKind.TOPIC:
-                    # All publishers share a variable for each field. `type-mismatch` reports a subscriber that reads
-                    # a field of another type, unless a port names the topic.
-                    is_port = not isinstance(declaration.interface, Name)
-                    clash = _clash(context, mine, type_) if is_same_side or is_port else ""
-                if is_same_side and has_other_side and not (clash and kind is SymbolKind.PUBLISHER):
-                    continue
-                yield RULE.at(
-                    declaration.type.span,
-                    f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}",
-                    Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
-                    # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
-                    severity=Severity.WARNING if channel_kind is SymbolKind.TOPIC and not clash else Severity.ERROR,
-                    related=related,
-                )
-                break
+            finding = _conflict(context, context.system, declaration, channel)
+            if finding is not None:
+                yield finding
+
+
+def _conflict(context: MachineContext, system: System, declaration: Declaration, channel: Channel) -> Finding | None:
+    """The first type elsewhere that differs from that of a declaration."""
+    if declaration.type is None:
+        return None
+    kind, mine = declaration.kind, declaration.type.value
+    channel_kind = CHANNEL_KINDS[kind]
+    is_topic, has_port = channel_kind is SymbolKind.TOPIC, not isinstance(declaration.interface, Name)
+    others = tuple(_others(system, kind, channel))
+    has_other_side = not all(is_same_side for _, _, is_same_side in others)
+    for type_, related, is_same_side in others:
+        if normal(type_) == normal(mine) or not _known(context, kind, mine, type_):
+            continue
+        # All publishers of a topic share a variable for each field. `type-mismatch` reports a subscriber that reads a
+        # field of another type, unless a port names the topic.
+        clash = _clash(context, mine, type_) if is_topic and (is_same_side or has_port) else ""
+        if is_same_side and has_other_side and not (clash and kind is SymbolKind.PUBLISHER):
+            continue
+        name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
+        return RULE.at(
+            declaration.type.span,
+            f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}",
+            Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
+            # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
+            severity=Severity.WARNING if is_topic and not clash else Severity.ERROR,
+            related=related,
+        )
+    return None
 
 
 def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...], bool]]:
