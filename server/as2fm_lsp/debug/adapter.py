@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import os
 import urllib.parse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -512,19 +512,16 @@ class Adapter:
         if debugger is None:
             message = "not checked before the launch"
             return [{"id": number, "verified": False, "message": message} for number, _ in self._functions]
-        bodies, set_ = [], []
-        for number, each in self._functions:
-            name = each.text("name")
-            body: dict[str, Any] = {"id": number, "verified": False}
-            try:
-                if not debugger.session.has_event(name) and not nodes_named(debugger.sources, name):
-                    raise WatchError(f"there is no topic, service, action, event or node `{name}`")
-                set_.append((name, self._breakpoint(number, name, each)))
-                body["verified"] = True
-            except WatchError as error:
-                body["message"] = str(error)
-            bodies.append(body)
-        debugger.breakpoints.names = set_
+        chosen: list[tuple[str, Breakpoint]] = []
+
+        def add(number: int, given: Arguments) -> None:
+            name = given.text("name")
+            if not debugger.session.has_event(name) and not nodes_named(debugger.sources, name):
+                raise WatchError(f"there is no topic, service, action, event or node `{name}`")
+            chosen.append((name, self._breakpoint(number, name, given)))
+
+        bodies = _set_each(self._functions, add)
+        debugger.breakpoints.names = chosen
         debugger.breakpoints_changed()
         return bodies
 
@@ -568,21 +565,18 @@ class Adapter:
 
     def _set_data_breakpoints(self, arguments: Arguments) -> Body:
         debugger = self._loaded
-        bodies, set_ = [], []
-        for each in arguments.objects("breakpoints"):
-            number = self._number()
-            data = each.text("dataId", None)
+        chosen: list[tuple[WatchedVariable, Breakpoint]] = []
+
+        def add(number: int, given: Arguments) -> None:
+            data = given.text("dataId", None)
             variable = self._variable(debugger, data)
-            body: dict[str, Any] = {"id": number, "verified": False}
-            try:
-                if variable is None:
-                    raise WatchError(f"there is no variable `{data}`")
-                set_.append((variable, self._breakpoint(number, f"{data} changes", each)))
-                body["verified"] = True
-            except WatchError as error:
-                body["message"] = str(error)
-            bodies.append(body)
-        debugger.breakpoints.variables = set_
+            if variable is None:
+                raise WatchError(f"there is no variable `{data}`")
+            chosen.append((variable, self._breakpoint(number, f"{data} changes", given)))
+
+        numbered = [(self._number(), given) for given in arguments.objects("breakpoints")]
+        bodies = _set_each(numbered, add)
+        debugger.breakpoints.variables = chosen
         debugger.breakpoints_changed()
         return {"breakpoints": bodies}
 
@@ -650,3 +644,19 @@ def _is_choice(debugger: Debugger, choice: Choice) -> bool:
     step = debugger.upcoming()
     taken = [] if step is None else [part.automaton for part in step.parts]
     return step is not None and set(taken) == set(choice.automata)
+
+
+def _set_each(
+    breakpoints: Iterable[tuple[int, Arguments]], add: Callable[[int, Arguments], None]
+) -> list[dict[str, Any]]:
+    """Set breakpoints with their numbers; returns a description of each. One that cannot be set has the reason."""
+    bodies = []
+    for number, given in breakpoints:
+        body: dict[str, Any] = {"id": number, "verified": False}
+        try:
+            add(number, given)
+            body["verified"] = True
+        except WatchError as error:
+            body["message"] = str(error)
+        bodies.append(body)
+    return bodies
