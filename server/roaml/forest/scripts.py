@@ -11,7 +11,7 @@ from roaml.forest.cpp_types import SCRIPT
 from roaml.forest.forest import CPP, Forest
 from roaml.model.tree import TreeNode
 from roaml.script.parse import ScriptProblem, parse
-from roaml.script.tree import Assignment, Name, Script, walk
+from roaml.script.tree import Script
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
@@ -62,18 +62,3 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
 def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text; cached, because many rules read it."""
     return parse(source)
-
-
-@functools.lru_cache(maxsize=2048)
-def names_in(text: str) -> tuple[tuple[str, str], ...]:
-    """The names in a script, each with `read` or with the operator that assigns to it."""
-    script, _ = parse(Decoded(text, 0))
-    names: list[tuple[str, str]] = []
-    targets: set[int] = set()
-    for expr in walk(script):
-        if isinstance(expr, Assignment):
-            targets.add(id(expr.target))
-            names.append((expr.target.name, expr.operator))
-        elif isinstance(expr, Name) and id(expr) not in targets:
-            names.append((expr.name, "read"))
-    return tuple(names)

@@ -127,6 +127,7 @@ class ElementType:
         use: the successor, if the element is deprecated.
         node: control, decorator, action, condition or subtree, or "".
         translated: false for tree nodes that are known but cannot be translated.
+        program_only: whether a tree node can be translated only as a program (docs/spec/nodes.md#library).
     """
 
     name: str
@@ -149,6 +150,7 @@ class ElementType:
     use: str = ""
     node: str = ""
     translated: bool = True
+    program_only: bool = False
 
     @property
     def ports(self) -> tuple[AttributeType, ...]:
@@ -298,6 +300,7 @@ class _Reader:
             use=deprecated["use"] if deprecated else "",
             node=tree_node.get("kind", ""),
             translated=tree_node.get("translated") != "false",
+            program_only=tree_node.get("program-only") == "true",
         )
 
     def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:

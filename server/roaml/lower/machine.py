@@ -227,7 +227,7 @@ class _ChartLowering:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
             case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return tree_event(self.statements.number, trigger.value.removeprefix("bt-"))
+                return tree_event(self.statements.address, trigger.value.removeprefix("bt-"))
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:

@@ -70,9 +70,9 @@ class StatementLowering:
             case RosSend():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
-                yield Send(tree_event(self.number, "response"), (self.status(statement, scope, origin),), origin)
+                yield Send(tree_event(self.address, "response"), (self.status(statement, scope, origin),), origin)
             case ReturnHalted():
-                yield Send(tree_event(self.number, "halt_response"), (), origin)
+                yield Send(tree_event(self.address, "halt_response"), (), origin)
             case CallChild():
                 yield from self.call_child(statement, origin)
             case SetOutput():
@@ -81,10 +81,11 @@ class StatementLowering:
                 return
 
     @property
-    def number(self) -> int:
+    def address(self) -> str:
+        """The address of the node in events of the tree."""
         instance = self.context.automaton.instance
         assert instance is not None
-        return instance.number
+        return self.context.program.address(instance.number)
 
     # ------------------------------------------------------------- assignments
 

@@ -408,9 +408,16 @@ class _Run:
         outlines = self._tree_outlines()
         missing, interface = self._missing_includes(), self.analysis.interface
         forest = None if self.system_path else self.analysis.forest(self.path)
+        gaps, refusals = self._gaps(), self._refusals()
         return TreeContext(
-            self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest
+            self.source, document, file, self.system, outlines, missing, interface, gaps, older, forest, refusals
         )
+
+    def _refusals(self) -> tuple[tuple[Span, str], ...]:
+        """Why nodes of this file cannot be translated, if the tree is executed as by the library."""
+        tree = self.analysis.library_tree(self.system_path) if self.system_path else None
+        refusals = () if tree is None else tree.refusals
+        return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees with which this file is checked: those of its system, or those that it includes."""

@@ -70,7 +70,6 @@ from roaml.rules.expressions import (
     unknown_function,
     unknown_member,
     unsupported_expression,
-    untranslatable_script,
 )
 from roaml.rules.files import (
     file_too_large,
@@ -181,6 +180,7 @@ from roaml.rules.trees import (
     unknown_plugin,
     unknown_port,
     unknown_remap,
+    untranslatable_tree,
     unused_plugin,
     unused_port,
 )
@@ -386,8 +386,8 @@ RULES: tuple[Rule, ...] = (
     unsupported_expression.RULE,
     unsupported_property.RULE,
     unsupported_scxml_element.RULE,
-    untranslatable_script.RULE,
     unused_handle.RULE,
+    untranslatable_tree.RULE,
     unused_plugin.RULE,
     unused_port.RULE,
     unused_port_variable.RULE,

@@ -34,7 +34,10 @@ def is_generated(automaton: str) -> bool:
 WAITING, RECEIVED = "waiting", "received"
 """The buffer of an event: it has the name of its event, and has one of these locations."""
 
-_GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
+CONDITIONS_PREFIX = "bt_conditions_"
+"""The automaton of the conditions of a node that is a machine, or of a `<SubTree>`."""
+
+_GENERATED = (CONDITIONS_PREFIX, SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
 
 
 def automaton_role(automaton: str) -> Role:
@@ -59,7 +62,7 @@ TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
-TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
+TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
 """The pattern of events between nodes of a tree: the number of the child, and the kind of the event."""
 OBSERVER_SUFFIX = "__observer"
 """Ends the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
@@ -97,7 +100,7 @@ def is_synchronising(event: str) -> bool:
 
 
 _BLOCKING = re.compile(
-    r"bt_[0-9]+_(?:tick|halt|response|halt_response)\Z"
+    r"bt_[0-9]+(?:_inner[0-9]*)?_(?:tick|halt|response|halt_response)\Z"
     r"|action_.+_goal_.+\Z"
     r"|action_.+_result"
     r"|action_.+_thread_(?:start|free)\Z"

@@ -232,9 +232,9 @@ def is_inner(automaton: Automaton) -> bool:
 
 
 def _is_builtin(plugin: str) -> bool:
-    from roaml.model.system import builtin_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
+    from roaml.model.system import library_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
 
-    return plugin in builtin_plugins()
+    return plugin in library_plugins()
 
 
 def _said(event: str) -> str:

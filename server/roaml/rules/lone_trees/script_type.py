@@ -35,7 +35,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if problems:
             continue
         for problem in check_types(script, lookup):
-            yield RULE.at(problem.span, problem.message, *fixes(context, use, problem))
+            yield RULE.at(problem.span, problem.message, *fixes(context, use.attribute, problem))
         if use.is_condition:
             for problem in check_condition(script, lookup):
                 yield RULE.at(problem.span, f"`{use.attribute.name}` is a condition: {problem.message}")
