@@ -35,7 +35,7 @@ from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
-from roaml.scxml.names import FIELD_PREFIX, safe_name
+from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, safe_name
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -49,10 +49,18 @@ _WORDS = {TOPIC: "topic", SERVICE: "service", ACTION: "action", NODE: "node of t
 EVENTS = {
     TOPIC: ("publish",),
     SERVICE: ("request", "response"),
-    ACTION: ("goal_request", "goal_response", "feedback", "result"),
+    ACTION: ("goal_request", "goal_response", "feedback", "result", "cancel_request"),
     NODE: ("tick", "response", "halt"),
 }
 """Kind of port -> the values of its attribute `event`."""
+_OF_CLIENTS = ("request", "goal_request", "cancel_request")
+"""The events of services and actions that clients send."""
+_SENDING = {
+    "publish": "publishes on",
+    "request": "calls",
+    "goal_request": "sends goals to",
+    "cancel_request": "cancels goals of",
+}
 _PARTS = {
     "publish": "message",
     "request": "request",
@@ -61,6 +69,8 @@ _PARTS = {
     "feedback": "feedback",
     "result": "result",
 }
+_WITHOUT_FIELDS = {"goal_response": "answer to a goal", "cancel_request": "request to cancel a goal"}
+"""The events of an action that have no fields, in words."""
 _GIVEN_BY = {GOAL_ID: EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
 """Kind of variable -> the events of an action that carry its value."""
 
@@ -136,13 +146,12 @@ class PortLinker:
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
         type_ = self._type(port, channel)
         part = type_.part(_PARTS[event]) if type_ is not None and event in _PARTS else None
-        if part is None and event == "goal_response":
-            part = Struct("", (), "answer to a goal")
+        if part is None and event in _WITHOUT_FIELDS:
+            part = Struct("", (), _WITHOUT_FIELDS[event])
         problems = len(self.problems)
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete() and len(self.problems) == problems:
-            what = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
-            who = what.get(event, "answers")
+            who = _SENDING.get(event, "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
@@ -211,7 +220,7 @@ class PortLinker:
                 for sender in senders:
                     yield PortEvent(name, sender.automaton.name)
             return
-        chooser = port.origin if event in ("request", "goal_request") else port.target
+        chooser = port.origin if event in _OF_CLIENTS else port.target
         clients = self._chosen(chooser, channel.users, "is a client of", channel)
         if port.target is None and port.origin is None and len(channel.users) > 1:
             self._warn_of_clients(port, channel, event)
@@ -226,6 +235,9 @@ class PortLinker:
                     yield PortEvent(f"{stem}_response_client_{who}")
                 case "goal_request" if ProtocolPart.GOAL in client.use.sends:
                     yield PortEvent(f"{stem}_goal_req_client_{who}", constants=(goal,))
+                case "cancel_request" if ProtocolPart.CANCEL in client.use.sends:
+                    name = f"{CANCEL_PREFIX}{sanitise(channel.name)}"
+                    yield PortEvent(name, client.automaton.name, constants=(goal,))
                 case "goal_response" if channel.sources:
                     yield PortEvent(f"{stem}_goal_accept_client_{who}", constants=(goal, (ACCEPTED, True)))
                     yield PortEvent(f"{stem}_goal_reject_client_{who}", constants=(goal, (ACCEPTED, False)))
@@ -251,7 +263,7 @@ class PortLinker:
     def _warn_of_clients(self, port: Port, channel: Channel, event: str) -> None:
         assert port.name is not None
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
-        attribute = "origin" if event in ("request", "goal_request") else "target"
+        attribute = "origin" if event in _OF_CLIENTS else "target"
         number = len(channel.users)
         message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to choose"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)

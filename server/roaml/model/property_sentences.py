@@ -116,6 +116,8 @@ def event_clause(port: Port) -> SentenceClause:
         match event:
             case "goal_response":
                 return _is(f"a goal{by} for {name}", "accepted or rejected")
+            case "cancel_request":
+                return SentenceClause(f"cancelling a goal of {name}", f"requested{by}", "is")
             case "feedback" | "result":
                 return _is(f"{'feedback' if event == 'feedback' else 'a result'} of {name}", f"sent{to}")
         return _is("a goal", f"sent to {name}{by}")
