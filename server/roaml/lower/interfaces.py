@@ -67,9 +67,10 @@ class ActionEvents:
 
     @property
     def cancel(self) -> ScxmlEvent:
-        """Its name does not begin like those of the other events of the action, so it never waits for its receivers
+        """A request is received only when goals have been passed on to threads (docs/spec/ros.md#cancel). Its name does
+        not begin like those of the other events of the action, so it never waits for its receivers
         (docs/spec/jani.md#synchronising-names)."""
-        return ScxmlEvent(f"{CANCEL_PREFIX}{sanitise(self.action)}")
+        return ScxmlEvent(f"{CANCEL_PREFIX}{sanitise(self.action)}", after=self.thread_start.name)
 
     @property
     def accepted(self) -> ScxmlEvent:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 
-from roaml.expr.tree import Expr
+from roaml.expr.tree import Boolean, Expr
 from roaml.expr.types import Type
 from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
@@ -17,7 +17,7 @@ from roaml.lower.executed_goals import executed_goals
 from roaml.lower.expressions import LoweringScope, lower_expr
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
-from roaml.lower.program import TranslatableSystem
+from roaml.lower.program import NOWHERE, TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
 from roaml.model.expand import PortConstant
@@ -74,11 +74,30 @@ class _ChartLowering:
     def automaton(self) -> PlainAutomaton:
         context, chart = self.context, self.context.chart
         assert chart.initial is not None
-        states = tuple(plain for state in chart.states for plain in self.state(state))
+        states = [plain for state in chart.states for plain in self.state(state)]
+        states[0] = replace(states[0], transitions=(*states[0].transitions, *self.discarded(states[0])))
         origin = context.origin(chart.element.name_span)
         data = (*self.data(), *self.goals.data(origin), *self.statements.drawn)
         thread_of = "" if context.thread is None else context.automaton.name
-        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin, thread_of)
+        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, tuple(states), origin, thread_of)
+
+    def discarded(self, state: State) -> Iterator[Transition]:
+        """Transitions that are never taken: they make the machine a receiver of the cancel requests that only its
+        threads handle, so that none is delivered while it passes a goal on (docs/spec/plain-scxml.md#cancel)."""
+        if self.context.thread is not None:
+            return
+        own = set(self.cancel_events(self.context.chart))
+        of_threads = (event for thread in self.context.machine.threads for event in self.cancel_events(thread.chart))
+        for event in dict.fromkeys(of_threads):
+            if event not in own:
+                target = Target(state.id, 1.0, (), state.origin)
+                yield Transition(event, Boolean(NOWHERE, False), (target,), state.origin)
+
+    def cancel_events(self, chart: Chart) -> Iterator[ScxmlEvent]:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger is ProtocolPart.CANCEL and handler.effective:
+                    yield ActionEvents(self.context.channel(handler).name).cancel
 
     # -------------------------------------------------------------------- data
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Fix, Severity
-from roaml.edit.elements import removal
+from roaml.diagnostics import Finding, Severity
+from roaml.edit.elements import remove
 from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior, BehaviorStep, FaultKind
 from roaml.model.machine import Declaration, RosSend, statements
@@ -21,11 +21,11 @@ _SENDS_GOALS = "ros_action_send_goal"
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report cancel requests that are sent only while the client has no accepted goal."""
-    elements = list(context.machine.element.walk())
-    if misspelled.among(elements, _SENDS_GOALS, HL_SCXML):
+    requests = list(_requests(context))
+    if not requests or misspelled.among(context.machine.element.walk(), _SENDS_GOALS, HL_SCXML):
         return
     sending = _declarations(context, ProtocolPart.GOAL)
-    for statement in _requests(context):
+    for statement in requests:
         declaration = find_handle(context.machine, statement)
         if declaration is not None and declaration not in sending:
             yield _finding(context, statement, f"this client sends no goal: there is no `<{_SENDS_GOALS}>` for it")
@@ -41,10 +41,7 @@ def _finding(context: MachineContext, statement: RosSend, reason: str) -> Findin
         f"this request is always rejected: {reason}; cancel a goal between its acceptance, which "
         "`<ros_action_handle_goal_response>` handles, and its result"
     )
-    drop = Fix(
-        "Remove `<ros_action_cancel_goal>`", (removal(context.source.text, statement.element.span),), preferred=False
-    )
-    return RULE.at(statement.element.name_span, message, drop)
+    return RULE.at(statement.element.name_span, message, remove(context.document, statement.element))
 
 
 def _requests(context: MachineContext) -> Iterator[RosSend]:

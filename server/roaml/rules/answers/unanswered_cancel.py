@@ -9,11 +9,14 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import last_in
 from roaml.expr.tree import Name
 from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import unfinished
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Chart, Declaration, Handler, Machine, RosSend, State, Statement, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
+from roaml.rules.support.answers import behaviors
 
 _ANSWER = "ros_action_canceled"
 _NEW_GOAL = (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
@@ -21,20 +24,38 @@ _NEW_GOAL = (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report handlers of cancel requests from which no way leads to the end of the goal as canceled."""
-    if misspelled.among(context.machine.element.walk(), _ANSWER, HL_SCXML):
+    handlers = list(_handlers(context))
+    if not handlers or misspelled.among(context.machine.element.walk(), _ANSWER, HL_SCXML):
         return
+    unended = set(_unended(context))
+    for chart, state, handler in handlers:
+        declaration = find_handle(context.machine, handler)
+        if declaration is None or handler in unended:
+            continue
+        if not _may_cancel(context.machine, chart, state, handler, declaration):
+            message = (
+                "the goal is never ended as canceled after this request, so the client cannot know whether it was "
+                f"canceled; end it with `<{_ANSWER}>`, or set a `cond` if this state rejects requests"
+            )
+            yield RULE.at(handler.element.name_span, message, *_fixes(context, chart, handler, declaration))
+
+
+def _handlers(context: MachineContext) -> Iterator[tuple[Chart, State, Handler]]:
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
-                declaration = find_handle(context.machine, handler)
-                if handler.trigger is not ProtocolPart.CANCEL or declaration is None or not handler.effective:
-                    continue
-                if not _may_cancel(context.machine, chart, state, handler, declaration):
-                    message = (
-                        "the goal is never ended as canceled after this request, so the client cannot know whether it "
-                        f"was canceled; end it with `<{_ANSWER}>`, or set a `cond` if this state rejects requests"
-                    )
-                    yield RULE.at(handler.element.name_span, message, *_fixes(context, chart, handler, declaration))
+                if handler.trigger is ProtocolPart.CANCEL and handler.effective:
+                    yield chart, state, handler
+
+
+def _unended(context: MachineContext) -> Iterator[Handler]:
+    """The handlers after which the goal is never ended: unanswered-goal reports them."""
+    for behavior in behaviors(context):
+        for step in behavior.steps:
+            if step.event is None or step.event.part is not ProtocolPart.CANCEL:
+                continue
+            if step.target in unfinished(behavior, Duty(DutyKind.RESULT, step.event.name)):
+                yield step.handler
 
 
 def _may_cancel(machine: Machine, chart: Chart, state: State, handler: Handler, declaration: Declaration) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import after
 from roaml.language import HL_SCXML
-from roaml.model.machine import Handler, RosSend, State
+from roaml.model.machine import Declaration, Handler, RosSend, State
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -21,7 +21,13 @@ _HANDLER = "ros_action_handle_canceled_result"
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report clients that cancel goals and handle results, but no result that says that a goal was canceled."""
     machine = context.machine
-    if misspelled.among(machine.element.walk(), _HANDLER, HL_SCXML):
+    requests = [
+        statement
+        for chart in machine.charts
+        for statement in chart.statements
+        if isinstance(statement, RosSend) and statement.part is ProtocolPart.CANCEL
+    ]
+    if not requests or misspelled.among(machine.element.walk(), _HANDLER, HL_SCXML):
         return
     handlers = [
         handler
@@ -30,18 +36,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for handler in state.handlers
         if handler.trigger is ProtocolPart.RESULT
     ]
-    told = set()
-    for chart in machine.charts:
-        for statement in chart.statements:
-            if not isinstance(statement, RosSend) or statement.part is not ProtocolPart.CANCEL:
-                continue
-            declaration = find_handle(machine, statement)
-            own = [handler for handler in handlers if find_handle(machine, handler) is declaration]
-            if declaration is None or declaration in told or not own:
-                continue
-            if any(handler.type.code in (_CANCELED, 0) for handler in own):
-                continue
-            told.add(declaration)
+    first_of: dict[Declaration, RosSend] = {}
+    for statement in requests:
+        declaration = find_handle(machine, statement)
+        if declaration is not None:
+            first_of.setdefault(declaration, statement)
+    for declaration, statement in first_of.items():
+        own = [handler for handler in handlers if find_handle(machine, handler) is declaration]
+        if own and not any(handler.type.code in (_CANCELED, 0) for handler in own):
             message = (
                 f"the result of a canceled goal is dropped, so this client waits for ever: there is no `<{_HANDLER}>`; "
                 "add one beside the handlers of the other results"
