@@ -11,7 +11,6 @@ from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, Forest, port_type
-from roaml.libraries import NodeKind
 from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
@@ -37,6 +36,7 @@ from roaml.mocks.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.mocks.unfolding import ExecutedNode, ExecutedTree, unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
+from roaml.roles import NodeKind
 from roaml.scxml.model import (
     Assign,
     Automaton,
