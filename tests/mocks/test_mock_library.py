@@ -28,7 +28,7 @@ from translated_trees import Observed, observe, with_mocks
 
 from examples import TIMES, examples
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
-from roaml.mocks.assembly import programs
+from roaml.lower.programs.assembly import programs
 
 TICKS = 14
 DECORATED = {**DECORATORS, **TIMED, **NAV2_DECORATORS}
