@@ -16,7 +16,7 @@ from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.breakpoints import BreakpointRequests
 from as2fm_lsp.debug.capabilities import CAPABILITIES
 from as2fm_lsp.debug.choices import ChoiceRequests
-from as2fm_lsp.debug.framing import Message, MessageReader
+from as2fm_lsp.debug.framing import Inbox, Message
 from as2fm_lsp.debug.launch import Launch, launch_of, load
 from as2fm_lsp.debug.movement import MovementRequests
 from as2fm_lsp.debug.session import Body, ClientFormat, Connection, DebugSession, Handler
@@ -34,7 +34,7 @@ class Adapter:
         output: receives responses and events.
     """
 
-    def __init__(self, inbox: MessageReader, output: BinaryIO) -> None:
+    def __init__(self, inbox: Inbox, output: BinaryIO) -> None:
         self._inbox = inbox
         self._connection = Connection(output)
         self._session = session = DebugSession(self._connection)
