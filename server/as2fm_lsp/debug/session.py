@@ -139,7 +139,7 @@ class DebugSession:
 
     def log(self, text: str, origin: Origin | None = None) -> None:
         """Write a line to the console of the client."""
-        self.connection.event("output", {"category": "console", "output": f"{text}\n", **self.where(origin)})
+        self.connection.event("output", {"category": "stdout", "output": f"{text}\n", **self.where(origin)})
 
     # ------------------------------------------------------------ valid while the run is stopped
 
