@@ -23,7 +23,7 @@ from roaml.model.tree import (
     looks_like_reference,
     nodes,
 )
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
@@ -97,7 +97,7 @@ def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Fi
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
     related = [Related(Symbol(path, SymbolKind.PORT, port.key), "declared here")] if path else []
-    if port.direction == "out":
+    if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []
         message = f"`{port.key}` is an output port; bind it to a blackboard variable, `{{name}}`"
@@ -119,7 +119,7 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
             if (
                 setting.variable is None
                 or port is None
-                or port.direction == "out"
+                or port.direction is Direction.OUT
                 or not isinstance(value, PortConstant)
             ):
                 continue
