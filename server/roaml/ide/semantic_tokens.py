@@ -15,6 +15,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from roaml.expr import parse as expr
+from roaml.expr.parse import ExpressionTokenKind
 from roaml.ide.json_tree import values
 from roaml.ide.syntax import Typed, XmlFile, expression_sources, walk, xml_file
 from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, Member
@@ -215,17 +216,17 @@ def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
     for i, token in enumerate(tokens):
         before = tokens[i - 1].text if i else ""
         after = tokens[i + 1].text if i + 1 < len(tokens) else ""
-        kind = _word(token.text, before, after) if token.kind == "name" else _OTHERS.get(token.kind)
+        kind = _word(token.text, before, after) if token.kind is ExpressionTokenKind.NAME else _OTHERS.get(token.kind)
         if kind is not None and not (kind is TokenKind.OPERATOR and token.text in _PUNCTUATION):
             words.append((token.start, token.end, kind))
     return tuple(words)
 
 
 _OTHERS = {
-    "number": TokenKind.NUMBER,
-    "string": TokenKind.STRING,
-    "template": TokenKind.STRING,
-    "punctuator": TokenKind.OPERATOR,
+    ExpressionTokenKind.NUMBER: TokenKind.NUMBER,
+    ExpressionTokenKind.STRING: TokenKind.STRING,
+    ExpressionTokenKind.TEMPLATE: TokenKind.STRING,
+    ExpressionTokenKind.PUNCTUATOR: TokenKind.OPERATOR,
 }
 _PUNCTUATION = frozenset("()[]{},.;")
 _LITERALS = frozenset(("true", "false", "null", "undefined"))

@@ -114,8 +114,7 @@ def signature(math_function: Function) -> str:
     """A function of `Math` with its parameters, `?` after the optional ones, and its result."""
     needed = len(math_function.parameters) - math_function.optional
     parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
-    result = {"same": "int or float", "real": "float"}.get(math_function.result, math_function.result)
-    return f"Math.{math_function.name}({', '.join(parameters)}) : {result}"
+    return f"Math.{math_function.name}({', '.join(parameters)}) : {math_function.result}"
 
 
 def math() -> str:

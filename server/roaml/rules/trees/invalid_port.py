@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove, rename_tag
-from roaml.expr.types import BASE_TYPES
+from roaml.expr.types import BASE_TYPES, ScalarKind
 from roaml.model.machine import Port
 from roaml.model.syntax import Name, TypeRef
 from roaml.model.system import CHILDREN_COUNT
@@ -44,7 +44,11 @@ def _key(port: Port, key: Name) -> Iterator[Finding]:
         if port.direction is Direction.OUT:
             to_input = rename_tag(port.element, "bt_declare_port_in")
             yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is set by the tree, so it must be an input port", to_input)
-        elif port.type is not None and port.type.text in BASE_TYPES and BASE_TYPES[port.type.text].kind != "int":
+        elif (
+            port.type is not None
+            and port.type.text in BASE_TYPES
+            and BASE_TYPES[port.type.text].kind is not ScalarKind.INT
+        ):
             fixes = replacements(port.type.span, ["int32"])
             yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` must be an integer, not `{port.type.text}`", *fixes)
 

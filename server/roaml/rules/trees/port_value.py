@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, ScalarKind, fits, is_kind, is_number
 from roaml.model.expand import PortConstant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
@@ -193,7 +193,7 @@ class ConstantProblem:
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
     type_ = BASE_TYPES.get(port.type)
-    if type_ is None or is_kind(type_, "string"):
+    if type_ is None or is_kind(type_, ScalarKind.STRING):
         return None
     if not text:
         return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
