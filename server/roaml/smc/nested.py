@@ -45,7 +45,7 @@ from roaml.observers.properties import (
     once,
 )
 from roaml.smc.normal_form import (
-    Clause,
+    Disjunction,
     NestingError,
     are_opposite,
     clauses_of,
@@ -193,12 +193,12 @@ class _Recogniser:
 
     # ------------------------------------------------------- G (condition ∨ …)
 
-    def always(self, clause: Clause) -> Formula:
+    def always(self, clause: Disjunction) -> Formula:
         lasting = [path for path in clause.paths if lasting_condition(path) is not None]
         paths = [path for path in clause.paths if lasting_condition(path) is None]
         if lasting:
             # What a path does in the end does not depend on where it begins.
-            result = self.always(Clause(clause.condition, tuple(paths)))
+            result = self.always(Disjunction(clause.condition, tuple(paths)))
             for path in lasting:
                 result = BinaryFormula(BinaryOperator.OR, result, path)
             return result
@@ -230,7 +230,7 @@ class _Recogniser:
                     return self.between(trigger, close, path.left, _condition(path.right))
         raise NestingError
 
-    def request(self, clause: Clause, close: Expression | None = None) -> _Request:
+    def request(self, clause: Disjunction, close: Expression | None = None) -> _Request:
         """The request that a clause contains; inside a stretch that `close` ends if it is given."""
         request = negated(clause.condition)
         match clause.paths:
@@ -242,7 +242,7 @@ class _Recogniser:
                     return _Request(request, answer)
         raise NestingError
 
-    def always_after(self, trigger: Expression, clause: Clause) -> Formula:
+    def always_after(self, trigger: Expression, clause: Disjunction) -> Formula:
         """G (trigger ⇒ G clause)."""
         if not clause.paths:
             return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER, {LEFT: clause.condition, OPEN: trigger})

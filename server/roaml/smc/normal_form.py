@@ -132,21 +132,21 @@ def weak(left: Formula, right: Formula) -> Formula:
 
 
 @dataclass(frozen=True, slots=True)
-class Clause:
+class Disjunction:
     """A disjunction of a condition and formulas over paths."""
 
     condition: Expression
     paths: tuple[Formula, ...]
 
 
-def clauses_of(formula: Formula) -> list[Clause]:
+def clauses_of(formula: Formula) -> list[Disjunction]:
     """The conjunctive normal form."""
     match formula:
         case BinaryFormula(BinaryOperator.AND, left, right):
             return [*clauses_of(left), *clauses_of(right)]
         case BinaryFormula(BinaryOperator.OR, left, right):
             clauses = [
-                Clause(_or(c for c in (a.condition, b.condition) if c != FALSE), (*a.paths, *b.paths))
+                Disjunction(_or(c for c in (a.condition, b.condition) if c != FALSE), (*a.paths, *b.paths))
                 for a in clauses_of(left)
                 for b in clauses_of(right)
             ]
@@ -154,8 +154,8 @@ def clauses_of(formula: Formula) -> list[Clause]:
                 raise NestingError
             return clauses
     if isinstance(formula, ProperFormula):
-        return [Clause(FALSE, (formula,))]
-    return [Clause(formula, ())]
+        return [Disjunction(FALSE, (formula,))]
+    return [Disjunction(formula, ())]
 
 
 def conjuncts(formula: Formula) -> Iterator[Formula]:
