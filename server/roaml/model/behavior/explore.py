@@ -62,8 +62,8 @@ from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
-MOST_CONFIGURATIONS = 4000
-MOST_KNOWN = 12
+MAX_CONFIGURATIONS = 4000
+MAX_KNOWLEDGE_VARIANTS = 12
 """The maximum number of configurations that differ only in the knowledge about values."""
 
 NOWHERE = "?"
@@ -541,11 +541,11 @@ class _Explorer:
             return known
         place = (configuration.state, configuration.phases, configuration.ids)
         here = self.known_here.setdefault(place, set())
-        if len(here) >= MOST_KNOWN and configuration.knowledge != NOTHING:
+        if len(here) >= MAX_KNOWLEDGE_VARIANTS and configuration.knowledge != NOTHING:
             self.approximate = True
             return self._number(replace(configuration, knowledge=NOTHING))
         here.add(configuration.knowledge)
-        if len(self.numbers) >= MOST_CONFIGURATIONS:
+        if len(self.numbers) >= MAX_CONFIGURATIONS:
             raise _TooLargeError
         self.numbers[configuration] = len(self.numbers)
         return self.numbers[configuration]
@@ -735,7 +735,7 @@ class _Explorer:
         for body in bodies:
             for statement in self._effective(body):
                 paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
-                if len(paths) > MOST_CONFIGURATIONS:
+                if len(paths) > MAX_CONFIGURATIONS:
                     raise _TooLargeError
         return paths
 
