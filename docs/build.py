@@ -25,7 +25,7 @@ from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
-from roaml.libraries import UNBOUNDED
+from roaml.roles import UNBOUNDED
 from roaml.rules import GROUPS, RULES, document, document_file, in_reference
 
 HERE = Path(__file__).resolve().parent

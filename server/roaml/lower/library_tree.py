@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Direction, Node, NodeKind, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board
@@ -25,6 +25,7 @@ from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.outline import MachineOutline
 from roaml.model.system import EntryOutline, System, SystemAutomaton
 from roaml.model.tree import TreeFile, TreeNode
+from roaml.roles import Direction, NodeKind
 from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
 from roaml.scxml.names import CONDITIONS_PREFIX
@@ -311,7 +312,7 @@ def _declared(automaton: SystemAutomaton) -> Node:
 def _of_machine(outline: MachineOutline) -> Node:
     def direction(port: str) -> Direction:
         known = outline.port(port)
-        return Direction.IN if known is not None and known.direction == "in" else Direction.OUT
+        return Direction.IN if known is not None and known.direction is Direction.IN else Direction.OUT
 
     ports = tuple(Port(port.key, direction(port.key), port.type) for port in outline.ports)
     return Node(outline.name, NodeKind.ACTION, ports, (0, 0))

@@ -10,11 +10,12 @@ from typing import TypeAlias
 from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, unwrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, ScalarKind, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import LoweringContext
+from roaml.lower.executed_goals import ExecutedGoals
 from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
@@ -28,7 +29,7 @@ from roaml.scxml.names import FIELD_PREFIX, STATUSES, named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
-_NAMED = {"int": BASE_TYPES["int64"], "real": REAL}
+_NAMED = {ScalarKind.INT: BASE_TYPES["int64"], ScalarKind.REAL: REAL}
 """The type of a variable for a value whose type has no name, by the kind of the value."""
 
 MAX_COMBINATIONS = 10_000
@@ -51,6 +52,7 @@ class StatementLowering:
     """Lowers the bodies of one automaton. `drawn` are variables for random numbers, created on the way."""
 
     context: LoweringContext
+    goals: ExecutedGoals
     drawn: list[Data] = field(default_factory=list)
 
     def body(self, statements: Iterable[hl.Statement], scope: LoweringScope) -> Body:
@@ -193,6 +195,8 @@ class StatementLowering:
         fields = [p for sent in statement.fields for p in self.params(sent, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
+        goal_id = lower_expr(statement.goal_id.tree, scope) if statement.goal_id else None
+        yield from self.goals.sent(self.context.channel(statement), statement.part, goal_id, origin)
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
@@ -203,9 +207,16 @@ class StatementLowering:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
         if statement.type.code:
             yield Param("code", integer(statement.type.code), origin)
+        if statement.part is ProtocolPart.CANCEL:
+            yield Param("goal_id", integer(self.goal_id_of_client(statement)), origin)
         if statement.part is ProtocolPart.THREAD_FREE:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
+
+    def goal_id_of_client(self, statement: RosSend) -> int:
+        """The id of all goals of this client (docs/spec/ros.md#goal-ids)."""
+        users = self.context.channel(statement).users
+        return next(number for number, user in enumerate(users) if user.automaton is self.context.automaton)
 
     def event(self, statement: RosSend) -> ScxmlEvent:
         channel, part = self.context.channel(statement), statement.part
@@ -219,6 +230,8 @@ class StatementLowering:
                 return service.response
             case ProtocolPart.GOAL:
                 return action.goal_of(self.context.automaton)
+            case ProtocolPart.CANCEL:
+                return action.cancel
             case ProtocolPart.GOAL_ACCEPTED:
                 return action.accepted
             case ProtocolPart.GOAL_REJECTED:

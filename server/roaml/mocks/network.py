@@ -10,7 +10,6 @@ from fractions import Fraction
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
-from roaml.libraries import NodeKind
 from roaml.lower.blackboard import board_automaton
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
@@ -28,6 +27,7 @@ from roaml.mocks.mock import Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
+from roaml.roles import NodeKind
 from roaml.scxml.model import (
     Assign,
     Automaton,

@@ -19,7 +19,7 @@ from roaml.diagnostics import Symbol
 from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Direction, Node, NodeKind, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
@@ -32,7 +32,8 @@ from roaml.model.outline import (
 )
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, NodeKind, SymbolKind
+from roaml.scxml.names import CANCEL_PREFIX
 from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
@@ -521,7 +522,7 @@ _PREFIXES = {
     SymbolKind.ACTION_CLIENT: "action",
     SymbolKind.ACTION_SERVER: "action",
 }
-_OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
+_OF_INTERFACES = re.compile(r"(?:topic|srv|action|cancel_action|bt)_")
 
 
 def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
@@ -530,6 +531,9 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         prefix = _PREFIXES.get(act.kind)
         if prefix is None:
             return False
+        request = f"{CANCEL_PREFIX}{sanitise(name or '')}"
+        if prefix == "action" and variable.startswith(request if name is None else (f"{request}.", f"{request}__")):
+            return True
         return variable.startswith(f"{prefix}_" if name is None else f"{prefix}_{sanitise(name)}_")
     match act:
         case GapAct.ANYTHING:
@@ -541,7 +545,7 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         case GapAct.TREE | GapAct.VARIABLE:
             return variable.startswith("bt_")
         case GapAct.NAME:
-            return variable.startswith(("srv_", "action_"))
+            return variable.startswith(("srv_", "action_", CANCEL_PREFIX))
         case GapAct.RECEIVES | GapAct.PORT | GapAct.REMAP | GapAct.NODE | GapAct.PLUGIN:
             return False
         case _:
@@ -598,17 +602,17 @@ _NAMES_ENTRY = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "Unse
 
 def _library_port(node: str, port: Port) -> PortOutline:
     if port.name in ("entry", "key") and node in _NAMES_ENTRY:
-        return PortOutline(port.name, ANY_TYPE, "in", False, False)
+        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, False)
     if node == "SetBlackboard" and port.name == "output_key":
-        return PortOutline(port.name, ANY_TYPE, "in", False, True)
-    direction = "out" if port.direction is Direction.OUT else "in"
+        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, True)
+    direction = Direction.OUT if port.direction is Direction.OUT else Direction.IN
     return PortOutline(port.name, ANY_TYPE, direction, port.direction.reads, port.direction.writes)
 
 
 def _builtin(element: ElementType) -> MachineOutline:
     has_children = element.any_child is not None
     ports = tuple(
-        PortOutline(a.name, a.port.type, a.port.direction, a.port.direction == "in", a.port.direction == "out")
+        PortOutline(a.name, a.port.type, a.port.direction, a.port.direction.reads, a.port.direction.writes)
         for a in element.ports
         if a.port
     )

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
     Binary,
@@ -70,13 +70,13 @@ def both(left: Expression | None, right: Expression) -> Expression:
     return right if left is None else jani.Binary(BinaryOperator.AND, left, right)
 
 
-_MOST_IN_A_ROW = 100
+_MAX_OPERANDS_IN_A_ROW = 100
 
 
 def all_of(terms: Sequence[Expression]) -> Expression | None:
     """The conjunction of the terms; `None` if there are none. Many terms are combined as a balanced tree: readers of
     JANI, including that of this library, limit the nesting of brackets."""
-    if len(terms) > _MOST_IN_A_ROW:
+    if len(terms) > _MAX_OPERANDS_IN_A_ROW:
         middle = len(terms) // 2
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
         assert second is not None
@@ -327,7 +327,7 @@ class JaniScope:
                 return operand
 
     def binary(self, expr: Binary) -> Expression:
-        if expr.operator.kind == "equality":
+        if expr.operator.kind is OperatorKind.EQUALITY:
             left, right = self.array(expr.left), self.array(expr.right)
             if left is not None and right is not None:
                 same = equal_arrays(left, right)

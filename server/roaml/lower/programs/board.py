@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import parsed
-from roaml.libraries import Direction
 from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
+from roaml.roles import Direction
 from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
 from roaml.text import Decoded

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
-from roaml.libraries import NodeKind
 from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
@@ -17,6 +16,7 @@ from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, rea
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
+from roaml.roles import NodeKind
 from roaml.text import Location
 
 

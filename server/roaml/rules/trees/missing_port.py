@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.system import CHILDREN_COUNT, optional_ports
 from roaml.model.tree import TreeNode, nodes
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, listing
 from roaml.text import Span, TextEdit
 
@@ -57,7 +57,7 @@ def _finding(node: TreeNode, plugin: MachineOutline, path: str, missing: list[Po
 
 
 def _example(port: PortOutline) -> str:
-    if port.direction == "out":
+    if port.direction is Direction.OUT:
         return f"{{{port.key}}}"
     if port.type.startswith("float"):
         return "0.0"
