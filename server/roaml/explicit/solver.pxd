@@ -94,7 +94,7 @@ cdef class Solver:
     cdef int _solve_directly(self, int first, int last, double gap) except -1
     @cython.locals(own=int, states=int, choices=i64, i=int, state=int, process=SmallProcess, group=int, before=int)
     cdef SmallProcess _small_process(self, int first, int last)
-    @cython.locals(share=double, at=i64, size=int, weight=double, k=int)
+    @cython.locals(share=double, at=i64, size=int, weight=double, k=int, chance=double)
     cdef void _add_choices(self, SmallProcess process, int state, int group, int own) noexcept
     cdef void _add_entry(self, SmallProcess process, int to, double chance, int own) noexcept
     @cython.locals(weights=double, at=i64, size=int)

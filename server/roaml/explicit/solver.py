@@ -756,9 +756,9 @@ class Solver:
                 self.high[state] = self.high[self.group[state]]
 
     def _direct_work(self, first: int, last: int) -> int:
-        """The number of additions after which a component is solved directly: about as many as that takes."""
+        """The number of additions after which a component is solved directly, in about the same time."""
         count = last - first
-        return count * count * count // 4 + 1000 * count
+        return count * count * count // 16 + 1000 * count
 
     def _solve_directly(self, first: int, last: int, gap: float) -> int:
         """Bounds for the states of a component by policy iteration; returns 0 if that is not possible."""
@@ -845,7 +845,9 @@ class Solver:
                 if self.is_reward != 0:
                     process.gain[process.choices] += weight * self.reals[self.code[at + 2]]
                 for k in range(-size):
-                    self._add_entry(process, self.code[at + 3 + 2 * k], weight * self.reals[self.code[at + 4 + 2 * k]], own)
+                    self._add_entry(
+                        process, self.code[at + 3 + 2 * k], weight * self.reals[self.code[at + 4 + 2 * k]], own
+                    )
                 if self.mode != MEAN:
                     process.end_choice()
             at += 3 - 2 * size

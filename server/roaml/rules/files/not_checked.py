@@ -49,13 +49,16 @@ def _unknown_types(context: MachineContext) -> Iterator[Finding]:
     known = {*BASE_TYPES, *context.struct_names, *FOREIGN_TYPES}
     for chart in context.machine.charts:
         for data in chart.data:
-            if data.type is not None and data.type.name is not None and data.type.name.base not in known:
-                known.add(data.type.name.base)
-                yield RULE.at(
-                    data.type.span,
-                    f"not checked: whether the type `{data.type.name.base}` exists, because a declaration of structs in "
-                    "this system cannot be read; fix the errors of the declarations first",
+            if data.type is None or data.type.name is None:
+                continue
+            name = data.type.name.base
+            if name not in known:
+                known.add(name)
+                message = (
+                    f"not checked: whether the type `{name}` exists, because a declaration of structs in this system "
+                    "cannot be read; fix the errors of the declarations first"
                 )
+                yield RULE.at(data.type.span, message)
 
 
 @dataclass(frozen=True, slots=True)
