@@ -9,7 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from roaml.forest.entries import entry_of, is_autoremapped
-from roaml.forest.forest import Forest, ports_of
+from roaml.forest.forest import Forest
+from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.mocks.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
