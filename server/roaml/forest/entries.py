@@ -18,8 +18,9 @@ from roaml.forest.cpp_types import ANY, SCRIPT
 from roaml.forest.forest import Forest, port_type
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import names_in, scripts_of
-from roaml.libraries import Direction, Node
+from roaml.libraries import Node
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
+from roaml.roles import Direction
 from roaml.text import Span
 
 ROOT = ""

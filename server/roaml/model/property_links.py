@@ -23,7 +23,7 @@ from roaml.expr.infer import (
 )
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Name, walk
-from roaml.expr.types import UNKNOWN, Type, is_kind
+from roaml.expr.types import UNKNOWN, ScalarKind, Type, is_kind
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
 from roaml.model.parameters import NANOSECONDS
@@ -269,7 +269,7 @@ class _Linker:
             if isinstance(problem, UnknownName):
                 close = close_names(problem.name, self.by_id)
             self.report(ProblemKind.CONDITION, problem.span, _in_words(problem, close), close)
-        if not reported and type_ != UNKNOWN and not is_kind(type_, "bool"):
+        if not reported and type_ != UNKNOWN and not is_kind(type_, ScalarKind.BOOL):
             message = f"a condition is true or false, but this is of type `{type_}`"
             self.report(ProblemKind.CONDITION, condition.span, message)
         self._check_together(condition)

@@ -10,8 +10,9 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.forest.entries import is_autoremapped
 from roaml.forest.forest import CPP
 from roaml.forest.ports import missing_ports, probable_ports
-from roaml.libraries import LIBRARIES, Direction, Node, NodeKind, Port, library
+from roaml.libraries import LIBRARIES, Node, Port, library
 from roaml.model.tree import TreeNode
+from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 from roaml.text import Span, TextEdit

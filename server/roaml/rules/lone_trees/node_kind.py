@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import rename_tag
 from roaml.forest.forest import Forest
-from roaml.libraries import Node, NodeKind
+from roaml.libraries import Node
 from roaml.model.tree import TreeNode
+from roaml.roles import NodeKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 from roaml.text import Span, TextEdit

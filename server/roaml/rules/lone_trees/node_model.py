@@ -68,7 +68,7 @@ def _of_library(declaration: Node, port: PortModel) -> Iterator[Finding]:
         hint = did_you_mean(close) or (f"; it has {listing(names)}" if names else "; it has no ports")
         message = f"`{declaration.name}` of BehaviorTree.CPP has no port `{port.name.value}`{hint}"
         yield RULE.at(port.name.span, message, *replacements(port.name.span, close), severity=Severity.INFORMATION)
-    elif not known.alias_of and port.direction != known.direction.value:
+    elif not known.alias_of and port.direction is not known.direction:
         tag = {"in": "input_port", "out": "output_port", "inout": "inout_port"}[known.direction.value]
         message = f"the port `{port.name.value}` of `{declaration.name}` is an `<{tag}>`"
         fix = rename_tag(port.element, tag)
