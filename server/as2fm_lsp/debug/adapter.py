@@ -17,7 +17,7 @@ from as2fm_lsp.debug.breakpoints import BreakpointRequests
 from as2fm_lsp.debug.capabilities import CAPABILITIES
 from as2fm_lsp.debug.choices import ChoiceRequests
 from as2fm_lsp.debug.framing import Inbox, Message
-from as2fm_lsp.debug.launch import Launch, launch_of, load
+from as2fm_lsp.debug.launch import Launch, launch_of, load, warm_up
 from as2fm_lsp.debug.movement import MovementRequests
 from as2fm_lsp.debug.session import Body, ClientFormat, Connection, DebugSession, Handler
 from as2fm_lsp.debug.state import StateRequests
@@ -100,6 +100,7 @@ class Adapter:
             int(arguments.flag("columnsStartAt1", True)),
             arguments.text("pathFormat") == "uri",
         )
+        self._session.after.append(warm_up)
         return CAPABILITIES
 
     def _launch(self, arguments: Arguments) -> Body:

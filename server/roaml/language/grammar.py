@@ -231,6 +231,7 @@ SYSTEM = Grammar("roaml.xsd", ("roaml", "convince_mc_tc"), "system file")
 XML_PROPERTIES = Grammar("properties.xsd", ("properties",), "properties in XML")
 STRUCTS = Grammar("structs.xsd", ("types",), "struct declarations")
 BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
+XML_GRAMMARS = (HL_SCXML, PLAIN_SCXML, SYSTEM, XML_PROPERTIES, STRUCTS, BEHAVIOR_TREE)
 
 
 @dataclass

@@ -300,14 +300,14 @@ class _Parser:
             return inner
         self.height = 1
         match token.kind:
-            case "number":
+            case _TokenKind.NUMBER:
                 return self._number()
-            case "name":
+            case _TokenKind.NAME:
                 self.at += 1
                 if token.text in ("true", "false"):
                     return Boolean(self.span(token), token.text == "true")
                 return self._name(token)
-            case "string":
+            case _TokenKind.STRING:
                 self.at += 1
                 return String(self.span(token), token.text[1:-1])
         raise self.unexpected()
