@@ -29,7 +29,7 @@ from roaml.model.initial import check_initial
 from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
     ASSUMES,
-    EVENT,
+    PortVariableKind,
     PropertyFile,
     TimeInterval,
     WrittenProperty,
@@ -171,7 +171,7 @@ class _Linker:
                     self.report(ProblemKind.PORT_VARIABLE, name.span, message)
                 self.by_id.setdefault(variable.id, (port, variable))
                 initial = variable.written.initial
-                if initial is not None and variable.kind != EVENT:
+                if initial is not None and variable.kind is not PortVariableKind.EVENT:
                     self._check_initial(initial, variable.type)
 
     def _check_initial(self, initial: Expression, type_: Type) -> None:
@@ -289,7 +289,7 @@ class _Linker:
 
     def _event(self, tree: object) -> tuple[LinkedPort, LinkedVariable] | None:
         linked = self.by_id.get(tree.name) if isinstance(tree, Name) else None
-        return linked if linked is not None and linked[1].kind == EVENT else None
+        return linked if linked is not None and linked[1].kind is PortVariableKind.EVENT else None
 
     def _pattern(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
         assert written.pattern is not None
