@@ -22,7 +22,8 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
 def only_missing(element: Element, type_: ElementType, name: str) -> tuple[str, ...]:
     """The required attribute that `name` probably means: the only one that is missing, if `name` is the only unknown
     one."""
-    unknown = [a.name for a in element.attributes if a.name not in type_.attributes and ":" not in a.name]
+    names = [a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns"]
+    unknown = [attribute for attribute in names if attribute not in type_.attributes]
     missing = [a.name for a in type_.attributes.values() if a.required and element.get(a.name) is None]
     return tuple(missing) if unknown == [name] and len(missing) == 1 and not type_.any_attribute else ()
 
