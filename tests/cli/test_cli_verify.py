@@ -26,12 +26,12 @@ from smc_models import Json, at, automaton, document, edge, op, probability, var
 
 import as2fm_lsp.verification.trace_files
 from as2fm_lsp.cli.progress_bar import line, search_line
-from patience import PATIENCE
 from roaml import api
 from roaml.smc.goal import Question
 from roaml.smc.lss import GREATEST, LEAST, Search, Side
 from roaml.smc.run import FIXED, Options, Tally
 from roaml.verification.expectations import parse
+from timeouts import TIMEOUT_S
 
 
 @pytest.fixture
@@ -381,7 +381,7 @@ def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
             assert running.poll() is None
             time.sleep(0.05)
         os.killpg(running.pid, signal.SIGINT)
-        out, err = running.communicate(timeout=PATIENCE)
+        out, err = running.communicate(timeout=TIMEOUT_S)
     assert (running.returncode, err) == (130, "")
     row = rows(out)["heads"]
     assert row["interrupted"]
@@ -400,7 +400,7 @@ def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
         while b"traces" not in seen:
             seen += os.read(ours, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=PATIENCE)
+        out, _ = running.communicate(timeout=TIMEOUT_S)
     os.close(ours)
     assert b"heads" in seen
     assert "interrupted; this is the result so far" in out

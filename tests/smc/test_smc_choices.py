@@ -95,7 +95,7 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
 def test_results_do_not_depend_on_workers() -> None:
     checker = ModelChecker(model(starving(6000)))
     found = []
-    for pool in (Pool(), Pool(2, patience=0)):
+    for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pool as used:
             answer = checker.answer(checker.asked[0], Options(epsilon=0.03), used)
             found.append(checker.choices(checker.asked[0], answer, used))

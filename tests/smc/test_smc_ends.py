@@ -26,7 +26,7 @@ GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
 
 def answer(checker: ModelChecker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
     options = Options(method=FIXED, max_traces=traces, max_steps=max_steps)
-    with Pool(jobs, patience=0 if jobs > 1 else 1) as pool:
+    with Pool(jobs, start_delay_s=0 if jobs > 1 else 1) as pool:
         return checker.answer(checker.asked[0], options, pool)
 
 

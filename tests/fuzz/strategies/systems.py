@@ -22,7 +22,7 @@ from fuzz.strategy import Failure, Strategy
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, Element
 
-LONGEST = 300_000
+MAX_LENGTH = 300_000
 """Characters of one file. That greater ones take their time is no failure."""
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
@@ -76,7 +76,7 @@ def make(seed: int) -> Changed:
     for _ in range(random.choice([1, 1, 2, 3])):
         change = random.choice(CHANGES)
         case.changes.append(change(random, case.texts, random.choice(models)))
-    case.texts = {path: text[:LONGEST] for path, text in case.texts.items()}
+    case.texts = {path: text[:MAX_LENGTH] for path, text in case.texts.items()}
     return case
 
 

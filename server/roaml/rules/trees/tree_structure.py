@@ -20,7 +20,7 @@ from roaml.text import Span, TextEdit
 MAIN = "MainTree"
 """The conventional name of the executed tree."""
 
-MOST = 5
+MAX_EXECUTABLE_FIXES = 5
 """The maximum number of trees for which a fix offers to execute them."""
 
 
@@ -226,7 +226,7 @@ def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Fi
         if context.file.element.get("main_tree_to_execute") is None
     )
     message = f"the executed tree is ambiguous; set `main_tree_to_execute` to one of {listing(candidates)}"
-    yield RULE.at(root, message, *itertools.islice(fixes, MOST))
+    yield RULE.at(root, message, *itertools.islice(fixes, MAX_EXECUTABLE_FIXES))
 
 
 def _has_misspelled_tree(context: TreeContext) -> bool:
