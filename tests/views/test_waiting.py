@@ -225,6 +225,7 @@ def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
         ("srv_x_request", "a request to the service `/x`"),
         ("action_m_goal_req_client_Fetch", "a goal of the action `/m`"),
         ("action_m_result_handle_client_Fetch", "the result of the action `/m`"),
+        ("cancel_action_arm__move", "a request to cancel a goal of the action `/arm/move`"),
         ("action_m_thread_start", "the start of a thread of the action `/m`"),
         ("ros_time_rate.second", "its timer `second`"),
         ("ros_time_rate.second__Fetch", "its timer `second`"),
