@@ -25,8 +25,8 @@ MAX_STATES = 6_000
 """Larger models take more time than a test should."""
 WIDTH = 1e-6
 STORM = 2e-6
-"""The distance of Storm's values, which value iteration without bounds computed: for `c2` of consensus, whose minimum is
-49/128, it ended at 0.3828113."""
+"""The distance of Storm's values, from value iteration without bounds: for `c2` of consensus, whose minimum is 49/128,
+it ended at 0.3828113."""
 REFUSED = {
     "bluetooth": "no initial value",
     "brp-pta": "type pta",
