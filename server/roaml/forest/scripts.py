@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from roaml.forest.cpp_types import SCRIPT
 from roaml.forest.forest import CPP, Forest
+from roaml.forest.ports import probable_ports
 from roaml.model.tree import TreeNode
 from roaml.script.parse import ScriptProblem, parse
 from roaml.script.tree import Script
@@ -44,9 +45,16 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
     name = node.plugin.value if node.plugin else ""
     if name in _SCRIPT_PORTS and forest.known_node(node) is CPP.nodes[name]:
         for port in _SCRIPT_PORTS[name]:
-            attribute_of_port = node.element.get(port)
+            attribute_of_port = node.element.get(port) or _probable(node, port)
             if attribute_of_port is not None and attribute_of_port.has_value:
                 yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
+
+
+def _probable(node: TreeNode, port: str) -> Attribute | None:
+    """The misspelled attribute that probably means a port."""
+    assert node.plugin is not None
+    probable = probable_ports(node, CPP.nodes[node.plugin.value])
+    return next((node.element.get(name) for name, ports in probable.items() if port in ports), None)
 
 
 def script_attributes(node: TreeNode) -> Iterator[Attribute]:
