@@ -27,6 +27,7 @@ READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api/", "roaml/inte
 READS_RESOURCES = (
     "roaml/explicit/memory.py",
     "roaml/explicit/plain.py",
+    "roaml/figures/themes.py",
     "roaml/language/resources.py",
     "roaml/language/grammar.py",
     "roaml/language/validate.py",
