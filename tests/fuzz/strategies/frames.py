@@ -62,6 +62,7 @@ REQUESTS = (
     "as2fm/about",
     "as2fm/plainScxml",
     "as2fm/picture",
+    "as2fm/pictureFile",
     "as2fm/migrate",
     "as2fm/counterexample",
 )
