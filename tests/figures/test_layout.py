@@ -9,18 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from examples import examples
-from roaml.figures.geometry import Box, Point, Size
-from roaml.figures.layout import Direction, Layout, Link, layered, tidy_tree
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.layout import Layout, LayoutDirection, Link, layered, tidy_tree
 from roaml.figures.layout.spread import spread
 from roaml.figures.layout.tracks import assign_tracks
 
 NEAR = 0.05
-SIZES = st.builds(Size, st.integers(8, 300), st.integers(8, 200))
-DIRECTIONS = st.sampled_from(list(Direction))
+SIZES = st.builds(Extent, st.integers(8, 300), st.integers(8, 200))
+DIRECTIONS = st.sampled_from(list(LayoutDirection))
 
 
 @st.composite
-def graphs(draw: st.DrawFn) -> tuple[dict[str, Size], list[Link]]:
+def graphs(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link]]:
     names = [str(number) for number in range(draw(st.integers(1, 10)))]
     nodes = {name: draw(SIZES) for name in names}
     pairs = [(source, target) for source in names for target in names if source != target]
@@ -53,7 +53,7 @@ def touches(box: Box, point: Point) -> bool:
     return edge and not box.grown(-NEAR).contains(Box(*point, 0, 0))
 
 
-def flaws(nodes: dict[str, Size], links: list[Link], layout: Layout) -> list[str]:
+def flaws(nodes: dict[str, Extent], links: list[Link], layout: Layout) -> list[str]:
     boxes = [*layout.nodes.values(), *(route.label for route in layout.routes if route.label)]
     flaws = [f"overlap: {a}, {b}" for a, b in combinations(boxes, 2) if a.grown(-NEAR).overlaps(b)]
     whole = Box(0, 0, *layout.size).grown(NEAR)
@@ -76,7 +76,7 @@ def flaws(nodes: dict[str, Size], links: list[Link], layout: Layout) -> list[str
 
 @settings(max_examples=examples(60), deadline=None)
 @given(graphs(), DIRECTIONS)
-def test_layered(graph: tuple[dict[str, Size], list[Link]], direction: Direction) -> None:
+def test_layered(graph: tuple[dict[str, Extent], list[Link]], direction: LayoutDirection) -> None:
     nodes, links = graph
     layout = layered(nodes, links, direction, 1.5)
     assert flaws(nodes, links, layout) == []
@@ -84,20 +84,20 @@ def test_layered(graph: tuple[dict[str, Size], list[Link]], direction: Direction
 
 
 def test_the_first_node_comes_first() -> None:
-    nodes = dict.fromkeys("abc", Size(40, 20))
-    links = [Link("a", "b"), Link("b", "c"), Link("c", "a", Size(30, 10))]
-    down = layered(nodes, links, Direction.DOWN, 1).nodes
+    nodes = dict.fromkeys("abc", Extent(40, 20))
+    links = [Link("a", "b"), Link("b", "c"), Link("c", "a", Extent(30, 10))]
+    down = layered(nodes, links, LayoutDirection.DOWN, 1).nodes
     assert down["a"].y < down["b"].y < down["c"].y
-    right = layered(nodes, links, Direction.RIGHT, 1).nodes
+    right = layered(nodes, links, LayoutDirection.RIGHT, 1).nodes
     assert right["a"].x < right["b"].x < right["c"].x
 
 
 def test_a_longer_label_does_not_change_the_arrangement() -> None:
     """What is typed in a label moves nodes, but does not exchange them."""
-    nodes = dict.fromkeys("abcd", Size(60, 30))
+    nodes = dict.fromkeys("abcd", Extent(60, 30))
     ends = ("ab", "ac", "bd", "cd", "da")
     layouts = [
-        layered(nodes, [Link(s, t, Size(width, 20)) for s, t in ends], Direction.DOWN, 1).nodes
+        layered(nodes, [Link(s, t, Extent(width, 20)) for s, t in ends], LayoutDirection.DOWN, 1).nodes
         for width in (30, 90, 150)
     ]
     for layout in layouts:
@@ -106,7 +106,7 @@ def test_a_longer_label_does_not_change_the_arrangement() -> None:
 
 
 @st.composite
-def trees(draw: st.DrawFn) -> tuple[dict[str, Size], dict[str, list[str]]]:
+def trees(draw: st.DrawFn) -> tuple[dict[str, Extent], dict[str, list[str]]]:
     count = draw(st.integers(1, 25))
     children: dict[str, list[str]] = {}
     for number in range(1, count):
@@ -116,7 +116,7 @@ def trees(draw: st.DrawFn) -> tuple[dict[str, Size], dict[str, list[str]]]:
 
 @settings(max_examples=examples(60), deadline=None)
 @given(trees(), DIRECTIONS)
-def test_trees(tree: tuple[dict[str, Size], dict[str, list[str]]], direction: Direction) -> None:
+def test_trees(tree: tuple[dict[str, Extent], dict[str, list[str]]], direction: LayoutDirection) -> None:
     nodes, children = tree
     layout = tidy_tree(nodes, children, direction)
     boxes = list(layout.nodes.values())
@@ -128,7 +128,7 @@ def test_trees(tree: tuple[dict[str, Size], dict[str, list[str]]], direction: Di
         assert touches(layout.nodes[parent], route.parts[0][0])
         assert touches(layout.nodes[child], route.parts[0][-1])
     for group in children.values():
-        middles = [box.x + box.width / 2 if direction is Direction.DOWN else box.y + box.height / 2 for box in
+        middles = [box.x + box.width / 2 if direction is LayoutDirection.DOWN else box.y + box.height / 2 for box in
                    (layout.nodes[child] for child in group)]  # fmt: skip
         assert middles == sorted(middles)
 

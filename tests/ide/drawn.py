@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from roaml.figures.drawing import Drawing, Glyph, Group, Line, Shape, Text
+from roaml.figures.drawing import Drawing, Glyph, Group, Polyline, Shape, TextItem
 from roaml.figures.geometry import Box, Point
 from roaml.ide.diagrams import EdgeKind, Picture
 
@@ -30,7 +30,7 @@ def _areas(drawing: Drawing) -> Iterator[str]:
         if a.overlaps(b):
             yield f"two shapes overlap: {a}, {b}"
     for _, item in drawing.walk():
-        boxes = [item.box] if not isinstance(item, Line) else [Box(x, y, 0, 0) for x, y in item.points]
+        boxes = [item.box] if not isinstance(item, Polyline) else [Box(x, y, 0, 0) for x, y in item.points]
         yield from (f"outside of the drawing: {item}" for box in boxes if not page.contains(box))
     frames = [item.box for _, item in drawing.walk() if isinstance(item, Shape) and item.role == "frame"]
     for frame in frames:
@@ -40,7 +40,7 @@ def _areas(drawing: Drawing) -> Iterator[str]:
 
 
 def _texts(drawing: Drawing) -> Iterator[str]:
-    texts = [(groups, item) for groups, item in drawing.walk() if isinstance(item, Text)]
+    texts = [(groups, item) for groups, item in drawing.walk() if isinstance(item, TextItem)]
     for groups, text in texts:
         if text.size < MIN_SIZE:
             yield f"small text: {text}"
@@ -60,10 +60,10 @@ def _texts(drawing: Drawing) -> Iterator[str]:
 
 def _lines(drawing: Drawing) -> Iterator[str]:
     solid = [item.box for _, item in drawing.walk() if isinstance(item, Shape) and item.role in SOLID]
-    solid += [item.box for _, item in drawing.walk() if isinstance(item, Text | Glyph)]
+    solid += [item.box for _, item in drawing.walk() if isinstance(item, TextItem | Glyph)]
     segments: list[tuple[tuple[Group, ...], Point, Point]] = []
     for groups, item in drawing.walk():
-        if isinstance(item, Line) and item.role == "line":
+        if isinstance(item, Polyline) and item.role == "line":
             segments += [(groups, a, b) for a, b in zip(item.points, item.points[1:], strict=False)]
     for _, a, b in segments:
         if a.x != b.x and a.y != b.y:
@@ -103,7 +103,7 @@ def _completeness(picture: Picture, drawing: Drawing) -> Iterator[str]:
     edges = {index for group in groups for index in group.edges}
     yield from (f"not drawn: {edge}" for index, edge in enumerate(picture.edges) if index not in edges)
     with_line = {
-        index for group in groups for index in group.edges if any(isinstance(item, Line) for item in group.items)
+        index for group in groups for index in group.edges if any(isinstance(item, Polyline) for item in group.items)
     }
     boxes = {node.id for index, node in enumerate(picture.nodes) if index in drawing.nodes}
     for index, edge in enumerate(picture.edges):

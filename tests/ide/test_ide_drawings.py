@@ -16,9 +16,9 @@ from drawn import problems
 from ide_models import load
 
 from roaml import api
-from roaml.figures.drawing import Drawing, Group, Line, Text
+from roaml.figures.drawing import Drawing, Group, Polyline, TextItem
 from roaml.figures.geometry import Point
-from roaml.figures.layout import Direction
+from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
 from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, picture_of
 from roaml.project.analysis import Analysis
@@ -42,7 +42,7 @@ def test_examples(folder: str) -> None:
     for path in sorted((EXAMPLES / folder).rglob("*xml")):
         for kind in DiagramKind:
             picture = picture_of(kind, analysis, str(path))
-            for direction in Direction if picture else ():
+            for direction in LayoutDirection if picture else ():
                 assert picture is not None
                 assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
                 shown += 1
@@ -106,14 +106,14 @@ def machine(tmp_path: Path, text: str = MACHINE) -> tuple[Picture, Drawing]:
     analysis = load(tmp_path, {"robot.ascxml": text})
     picture = picture_of(DiagramKind.MACHINE, analysis, str(tmp_path / "robot.ascxml"))
     assert picture is not None
-    return picture, draw(DiagramKind.MACHINE, picture, Direction.DOWN)
+    return picture, draw(DiagramKind.MACHINE, picture, LayoutDirection.DOWN)
 
 
 def texts(group: Group) -> list[str]:
     inner = [
         texts(item) if isinstance(item, Group) else [item.text]
         for item in group.items
-        if isinstance(item, (Group, Text))
+        if isinstance(item, (Group, TextItem))
     ]
     return [text for part in inner for text in part]
 
@@ -164,8 +164,8 @@ def test_flaws_are_found(tmp_path: Path) -> None:
     picture, drawing = machine(tmp_path)
     label = next(group for group in drawing.groups if group.role == "label")
     row = next(item for item in label.items if isinstance(item, Group))
-    text = next(item for item in row.items if isinstance(item, Text))
-    line = Group("link", label.tone, (Line((Point(0, text.y), Point(drawing.size.width, text.y))),))
+    text = next(item for item in row.items if isinstance(item, TextItem))
+    line = Group("link", label.tone, (Polyline((Point(0, text.y), Point(drawing.size.width, text.y))),))
     twice = replace(label, items=(*label.items, row))
     small = replace(label, items=(replace(text, size=8.0),))
     for group, word in (

@@ -10,7 +10,7 @@ from drawn import problems
 
 from conformance import ROOT, systems
 from roaml import api
-from roaml.figures.layout import Direction
+from roaml.figures.layout import LayoutDirection
 from roaml.ide.diagrams import DiagramKind, draw, picture_of
 from roaml.project.settings import Settings
 
@@ -27,7 +27,7 @@ def test_drawings(folder: Path) -> None:
     shown = 0
     for kind, path in subjects:
         picture = picture_of(kind, analysis, path)
-        for direction in Direction if picture else ():
+        for direction in LayoutDirection if picture else ():
             assert picture is not None
             assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
             shown += 1

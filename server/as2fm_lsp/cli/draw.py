@@ -13,10 +13,10 @@ from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
-from roaml.figures.layout import Direction
+from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import DiagramKind, draw, draw_for, picture_of
+from roaml.ide.diagrams import PAGE, DiagramKind, draw, draw_for, picture_of
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
@@ -24,8 +24,6 @@ from roaml.project.settings import ament_prefixes
 from roaml.suggest import close_names, did_you_mean, listing
 
 STANDARD_OUTPUT = "-"
-PAGE = (1200.0, 900.0)
-"""The width and height of the page, in pixels, to which the direction of a drawing is adapted."""
 
 EXAMPLES = """\
 examples:
@@ -60,7 +58,9 @@ def run(arguments: Sequence[str]) -> int:
     picture = picture_of(kind, analysis, drawn)
     if picture is None or not picture.nodes:
         return _fail(f"{options.file}: {_NOTHING[kind]}")
-    drawing = draw(kind, picture, Direction(options.direction)) if options.direction else draw_for(kind, picture, *PAGE)
+    drawing = (
+        draw(kind, picture, LayoutDirection(options.direction)) if options.direction else draw_for(kind, picture, *PAGE)
+    )
     text = svg_file(drawing, picture.title, options.theme)
     if options.output == STANDARD_OUTPUT:
         print_text(text)
@@ -136,7 +136,7 @@ def parser() -> ArgumentParser:
     result.add_argument("--theme", choices=tuple(THEMES), default="light", help="the colors (default: light)")
     result.add_argument(
         "--direction",
-        choices=tuple(direction.value for direction in Direction),
+        choices=tuple(direction.value for direction in LayoutDirection),
         help="where links lead (default: the direction in which the drawing fits a page of 4:3 better)",
     )
     return result

@@ -8,7 +8,7 @@ from typing import Any
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri, string
 from roaml.figures.drawing import Drawing
-from roaml.figures.layout import Direction
+from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
 from roaml.ide.diagrams import DiagramKind, Picture, draw, picture_of
@@ -62,7 +62,7 @@ def register(context: Context) -> None:
                 }
                 for edge in picture.edges
             ],
-            "drawings": [_drawing(draw(kind, picture, direction)) for direction in Direction],
+            "drawings": [_drawing(draw(kind, picture, direction)) for direction in LayoutDirection],
         }
 
     def asked(params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
@@ -85,9 +85,9 @@ def register(context: Context) -> None:
         if shown is None:
             return None
         _, kind, diagram = shown
-        direction = Direction.RIGHT if string(params, "direction") == Direction.RIGHT.value else Direction.DOWN
+        is_wide = string(params, "direction") == LayoutDirection.RIGHT.value
         theme = string(params, "theme")
-        drawing = draw(kind, diagram, direction)
+        drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
         return {"svg": svg_file(drawing, diagram.title, theme if theme in THEMES else "light")}
 
 

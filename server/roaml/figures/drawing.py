@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.figures.geometry import Box, Point, Size
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import text_width
 
 
@@ -54,7 +54,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class TextItem:
     """One line of text; `x` is its left end, `y` its base line."""
 
     text: str
@@ -72,7 +72,7 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class Polyline:
     """A polyline with round corners; `has_arrow`: an arrow head at its end."""
 
     points: tuple[Point, ...]
@@ -109,24 +109,25 @@ class Group:
     hint: str = ""
 
 
-Item: TypeAlias = Shape | Text | Line | Glyph | Group
+Leaf: TypeAlias = Shape | TextItem | Polyline | Glyph
+Item: TypeAlias = Leaf | Group
 
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
     """`nodes`: the boxes of the nodes by their indexes."""
 
-    size: Size
+    size: Extent
     groups: tuple[Group, ...]
     nodes: Mapping[int, Box]
 
-    def walk(self) -> Iterator[tuple[tuple[Group, ...], Shape | Text | Line | Glyph]]:
+    def walk(self) -> Iterator[tuple[tuple[Group, ...], Leaf]]:
         """Every item with the groups around it, the outermost first."""
         for group in self.groups:
             yield from _walk(group, ())
 
 
-def _walk(group: Group, around: tuple[Group, ...]) -> Iterator[tuple[tuple[Group, ...], Shape | Text | Line | Glyph]]:
+def _walk(group: Group, around: tuple[Group, ...]) -> Iterator[tuple[tuple[Group, ...], Leaf]]:
     inside = (*around, group)
     for item in group.items:
         if isinstance(item, Group):

@@ -16,13 +16,13 @@ class Point(NamedTuple):
         return Point(self.y, self.x)
 
 
-class Size(NamedTuple):
+class Extent(NamedTuple):
     width: float
     height: float
 
     @property
-    def turned(self) -> Size:
-        return Size(self.height, self.width)
+    def turned(self) -> Extent:
+        return Extent(self.height, self.width)
 
 
 class Box(NamedTuple):

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 
 from roaml.exhaustive import assert_never
-from roaml.figures.drawing import Drawing, Glyph, Group, Line, Outline, Shape, Text
+from roaml.figures.drawing import Drawing, Glyph, Group, Outline, Polyline, Shape, TextItem
 from roaml.figures.geometry import Box, Point
 from roaml.figures.themes import THEMES, style_sheet
 
@@ -46,15 +46,15 @@ def _group(group: Group) -> str:
     return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
 
 
-def _item(item: Shape | Text | Line | Glyph) -> Iterator[str]:
+def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
     match item:
         case Shape():
             yield from _shape(item)
-        case Text():
+        case TextItem():
             role = f"{item.role} strong" if item.bold else item.role
             place = f'x="{_n(item.x)}" y="{_n(item.y)}" font-size="{_n(item.size)}"'
             yield f'<text class="{role}" {place}>{escape(item.text, quote=False)}</text>'
-        case Line():
+        case Polyline():
             yield f'<path class="{item.role}" d="{path(_shortened(item))}"/>'
             if item.has_arrow:
                 yield f'<polygon class="head" points="{_points(_head(item.points))}"/>'
@@ -113,7 +113,7 @@ def path(points: Sequence[Point], radius: float = _CORNER) -> str:
     return " ".join(parts)
 
 
-def _shortened(line: Line) -> tuple[Point, ...]:
+def _shortened(line: Polyline) -> tuple[Point, ...]:
     """The line up to the middle of its arrow head, so that it does not blunt the tip."""
     if not line.has_arrow:
         return line.points

@@ -7,8 +7,8 @@ orthogonal lines on tracks between the layers (`tracks`). A label is a node on i
 node or a label, and no label overlaps another, by construction.
 """
 
-from roaml.figures.layout.graph import Direction, Layout, Link, Route
+from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
 from roaml.figures.layout.layered import layered
 from roaml.figures.layout.tidy import tidy_tree
 
-__all__ = ["Direction", "Layout", "Link", "Route", "layered", "tidy_tree"]
+__all__ = ["Layout", "LayoutDirection", "Link", "Route", "layered", "tidy_tree"]

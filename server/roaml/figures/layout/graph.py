@@ -7,10 +7,10 @@ import enum
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from roaml.figures.geometry import Box, Point, Size
+from roaml.figures.geometry import Box, Extent, Point
 
 
-class Direction(enum.Enum):
+class LayoutDirection(enum.Enum):
     """The direction in which links lead, apart from those that close cycles."""
 
     DOWN = "down"
@@ -23,7 +23,7 @@ class Link:
 
     source: str
     target: str
-    label: Size | None = None
+    label: Extent | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Route:
 class Layout:
     """Boxes by the names of nodes, routes in the order of the links. Everything is within `size`."""
 
-    size: Size
+    size: Extent
     nodes: Mapping[str, Box]
     routes: tuple[Route, ...]
 

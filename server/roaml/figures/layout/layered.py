@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from roaml.figures.geometry import Box, Point, Size
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.cycles import closing_links
-from roaml.figures.layout.graph import Direction, Layout, Link, Route
+from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
 from roaml.figures.layout.layers import assign_layers
 from roaml.figures.layout.order import order_layers
 from roaml.figures.layout.packing import components, pack
@@ -23,7 +23,7 @@ TRACK_DISTANCE = 10.0
 """Between layers: the least distance; the distance of tracks from layers, and of tracks from each other."""
 
 
-def layered(nodes: Mapping[str, Size], links: Sequence[Link], direction: Direction, aspect: float) -> Layout:
+def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:
     """The layout of a graph; links between a node and itself are not possible.
 
     Nodes are drawn in their order as far as links allow it: the first one comes first. A node grows if it has too many
@@ -32,10 +32,10 @@ def layered(nodes: Mapping[str, Size], links: Sequence[Link], direction: Directi
     Args:
         aspect: the desired ratio of width to height, for packing.
     """
-    if direction is Direction.RIGHT:
+    if direction is LayoutDirection.RIGHT:
         turned = {name: size.turned for name, size in nodes.items()}
         turned_links = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
-        return layered(turned, turned_links, Direction.DOWN, 1 / aspect).turned
+        return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
     parts = [
         (_Component(nodes, names, indexes, links).layout(), indexes) for names, indexes in components(nodes, links)
     ]
@@ -55,7 +55,7 @@ class _Component:
     """The layout of a connected graph, downwards."""
 
     def __init__(
-        self, sizes: Mapping[str, Size], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]
+        self, sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]
     ) -> None:
         self.names = names
         self.indexes = indexes
@@ -94,7 +94,7 @@ class _Component:
         for edge in self.edges:
             upper = edge.upper
             for layer in range(self.layers[edge.upper] + 1, self.layers[edge.lower]):
-                self.vertices.append(Vertex(VertexKind.PASSING, Size(0, 0)))
+                self.vertices.append(Vertex(VertexKind.PASSING, Extent(0, 0)))
                 self.layers.append(layer)
                 short.append(_Edge(edge.link, upper, len(self.vertices) - 1))
                 upper = len(self.vertices) - 1
@@ -111,7 +111,7 @@ class _Component:
             ports = max(upper[index], lower[index])
             if vertex.kind is VertexKind.NODE and ports > 1:
                 width = 2 * PORT_MARGIN + (ports - 1) * PORT_DISTANCE
-                self.vertices[index] = Vertex(vertex.kind, Size(max(vertex.size.width, width), vertex.size.height))
+                self.vertices[index] = Vertex(vertex.kind, Extent(max(vertex.size.width, width), vertex.size.height))
 
     def layout(self) -> Layout:
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
@@ -182,7 +182,7 @@ def _at_origin(boxes: Mapping[str, Box], routes: Sequence[Route]) -> Layout:
     right = max([area.right for area in areas] + [point.x for point in points])
     bottom = max([area.bottom for area in areas] + [point.y for point in points])
     return Layout(
-        Size(right - left, bottom - top),
+        Extent(right - left, bottom - top),
         {name: box.moved(-left, -top) for name, box in boxes.items()},
         tuple(route.moved(-left, -top) for route in routes),
     )

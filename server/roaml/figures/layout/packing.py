@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from roaml.figures.geometry import Box, Point, Size
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.graph import Layout, Link, Route
 
 DISTANCE = 48.0
@@ -42,7 +42,7 @@ def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[li
     )
 
 
-def shelves(sizes: Sequence[Size], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Size]:
+def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Extent]:
     """The place of each box in rows, in their order, and the size of the whole."""
     area = sum((size.width + distance) * (size.height + distance) for size in sizes)
     limit = max([size.width for size in sizes] + [math.sqrt(area * aspect)])
@@ -54,7 +54,7 @@ def shelves(sizes: Sequence[Size], aspect: float, distance: float = DISTANCE) ->
         places.append(Point(x, y))
         width, height = max(width, x + size.width), max(height, size.height)
         x += size.width + distance
-    return places, Size(width, y + height)
+    return places, Extent(width, y + height)
 
 
 def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: float) -> Layout:

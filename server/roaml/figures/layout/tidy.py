@@ -6,23 +6,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from roaml.figures.geometry import Box, Point, Size
-from roaml.figures.layout.graph import Direction, Layout, Route
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.layout.graph import Layout, LayoutDirection, Route
 
 SIBLING_DISTANCE = 20.0
 COUSIN_DISTANCE = 30.0
 LEVEL_DISTANCE = 40.0
 
 
-def tidy_tree(nodes: Mapping[str, Size], children: Mapping[str, Sequence[str]], direction: Direction) -> Layout:
+def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], direction: LayoutDirection) -> Layout:
     """The layout of a forest. The routes lead from each parent to each child, in the order of `children`.
 
     Args:
         children: the children of each node in their order; leaves may be missing.
     """
-    if direction is Direction.RIGHT:
+    if direction is LayoutDirection.RIGHT:
         turned = {name: size.turned for name, size in nodes.items()}
-        return tidy_tree(turned, children, Direction.DOWN).turned
+        return tidy_tree(turned, children, LayoutDirection.DOWN).turned
     inner = {child for group in children.values() for child in group}
     roots = [name for name in nodes if name not in inner]
     levels = _levels(roots, children)
@@ -54,7 +54,7 @@ def tidy_tree(nodes: Mapping[str, Size], children: Mapping[str, Sequence[str]], 
     ]
     placed = {name: boxes[name].moved(-left, 0) for name in nodes}
     width = max((box.right for box in placed.values()), default=0.0)
-    return Layout(Size(width, bottoms[-1] if bottoms else 0.0), placed, tuple(routes))
+    return Layout(Extent(width, bottoms[-1] if bottoms else 0.0), placed, tuple(routes))
 
 
 def _levels(roots: Sequence[str], children: Mapping[str, Sequence[str]]) -> list[list[str]]:

@@ -14,14 +14,14 @@ CLEARANCE = 9.0
 """The least distance of two parallel lines between layers."""
 
 
-class Turn(NamedTuple):
+class TrackTurn(NamedTuple):
     """A line goes along `track` to `to`."""
 
     track: int
     to: float
 
 
-def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[Turn]], int]:
+def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[TrackTurn]], int]:
     """The turns of each line, and the number of tracks.
 
     Args:
@@ -41,9 +41,9 @@ def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[Turn]
     for segment in order:
         earlier = (track for other, track in tracks.items() if _meet(other, segment))
         tracks[segment] = 1 + max(earlier, default=-1)
-    turns: list[list[Turn]] = [[] for _ in lines]
+    turns: list[list[TrackTurn]] = [[] for _ in lines]
     for segment in sorted(tracks, key=lambda segment: segment.part):
-        turns[segment.line].append(Turn(tracks[segment], segment.end))
+        turns[segment.line].append(TrackTurn(tracks[segment], segment.end))
     return turns, 1 + max(tracks.values(), default=-1)
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from roaml.figures.geometry import Size
+from roaml.figures.geometry import Extent
 
 
 class VertexKind(enum.Enum):
@@ -20,7 +20,7 @@ class Vertex:
     """`size.width` is its extent within the layer, `size.height` across."""
 
     kind: VertexKind
-    size: Size
+    size: Extent
 
 
 NODE_DISTANCE = 28.0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
-from roaml.ide.diagrams.drawings import draw, draw_for
+from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.ros import ros_picture
@@ -17,6 +17,7 @@ from roaml.ide.diagrams.tree import tree_picture
 from roaml.project.analysis import Analysis
 
 __all__ = [
+    "PAGE",
     "DiagramEdge",
     "DiagramHighlight",
     "DiagramKind",

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from roaml.exhaustive import assert_never
-from roaml.figures.drawing import Glyph, Group, Item, Line, Shape, Text
+from roaml.figures.drawing import Glyph, Group, Item, Polyline, Shape, TextItem
 from roaml.figures.geometry import Point
 
 
@@ -20,9 +20,9 @@ def _moved(item: Item, dx: float, dy: float) -> Item:
             return moved(item, dx, dy)
         case Shape() | Glyph():
             return replace(item, box=item.box.moved(dx, dy))
-        case Line():
+        case Polyline():
             return replace(item, points=tuple(Point(x + dx, y + dy) for x, y in item.points))
-        case Text():
+        case TextItem():
             return replace(item, x=item.x + dx, y=item.y + dy)
         case _:
             return assert_never(item)

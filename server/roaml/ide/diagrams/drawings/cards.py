@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from roaml.figures.drawing import Group, Item, Line, Outline, Shape, Text, Tone
-from roaml.figures.geometry import Box, Point, Size
+from roaml.figures.drawing import Group, Item, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
 
 PADDING = 10.0
@@ -54,10 +54,10 @@ class Row:
     hint: str = ""
 
     @property
-    def size(self) -> Size:
+    def size(self) -> Extent:
         bar = _BAR_WIDTH + _BAR_DISTANCE if self.has_bar else 0.0
         width = max((line.width for line in self.lines), default=0.0)
-        return Size(width + bar, sum(line.height for line in self.lines))
+        return Extent(width + bar, sum(line.height for line in self.lines))
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +71,10 @@ class Card:
     padding: float = PADDING
 
     @property
-    def size(self) -> Size:
+    def size(self) -> Extent:
         widths = [row.size.width + (self.side if index == 0 else 0) for index, row in enumerate(self.rows)]
         height = sum(self._heights())
-        return Size(
+        return Extent(
             round(max(widths, default=0.0) + 2 * self.padding + 0.5), round(height + 2 * 0.7 * self.padding + 0.5)
         )
 
@@ -96,7 +96,7 @@ class Card:
                 gap = self._gap(index)
                 if self.ruled and index == 1:
                     rule = (Point(box.x, y + gap / 2), Point(box.right, y + gap / 2))
-                    items.append(Line(rule, role="rule"))
+                    items.append(Polyline(rule, role="rule"))
                 y += gap
             x = box.x + self.padding + (self.side if index == 0 else 0)
             drawn = _row(row, x, y)
@@ -116,7 +116,7 @@ def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
     for line in row.lines:
         y += line.height
         base = y - (line.height - 0.72 * line.size) / 2
-        items.append(Text(line.text, x + line.indent, base, line.size, line.role, line.bold))
+        items.append(TextItem(line.text, x + line.indent, base, line.size, line.role, line.bold))
     return tuple(items)
 
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from roaml.figures.drawing import Drawing, Group, Item, Line, Outline, Shape, Tone
-from roaml.figures.geometry import Box, Size
-from roaml.figures.layout import Direction, Link, layered
+from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
+from roaml.figures.geometry import Box, Extent
+from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.assembly import moved
@@ -26,7 +26,7 @@ MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
 _JUNCTION, _DOT = 14.0, 10.0
 _START = "start"
 _FRAME_MARGIN = 18.0
-_ASPECT = {Direction.RIGHT: 1.8, Direction.DOWN: 0.8}
+_ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 _TONES: Mapping[EdgeKind, Tone] = {
     EdgeKind.EVENT: Tone.EVENT,
     EdgeKind.ROS: Tone.ROS,
@@ -34,7 +34,7 @@ _TONES: Mapping[EdgeKind, Tone] = {
 }
 
 
-def draw_machine(picture: Picture, direction: Direction) -> Drawing:
+def draw_machine(picture: Picture, direction: LayoutDirection) -> Drawing:
     frames = [index for index, node in enumerate(picture.nodes) if node.kind is DiagramNodeKind.THREAD]
     charts = [_Chart(picture, "").drawing(direction)]
     charts += [_framed(picture, frame, direction) for frame in frames]
@@ -47,13 +47,15 @@ def draw_machine(picture: Picture, direction: Direction) -> Drawing:
     return Drawing(size, tuple(groups), nodes)
 
 
-def _framed(picture: Picture, index: int, direction: Direction) -> Drawing:
+def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing:
     """The chart of an action thread in its frame."""
     node = picture.nodes[index]
     chart = _Chart(picture, node.id).drawing(direction)
     heading = Card((Row((*title(" ".join((node.label, *(f"({d})" for d in node.details))), 400.0),)),))
     top = heading.size.height
-    size = Size(max(chart.size.width + 2 * _FRAME_MARGIN, heading.size.width), chart.size.height + top + _FRAME_MARGIN)
+    size = Extent(
+        max(chart.size.width + 2 * _FRAME_MARGIN, heading.size.width), chart.size.height + top + _FRAME_MARGIN
+    )
     box = Box(0, 0, *size)
     items = (Shape(box, Outline.ROUNDED, "frame"), *heading.items(Box(0, 0, size.width, top)))
     frame = Group("node", Tone.PLAIN, items, "thread", node=index)
@@ -104,19 +106,19 @@ class _Chart:
                     if outcome.source == edge.target:
                         yield _row(number, outcome, CARD_WIDTH, joined=True)
 
-    def drawing(self, direction: Direction) -> Drawing:
-        sizes: dict[str, Size] = {}
+    def drawing(self, direction: LayoutDirection) -> Drawing:
+        sizes: dict[str, Extent] = {}
         links: list[Link] = []
         initial = next((name for name in self._cards if self._picture.nodes[self._index[name]].initial), None)
         if initial is not None:
-            sizes[_START] = Size(_DOT, _DOT)
+            sizes[_START] = Extent(_DOT, _DOT)
             sizes[initial] = self._cards[initial].size
             links.append(Link(_START, initial))
         for name in self._index:
             if name in self._cards:
                 sizes[name] = self._cards[name].size
             elif name not in self._inlined:
-                sizes[name] = Size(_JUNCTION, _JUNCTION)
+                sizes[name] = Extent(_JUNCTION, _JUNCTION)
         bundles = [bundle for bundle in self._bundles() if bundle[0] in sizes and bundle[1] in sizes]
         labels = [_label(edges) for _, _, edges in bundles]
         links += [
@@ -127,13 +129,13 @@ class _Chart:
         groups: list[Group] = []
         routes = layout.routes
         if initial is not None:
-            line = Line(routes[0].parts[0], has_arrow=True)
+            line = Polyline(routes[0].parts[0], has_arrow=True)
             dot = Shape(layout.nodes[_START], Outline.PILL, "dot")
             groups.append(Group("start", Tone.PLAIN, (line, dot)))
             routes = routes[1:]
         for (_, _, edges), route in zip(bundles, routes, strict=True):
             lines = tuple(
-                Line(part, has_arrow=number == len(route.parts) - 1) for number, part in enumerate(route.parts)
+                Polyline(part, has_arrow=number == len(route.parts) - 1) for number, part in enumerate(route.parts)
             )
             groups.append(Group("link", _tone(edges), lines, _kinds(edges), edges=tuple(i for i, _ in edges)))
         for (_, _, edges), label, route in zip(bundles, labels, routes, strict=True):

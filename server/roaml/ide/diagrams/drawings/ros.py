@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from roaml.figures.drawing import Drawing, Group, Line, Outline, Shape, Tone
+from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box
-from roaml.figures.layout import Direction, Link, layered
+from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 
-CARD_WIDTH = {Direction.RIGHT: 220.0, Direction.DOWN: 140.0}
+CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
 """The widths of lines of text; they are small where nodes are side by side."""
 LABEL_WIDTH = 150.0
-_ASPECT = {Direction.RIGHT: 1.8, Direction.DOWN: 0.8}
+_ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 _CHANNELS: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.TOPIC: Tone.TOPIC,
     DiagramNodeKind.SERVICE: Tone.SERVICE,
@@ -37,7 +37,7 @@ _WORDS: Mapping[DiagramNodeKind, str] = {
 }
 
 
-def draw_ros(picture: Picture, direction: Direction) -> Drawing:
+def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
     cards = {node.id: _card(node, CARD_WIDTH[direction]) for node in picture.nodes}
     shown = [(number, edge) for number, edge in enumerate(picture.edges) if edge.source != edge.target]
@@ -50,7 +50,7 @@ def draw_ros(picture: Picture, direction: Direction) -> Drawing:
     groups: list[Group] = []
     for (number, edge), label, route in zip(shown, labels, layout.routes, strict=True):
         tone = _tone(edge, picture.nodes[index[edge.source]], picture.nodes[index[edge.target]])
-        lines = tuple(Line(part, has_arrow=part is route.parts[-1]) for part in route.parts)
+        lines = tuple(Polyline(part, has_arrow=part is route.parts[-1]) for part in route.parts)
         groups.append(Group("edge", tone, lines, edge.kind.value, edges=(number,)))
         if label and route.label:
             shape = Shape(route.label, Outline.ROUNDED, "label-card")

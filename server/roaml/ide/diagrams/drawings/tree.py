@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from roaml.figures.drawing import Drawing, Group, Item, Line, Outline, Shape, Tone
-from roaml.figures.geometry import Box, Size
-from roaml.figures.layout import Direction, tidy_tree
+from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
+from roaml.figures.geometry import Box, Extent
+from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
@@ -37,7 +37,7 @@ _BLACKBOARD_DISTANCE = 44.0
 _BADGE_DISTANCE = 7.0
 
 
-def draw_tree(picture: Picture, direction: Direction) -> Drawing:
+def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
     cards = {node.id: _card(picture, node) for node in picture.nodes}
     children: dict[str, list[str]] = {}
@@ -52,14 +52,16 @@ def draw_tree(picture: Picture, direction: Direction) -> Drawing:
     boxes, size = _with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
     pairs = ((parent, child) for parent, group in children.items() for child in group)
     groups = [
-        Group("link", Tone.PLAIN, (Line(route.parts[0]),), "child", edges=(numbers[pair],))
+        Group("link", Tone.PLAIN, (Polyline(route.parts[0]),), "child", edges=(numbers[pair],))
         for pair, route in zip(pairs, tree.routes, strict=True)
     ]
     groups += [_node(picture.nodes[index[name]], index[name], cards[name], box) for name, box in boxes.items()]
     return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
 
 
-def _with_blackboard(tree: Mapping[str, Box], size: Size, variables: Mapping[str, Size]) -> tuple[dict[str, Box], Size]:
+def _with_blackboard(
+    tree: Mapping[str, Box], size: Extent, variables: Mapping[str, Extent]
+) -> tuple[dict[str, Box], Extent]:
     """The boxes with those of the entries of the blackboard, in rows below the tree."""
     boxes = dict(tree)
     if not variables:
@@ -70,15 +72,15 @@ def _with_blackboard(tree: Mapping[str, Box], size: Size, variables: Mapping[str
     top = size.height + _BLACKBOARD_DISTANCE if tree else 0.0
     for (name, own), (x, y) in zip(variables.items(), places, strict=True):
         boxes[name] = Box(x, top + y, *own)
-    return boxes, Size(max(size.width, shelf.width), top + shelf.height)
+    return boxes, Extent(max(size.width, shelf.width), top + shelf.height)
 
 
-def _size(card: Card, kind: DiagramNodeKind) -> Size:
+def _size(card: Card, kind: DiagramNodeKind) -> Extent:
     """The size of a card; shapes with slanted or round ends need more space at the sides."""
     width, height = card.size
     outline = _OUTLINES.get(kind, Outline.ROUNDED)
     extra = {Outline.HEXAGON: 12.0, Outline.PILL: min(height / 2, 24.0), Outline.DOUBLE: 6.0}.get(outline, 0.0)
-    return Size(width + extra, height)
+    return Extent(width + extra, height)
 
 
 def _card(picture: Picture, node: DiagramNode) -> Card:
