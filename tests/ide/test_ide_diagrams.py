@@ -103,19 +103,22 @@ def test_tree(tmp_path: Path) -> None:
         assert shown(picture) == [
             "control | Sequence | initial",
             "action | Walk | goal = {g} | out = {g} | topic =  /a/b ",
+            "subtree | Sub",
             "action | w : Walk | goal = {g} | out = {Sub__own} | topic = /c",
             "variable | g",
             "variable | Sub__own",
             "Sequence -> Walk | child",
-            "Sequence -> w : Walk | child",
+            "Sequence -> Sub | child",
+            "Sub -> w : Walk | child",
             "g -> Walk | reads | goal",
             "Walk -> g | writes | out",
             "g -> w : Walk | reads | goal",
             "w : Walk -> Sub__own | writes | out",
         ]
         assert text_at(analysis, picture.nodes[1].place).startswith('<Walk goal="{g}"')
-        assert text_at(analysis, picture.nodes[2].place).startswith('<Action ID="Walk"')
-        assert text_at(analysis, picture.nodes[3].place) == 'goal="{g}"'
+        assert text_at(analysis, picture.nodes[2].place).startswith('<BehaviorTree ID="Sub"')
+        assert text_at(analysis, picture.nodes[3].place).startswith('<Action ID="Walk"')
+        assert text_at(analysis, picture.nodes[4].place) == 'goal="{g}"'
 
 
 def test_tree_alone(tmp_path: Path) -> None:

@@ -12,6 +12,8 @@ from roaml.figures.layout.graph import Layout, LayoutDirection, Route
 SIBLING_DISTANCE = 20.0
 COUSIN_DISTANCE = 30.0
 LEVEL_DISTANCE = 40.0
+NEARLY_STRAIGHT = 8.0
+"""A line with a smaller bend is straight, beside the middle of the parent."""
 
 
 def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], direction: LayoutDirection) -> Layout:
@@ -106,6 +108,6 @@ def _join(width: float, parts: Sequence[_Outline], offsets: dict[str, float], na
 def _elbow(parent: Box, child: Box, track: float) -> Route:
     start = Point(parent.x + parent.width / 2, parent.bottom)
     end = Point(child.x + child.width / 2, child.y)
-    if abs(start.x - end.x) < 0.5:
-        return Route(((start, Point(start.x, end.y)),))
+    if abs(start.x - end.x) < min(NEARLY_STRAIGHT, parent.width / 2):
+        return Route(((Point(end.x, start.y), end),))
     return Route(((start, Point(start.x, track), Point(end.x, track), end),))
