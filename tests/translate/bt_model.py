@@ -342,8 +342,8 @@ class Switch(Node, names=("Switch2", "Switch3", "Switch4", "Switch5", "Switch6")
 
     def on_tick(self) -> Status:
         cases = len(self.children) - 1
-        wanted = self.port("variable")
-        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == wanted]
+        expected = self.port("variable")
+        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == expected]
         chosen = self.children[holds[0] if holds else cases]
         if self.running is not None and self.running is not chosen:
             self.running.halt()

@@ -29,6 +29,7 @@ MAX_EVENTS = 4
 REPEATED = (
     ProtocolPart.MESSAGE,
     ProtocolPart.EVENT,
+    ProtocolPart.CANCEL,
     ProtocolPart.FEEDBACK,
     ProtocolPart.THREAD_START,
     ProtocolPart.THREAD_FREE,
