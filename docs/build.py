@@ -25,7 +25,7 @@ from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar
 from roaml.language.resources import schema_path
-from roaml.libraries import UNBOUNDED
+from roaml.roles import UNBOUNDED
 from roaml.rules import GROUPS, RULES, document, document_file, in_reference
 
 HERE = Path(__file__).resolve().parent
@@ -93,7 +93,7 @@ def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
         lines += [f"| `<{name}>` | {often(o.least, o.most)} |" for name, o in type_.children.items()]
         lines.append("")
     if type_.any_child:
-        lines.append(f"Children: {often(type_.any_child.least, type_.any_child.most)} nodes of any kind.\n")
+        lines.append(f"Children: {often(type_.any_child.least, type_.any_child.most)}, of any kind.\n")
     lines += [element(local, grammar, type_.name) for local in type_.local.values()]
     return "\n".join(lines)
 

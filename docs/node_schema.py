@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from xml.sax.saxutils import escape, quoteattr
 
-from roaml.libraries import BEHAVIORTREE_CPP, UNBOUNDED, Absent, Library, Node, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, Absent, Library, Node, Port, library
+from roaml.roles import UNBOUNDED, Direction
 
 BEGIN = "  <!-- Nodes: written by docs/build.py from server/roaml/libraries/behaviortree_cpp.xml -->\n"
 END = "  <!-- End of the nodes -->\n"
@@ -77,7 +78,7 @@ def _attribute(port: Port) -> Iterator[str]:
     role = {
         "required": "true" if port.required else "",
         "constant": "true" if port.system_constant else "",
-        "direction": port.system_direction or ("out" if not port.direction.reads else "in"),
+        "direction": str(port.system_direction or (Direction.IN if port.direction.reads else Direction.OUT)),
         "type": port.system_type or _TYPES.get(port.type, "any" if port.type.startswith("queue") else port.type),
         "default": port.default or "",
         "alias-of": port.alias_of,

@@ -13,6 +13,9 @@ class Vocabulary(enum.Enum):
     # `Enum` hashes the name in Python, which is slow for keys of dictionaries.
     __hash__ = object.__hash__
 
+    def __str__(self) -> str:
+        return str(self.value)
+
     def __lt__(self, other: Vocabulary) -> bool:
         """The order of the values as strings, so that tuples that contain members can be sorted."""
         return str(self.value) < str(other.value)

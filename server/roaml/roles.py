@@ -105,3 +105,59 @@ class ProtocolPart(RoleValue):
 
     START = "start"
     """The start of a machine, before its first event. No schema uses it."""
+
+
+UNBOUNDED = 1_000_000
+"""The maximum number of children if there is no limit."""
+
+
+class NodeKind(RoleValue):
+    """The kind of a node of a behavior tree."""
+
+    CONTROL = "control"
+    DECORATOR = "decorator"
+    ACTION = "action"
+    CONDITION = "condition"
+    SUBTREE = "subtree"
+
+    @property
+    def children(self) -> tuple[int, int]:
+        """The minimum and maximum number of children of a node of this kind."""
+        match self:
+            case NodeKind.CONTROL:
+                return (1, UNBOUNDED)
+            case NodeKind.DECORATOR:
+                return (1, 1)
+            case NodeKind.ACTION | NodeKind.CONDITION | NodeKind.SUBTREE:
+                return (0, 0)
+
+
+class Direction(RoleValue):
+    """The direction of a port. Ports of plugins in systems and of the schema are not `INOUT`."""
+
+    IN = "in"
+    OUT = "out"
+    INOUT = "inout"
+
+    @property
+    def reads(self) -> bool:
+        return self is not Direction.OUT
+
+    @property
+    def writes(self) -> bool:
+        return self is not Direction.IN
+
+
+class ValueRole(RoleValue):
+    """What a value is that neither defines nor names a symbol."""
+
+    CHILD_INDEX = "child-index"
+    CONSTANT = "constant"
+    EXPRESSION = "expression"
+    LOCATION = "location"
+    NUMBER = "number"
+    PATH = "path"
+    ROS_TYPE = "ros-type"
+    SCRIPT = "script"
+    STATUS = "status"
+    TYPE = "type"

@@ -7,11 +7,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, growth, requests, storm, translate, verify
+from bench import check, debug, growth, requests, storm, translate, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
     **check.BENCHMARKS,
+    **debug.BENCHMARKS,
     **growth.BENCHMARKS,
     **requests.BENCHMARKS,
     **translate.BENCHMARKS,

@@ -55,7 +55,7 @@ def test_the_dropped_block_and_the_other_choice(client: Client) -> None:
     stopped = client.event("stopped")
     assert stopped["reason"] == "breakpoint"
     before = client.step()
-    assert client.top(stopped["threadId"]) == ("arm.ascxml", _line(ARM, 'cond="way == 1'))
+    assert client.top(stopped["threadId"]) == ("arm.ascxml", line)
     violated = client.move()
     assert violated["reason"] == "exception"
     assert violated["text"] == "violated: never_placed_empty"

@@ -58,7 +58,7 @@ def test_tokens_cover_the_text() -> None:
     found = tokens(text)
     assert [t.text for t in found] == ["a", ".", "b", "<=", "1.5e3", "+", "'x y'", "#", "`t`"]
     kinds = "name punctuator name punctuator number punctuator string junk template"
-    assert " ".join(t.kind for t in found) == kinds
+    assert " ".join(t.kind.value for t in found) == kinds
     gaps = [*(t.start for t in found), len(text)]
     ends = [0, *(t.end for t in found)]
     assert all(not text[end:gap].strip() for end, gap in zip(ends, gaps, strict=True))

@@ -17,6 +17,7 @@ from roaml.expr.types import (
     STRING,
     UNKNOWN,
     Array,
+    ScalarKind,
     Struct,
     Type,
     TypeName,
@@ -80,7 +81,7 @@ def test_resolve_type(text: str, shown: str) -> None:
 def test_integer_ranges() -> None:
     assert INTEGER_RANGES["int8"] == (-128, 127)
     assert INTEGER_RANGES["uint64"] == (0, 18446744073709551615)
-    assert INTEGER_RANGES.keys() == {n for n, t in BASE_TYPES.items() if t.kind == "int"}
+    assert INTEGER_RANGES.keys() == {n for n, t in BASE_TYPES.items() if t.kind is ScalarKind.INT}
 
 
 def test_leaves() -> None:

@@ -412,7 +412,7 @@ state  <transition cond="count &lt; ‸" target="start"/>
 state  <transition cond="Math.‸" target="start"/>
     abs => abs(${1:x})
     log => log(${1:x})
-    pow : (x, y) → real => pow(${1:x}, ${2:y})
+    pow : (x, y) → float => pow(${1:x}, ${2:y})
     random => random()
 
 state  <ros_topic_callback name="plan" cond="_msg.header.‸" target="start"/>

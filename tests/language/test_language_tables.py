@@ -14,8 +14,7 @@ from lxml import etree
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity
 from roaml.language.resources import schema_path
-from roaml.libraries import UNBOUNDED
-from roaml.roles import SymbolKind
+from roaml.roles import UNBOUNDED, SymbolKind, ValueRole
 
 GRAMMARS = [HL_SCXML, PLAIN_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE]
 XS = "{http://www.w3.org/2001/XMLSchema}"
@@ -154,10 +153,6 @@ def test_everything_is_documented(grammar: Grammar) -> None:
                 assert choice.documentation, f"{path}@{attribute.name}={choice.value}"
 
 
-VALUES = {
-    *("expression", "constant", "location", "type", "ros-type", "path", "number", "flag", "status", "child-index"),
-    "script",
-}
 VALUE_TYPES = {"", "bool", "int", "any", "msg", "srv", "action"}
 ELSEWHERE = {SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION, SymbolKind.FIELD, SymbolKind.PLUGIN}
 """Symbols that no attribute of a language defines: names in the ROS graph, fields of its types, machines as plugins."""
@@ -168,9 +163,13 @@ def test_roles_are_those_that_tools_know() -> None:
     attributes = [attribute for element in every for attribute in element.attributes.values()]
     defined = {attribute.defines for attribute in attributes} - {None}
     assert {kind for a in attributes for kind in a.refers} | {k for e in every for k in e.refers} <= defined | ELSEWHERE
-    assert {a.value for a in attributes} | {e.value for e in every} <= VALUES | {""}
+    assert {a.value for a in attributes} | {e.value for e in every} == {*ValueRole, None}
     assert {a.value_type for a in attributes} | {e.value_type for e in every} <= VALUE_TYPES
-    assert all(attribute.value_type for attribute in attributes if attribute.value in ("expression", "ros-type"))
+    assert all(
+        attribute.value_type
+        for attribute in attributes
+        if attribute.value in (ValueRole.EXPRESSION, ValueRole.ROS_TYPE)
+    )
 
 
 PORT_MODEL = ("type", "default", "description")

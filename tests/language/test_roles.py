@@ -6,7 +6,7 @@ from __future__ import annotations
 from lxml import etree
 
 from roaml.language.resources import schema_path
-from roaml.roles import ELSEWHERE, ProtocolPart, RoleValue, SymbolKind
+from roaml.roles import ELSEWHERE, Direction, NodeKind, ProtocolPart, RoleValue, SymbolKind, ValueRole
 
 SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd", "properties.xsd")
 ROLES = "{urn:roaml:roles}"
@@ -34,3 +34,9 @@ def test_parts() -> None:
 
 def test_symbols() -> None:
     assert written("defines@symbol", "refers@symbol") == values(*SymbolKind) - values(*ELSEWHERE)
+
+
+def test_ports_nodes_and_values() -> None:
+    assert written("port@direction") == values(*Direction) - values(Direction.INOUT)
+    assert written("node@kind") == values(*NodeKind)
+    assert written("value@is") == values(*ValueRole)

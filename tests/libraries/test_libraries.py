@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from roaml.language import BEHAVIOR_TREE
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Direction, NodeKind, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.roles import Direction, NodeKind
 
 CPP = library(BEHAVIORTREE_CPP)
 NAV2 = library("nav2")
@@ -55,6 +56,6 @@ def test_the_schema_has_the_same_nodes() -> None:
     for node in CPP.nodes.values():
         element = BEHAVIOR_TREE.elements[node.name]
         count = element.any_child
-        assert element.node == node.kind.value
+        assert element.node is node.kind
         assert ((count.least, count.most) if count else (0, 0)) == node.children
         assert {attribute.name for attribute in element.attributes.values() if attribute.port} == set(node.port_by_name)

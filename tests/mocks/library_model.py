@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """BehaviorTree.CPP 4.10 and Nav2 a second time, as classes that call each other.
 
-Written from the facts about the libraries alone, without the programs in `roaml.mocks`. Leaves take their outcomes from
-lists, so that a run can be repeated with what chance has decided elsewhere.
+Written from the facts about the libraries alone, without the programs in `roaml.lower.programs`. Leaves take their
+outcomes from lists, so that a run can be repeated with what chance has decided elsewhere.
 """
 
 from __future__ import annotations

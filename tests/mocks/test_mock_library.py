@@ -6,10 +6,12 @@ from __future__ import annotations
 import copy
 
 import library_model
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import (
     CONTROLS,
+    COUNTS,
     DECORATORS,
     ENTRIES,
     LEAVES,
@@ -25,9 +27,13 @@ from random_trees import (
 from translated_trees import Observed, observe, with_mocks
 
 from examples import TIMES, examples
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.lower.programs.assembly import programs
 
 TICKS = 14
-ANY_TREE = trees({**CONTROLS, **NAV2_CONTROLS}, {**DECORATORS, **TIMED, **NAV2_DECORATORS}, {**LEAVES, **SLEEP})
+DECORATED = {**DECORATORS, **TIMED, **NAV2_DECORATORS}
+NODES = {**CONTROLS, **NAV2_CONTROLS, **DECORATED}
+ANY_TREE = trees({**CONTROLS, **NAV2_CONTROLS}, DECORATED, {**LEAVES, **SLEEP})
 
 
 def modelled(drawn: Drawn, seen: Observed) -> Observed:
@@ -60,6 +66,21 @@ def compare(drawn: Drawn, seed: int) -> None:
 @given(ANY_TREE, st.integers(0, 2**30))
 def test_random_trees_do_what_the_libraries_do(drawn: Drawn, seed: int) -> None:
     compare(drawn, seed)
+
+
+@pytest.mark.parametrize("name", sorted(NODES))
+def test_each_node_does_what_the_library_does(name: str) -> None:
+    """With children whose answers are random."""
+    leaves = [Drawn(f"Act{number}") for number in range(1 if name in DECORATED else COUNTS.get(name, (3, 3))[1])]
+    for number in range(max(map(len, NODES[name].values()), default=1)):
+        ports = tuple((key, values[number % len(values)]) for key, values in NODES[name].items())
+        compare(Drawn(name, ports, tuple(leaves)), number)
+
+
+def test_every_node_with_children_has_a_program() -> None:
+    declared = [node for name in (BEHAVIORTREE_CPP, *LIBRARIES) for node in library(name).nodes.values()]
+    with_children = {node.name for node in declared if node.children[1] and not node.until}
+    assert with_children <= programs().keys()
 
 
 def test_an_entry_that_is_only_observed() -> None:

@@ -2,6 +2,7 @@
 /** End-to-end tests of all features, in the order in which a user encounters them. */
 
 import { describe } from "node:test";
+import { debugging } from "./debugging";
 import { editing } from "./editing";
 import { firstStart } from "./firstStart";
 import { compatibility } from "./compatibility";
@@ -32,6 +33,9 @@ describe("pictures", () => {
 });
 describe("verification", () => {
     verification(stage);
+});
+describe("debugging", () => {
+    debugging(stage);
 });
 describe("walkthrough and templates", () => {
     walkthrough(stage);

@@ -12,7 +12,7 @@ import re
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Protocol
 
 MAX_BODY = 1 << 26
 """The maximum length of a message in bytes; a longer one is skipped."""
@@ -69,6 +69,20 @@ def write_message(stream: BinaryIO, message: Mapping[str, Any]) -> None:
     body = json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace")
     stream.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
     stream.flush()
+
+
+class Inbox(Protocol):
+    """Messages that have arrived and are not handled yet."""
+
+    def take(self, *, waits: bool) -> Message | None:
+        """The next message; `None` if there is none, with `waits` only after the last one."""
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the last message has been taken."""
+
+    def has(self, is_meant: Callable[[Message], bool]) -> bool:
+        """Whether such a message is waiting, or no more messages arrive."""
 
 
 class MessageReader:

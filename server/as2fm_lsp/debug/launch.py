@@ -14,6 +14,7 @@ from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, StartError, start
 from roaml.diagnostics import Diagnostic
 from roaml.disk import NotReadableError, required
+from roaml.language.grammar import XML_GRAMMARS
 from roaml.model.parameters import Overrides, duration
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
@@ -42,6 +43,14 @@ class Launch:
     max_time: int | None
     constants: tuple[str, ...]
     ros_paths: tuple[str, ...]
+
+
+def warm_up() -> None:
+    """Import the rules and read the schemas of XML files, which every `launch` needs."""
+    api.load  # noqa: B018 - `roaml.api` imports its modules on use
+    for grammar in XML_GRAMMARS:
+        grammar.elements  # noqa: B018 - computed once
+        grammar.validator  # noqa: B018
 
 
 def launch_of(arguments: Arguments) -> Launch:

@@ -50,8 +50,8 @@ def load_tree(
         ModelError: the trees have errors, or the executed tree cannot be translated.
         MissingMocksError: leaves have no mock.
     """
+    from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415
     from roaml.mocks.network import mocked  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.refusal import TreeRefusal  # noqa: PLC0415
     from roaml.to_jani import translate  # noqa: PLC0415
     from roaml.verification.target import target_of  # noqa: PLC0415
     from roaml.verification.tree_outcome import tree_properties  # noqa: PLC0415

@@ -103,6 +103,11 @@ class Stacks:
         part = self._parts.get(instance)
         received = received_by(self._action) if part is not None else ""
         handler, event = machine.handler, machine.event
+        drawn = None if part is None or len(part.edge.destinations) < 2 else part.destination.origin
+        if part is not None and drawn not in (None, part.edge.origin):
+            yield Frame(
+                thread, f"{machine.name}: {self._sources.tag(drawn)} by chance", drawn, instance, node, "statement"
+            )
         if not self._session.is_resting(instance, location):
             edge = part.edge if part is not None else next(e for e in automaton.edges if e.source == location)
             name = self._sources.tag(edge.origin) or f"{edge.action or location}"

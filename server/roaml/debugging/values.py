@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TypeAlias
 
-from roaml.expr.types import Array, Struct, Type, is_kind
+from roaml.expr.types import Array, ScalarKind, Struct, Type, is_kind
 from roaml.scxml.names import is_length
 from roaml.smc.record import Plain
 
@@ -66,7 +66,7 @@ def _built(name: str, type_: Type | None, stored: Mapping[str, Plain], index: tu
     value = _at(stored[name], index)
     if not isinstance(value, list):
         return value
-    if type_ is not None and is_kind(type_, "string"):
+    if type_ is not None and is_kind(type_, ScalarKind.STRING):
         length = _length(name, stored, index)
         return _text(value[:length])
     return _cut(name, value, stored, index)

@@ -13,7 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
+from roaml.exhaustive import assert_never
+from roaml.expr.operators import FUNCTIONS, FunctionResult, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
     Binary,
@@ -39,6 +40,7 @@ from roaml.expr.types import (
     UNKNOWN,
     Array,
     EmptyArray,
+    ScalarKind,
     Struct,
     Type,
     Unknown,
@@ -215,7 +217,7 @@ def constant(expr: Expr) -> int | float | None:
             return None if value is None else -value
         case Unary(operator=UnaryOperator.PLUS):
             return constant(expr.operand)
-        case Binary() if expr.operator.kind == "arithmetic":
+        case Binary() if expr.operator.kind is OperatorKind.ARITHMETIC:
             left, right = constant(expr.left), constant(expr.right)
             if left is None or right is None:
                 return None
@@ -301,7 +303,7 @@ class _Inference:
         if not expr.name or (isinstance(inner, Unknown) and not (bounds and expr.name == "length")):
             return UNKNOWN
         if expr.name == "length" and (bounds or not (isinstance(inner, Struct) and inner.member("length"))):
-            if bounds or is_kind(owner, "string") or isinstance(owner, EmptyArray):
+            if bounds or is_kind(owner, ScalarKind.STRING) or isinstance(owner, EmptyArray):
                 return INT
             if isinstance(inner, Struct):
                 self.problems.append(LengthOfStruct(expr.name_span, inner))
@@ -317,11 +319,11 @@ class _Inference:
         indexed, index = self.type_of(expr.object), self.type_of(expr.index)
         if isinstance(indexed, Unknown):
             return UNKNOWN
-        is_string = is_kind(indexed, "string")
+        is_string = is_kind(indexed, ScalarKind.STRING)
         if not (isinstance(indexed, Array) or is_string):
             self.problems.append(BadIndex(expr.span, indexed, index))
             return UNKNOWN
-        if not (isinstance(index, Unknown) or is_kind(index, "int")):
+        if not (isinstance(index, Unknown) or is_kind(index, ScalarKind.INT)):
             self.problems.append(BadIndex(expr.index.span, indexed, index))
         elif isinstance(indexed, Array):
             value = constant(expr.index)
@@ -331,12 +333,12 @@ class _Inference:
 
     def binary(self, expr: Binary) -> Type:
         operator = expr.operator
-        if operator.kind == "logical":
+        if operator.kind is OperatorKind.LOGICAL:
             self.operand(expr.left, operator.symbol, BOOL)
             self.operand(expr.right, operator.symbol, BOOL)
             return BOOL
         left, right = self.type_of(expr.left), self.type_of(expr.right)
-        if operator.kind == "equality":
+        if operator.kind is OperatorKind.EQUALITY:
             self.equality(expr, left, right)
             return BOOL
         good = True
@@ -344,14 +346,14 @@ class _Inference:
             if not (isinstance(type_, Unknown) or is_number(type_)):
                 self.problems.append(BadOperand(operand.span, operator.symbol, type_, REAL))
                 good = False
-        if operator.kind == "order":
+        if operator.kind is OperatorKind.ORDER:
             return BOOL
         if not good or isinstance(left, Unknown) or isinstance(right, Unknown):
             return UNKNOWN
         return self.arithmetic(expr, left, right)
 
     def arithmetic(self, expr: Binary, left: Type, right: Type) -> Type:
-        both_int = is_kind(left, "int") and is_kind(right, "int")
+        both_int = is_kind(left, ScalarKind.INT) and is_kind(right, ScalarKind.INT)
         if expr.operator in (Operator.DIVIDE, Operator.REMAINDER) and constant(expr.right) == 0:
             self.problems.append(DivisionByZero(expr.right.span))
         elif expr.operator is Operator.DIVIDE and both_int:
@@ -380,7 +382,7 @@ class _Inference:
         if not is_number(type_):
             self.problems.append(BadOperand(expr.operand.span, expr.operator.symbol, type_, REAL))
             return UNKNOWN
-        return INT if is_kind(type_, "int") else REAL
+        return INT if is_kind(type_, ScalarKind.INT) else REAL
 
     def call(self, expr: Call) -> Type:
         arguments = [self.type_of(argument) for argument in expr.arguments]
@@ -401,11 +403,17 @@ class _Inference:
         for type_, argument in zip(arguments, expr.arguments, strict=True):
             if not (isinstance(type_, Unknown) or is_number(type_)):
                 self.problems.append(BadOperand(argument.span, f"Math.{function.name}", type_, REAL))
-        if function.result == "same":
-            if not arguments or not all(map(is_number, arguments)):
-                return UNKNOWN
-            return INT if all(is_kind(type_, "int") for type_ in arguments) else REAL
-        return INT if function.result == "int" else REAL
+        match function.result:
+            case FunctionResult.INT:
+                return INT
+            case FunctionResult.REAL:
+                return REAL
+            case FunctionResult.AS_ARGUMENTS:
+                if not arguments or not all(map(is_number, arguments)):
+                    return UNKNOWN
+                return INT if all(is_kind(type_, ScalarKind.INT) for type_ in arguments) else REAL
+            case _:
+                return assert_never(function.result)
 
     def array(self, expr: ArrayLiteral) -> Type:
         if not expr.elements:

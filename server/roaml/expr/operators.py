@@ -10,25 +10,36 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from roaml.exhaustive import Vocabulary
+
+
+class OperatorKind(Vocabulary):
+    """The kind of a binary operator, which determines the types of its operands and of its result."""
+
+    LOGICAL = "logical"
+    EQUALITY = "equality"
+    ORDER = "order"
+    ARITHMETIC = "arithmetic"
+
 
 class Operator(enum.Enum):
     """A binary operator: its spelling, its precedence (greater binds tighter) and its kind."""
 
-    OR = ("||", 1, "logical")
-    AND = ("&&", 2, "logical")
-    EQUAL = ("==", 3, "equality")
-    NOT_EQUAL = ("!=", 3, "equality")
-    LESS = ("<", 4, "order")
-    LESS_EQUAL = ("<=", 4, "order")
-    GREATER = (">", 4, "order")
-    GREATER_EQUAL = (">=", 4, "order")
-    ADD = ("+", 5, "arithmetic")
-    SUBTRACT = ("-", 5, "arithmetic")
-    MULTIPLY = ("*", 6, "arithmetic")
-    DIVIDE = ("/", 6, "arithmetic")
-    REMAINDER = ("%", 6, "arithmetic")
+    OR = ("||", 1, OperatorKind.LOGICAL)
+    AND = ("&&", 2, OperatorKind.LOGICAL)
+    EQUAL = ("==", 3, OperatorKind.EQUALITY)
+    NOT_EQUAL = ("!=", 3, OperatorKind.EQUALITY)
+    LESS = ("<", 4, OperatorKind.ORDER)
+    LESS_EQUAL = ("<=", 4, OperatorKind.ORDER)
+    GREATER = (">", 4, OperatorKind.ORDER)
+    GREATER_EQUAL = (">=", 4, OperatorKind.ORDER)
+    ADD = ("+", 5, OperatorKind.ARITHMETIC)
+    SUBTRACT = ("-", 5, OperatorKind.ARITHMETIC)
+    MULTIPLY = ("*", 6, OperatorKind.ARITHMETIC)
+    DIVIDE = ("/", 6, OperatorKind.ARITHMETIC)
+    REMAINDER = ("%", 6, OperatorKind.ARITHMETIC)
 
-    def __init__(self, symbol: str, precedence: int, kind: str) -> None:
+    def __init__(self, symbol: str, precedence: int, kind: OperatorKind) -> None:
         self.symbol = symbol
         self.precedence = precedence
         self.kind = kind
@@ -51,20 +62,28 @@ CONDITIONAL_PRECEDENCE = 0
 UNARY_PRECEDENCE = 7
 
 
+class FunctionResult(Vocabulary):
+    """The type of the result of a function, in the words of hover texts."""
+
+    INT = "int"
+    REAL = "float"
+    AS_ARGUMENTS = "int or float"
+    """Real if any argument is real, otherwise int."""
+
+
 @dataclass(frozen=True, slots=True)
 class Function:
     """A function of `Math`.
 
     Attributes:
         parameters: their names, in order.
-        result: `int`, `real`, or `same` (real if any argument is real, otherwise int).
         documentation: a description of the result.
         optional: the number of parameters at the end that may be omitted.
     """
 
     name: str
     parameters: tuple[str, ...]
-    result: str
+    result: FunctionResult
     documentation: str
     optional: int = 0
 
@@ -76,23 +95,27 @@ class Function:
 FUNCTIONS = {
     function.name: function
     for function in (
-        Function("abs", ("x",), "same", "The absolute value of x."),
-        Function("ceil", ("x",), "int", "The smallest integer that is not less than x."),
-        Function("cos", ("x",), "real", "The cosine of x, x in radians."),
-        Function("floor", ("x",), "int", "The greatest integer that is not greater than x."),
+        Function("abs", ("x",), FunctionResult.AS_ARGUMENTS, "The absolute value of x."),
+        Function("ceil", ("x",), FunctionResult.INT, "The smallest integer that is not less than x."),
+        Function("cos", ("x",), FunctionResult.REAL, "The cosine of x, x in radians."),
+        Function("floor", ("x",), FunctionResult.INT, "The greatest integer that is not greater than x."),
         Function(
-            "log", ("x", "base"), "real", "The logarithm of x to a base; the default is the natural logarithm.", 1
+            "log",
+            ("x", "base"),
+            FunctionResult.REAL,
+            "The logarithm of x to a base; the default is the natural logarithm.",
+            1,
         ),
-        Function("max", ("a", "b"), "same", "The greater of a and b."),
-        Function("min", ("a", "b"), "same", "The lesser of a and b."),
-        Function("pow", ("x", "y"), "real", "x to the power of y."),
+        Function("max", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The greater of a and b."),
+        Function("min", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The lesser of a and b."),
+        Function("pow", ("x", "y"), FunctionResult.REAL, "x to the power of y."),
         Function(
             "random",
             (),
-            "real",
+            FunctionResult.REAL,
             "One of 0.00, 0.01, …, 0.99, each equally probable; `<random_values>` of the system can "
             "increase their number. Only allowed where a value is stored.",
         ),
-        Function("sin", ("x",), "real", "The sine of x, x in radians."),
+        Function("sin", ("x",), FunctionResult.REAL, "The sine of x, x in radians."),
     )
 }

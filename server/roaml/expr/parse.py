@@ -17,6 +17,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix
+from roaml.exhaustive import Vocabulary
 from roaml.expr.operators import BINARY, UNARY, UNARY_PRECEDENCE, Operator, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
@@ -49,10 +50,21 @@ SYNTAX = "expression-syntax"
 UNSUPPORTED = "unsupported-expression"
 
 
-class ExpressionToken(NamedTuple):
-    """`kind` is number, string, name, punctuator, template or junk; `start` and `end` index the decoded text."""
+class ExpressionTokenKind(Vocabulary):
+    """The values are the names of groups in `_TOKEN`."""
 
-    kind: str
+    NUMBER = "number"
+    NAME = "name"
+    STRING = "string"
+    TEMPLATE = "template"
+    PUNCTUATOR = "punctuator"
+    JUNK = "junk"
+
+
+class ExpressionToken(NamedTuple):
+    """`start` and `end` index the decoded text."""
+
+    kind: ExpressionTokenKind
     text: str
     start: int
     end: int
@@ -109,16 +121,17 @@ _CLOSERS = frozenset((")", "]", "}"))
 _OPENERS = frozenset(("(", "[", "{"))
 _PRIMARY = (Call, Index, Member, Name, Number)
 """Expressions that need no parentheses in any context."""
-_OPERAND_KINDS = frozenset(("number", "string", "name", "template"))
+_KINDS = {kind.value: kind for kind in ExpressionTokenKind}
+_OPERAND_KINDS = frozenset(ExpressionTokenKind) - {ExpressionTokenKind.PUNCTUATOR, ExpressionTokenKind.JUNK}
 
 
 def tokens(text: str) -> list[ExpressionToken]:
     """The tokens of an expression; together with white space they cover the whole text."""
     text_tokens = []
     for match in _TOKEN.finditer(text, 0, len(text.rstrip())):
-        kind = match.lastgroup or "junk"
-        start, end = match.span(kind)
-        text_tokens.append(ExpressionToken(kind, match[kind], start, end))
+        group = match.lastgroup or "junk"
+        start, end = match.span(group)
+        text_tokens.append(ExpressionToken(_KINDS[group], match[group], start, end))
     return text_tokens
 
 
@@ -219,14 +232,14 @@ class _Parser:
         self.deeper()
         left = self.operand()
         while (token := self.peek()) is not None:
-            if token.kind == "punctuator":
+            if token.kind is ExpressionTokenKind.PUNCTUATOR:
                 operator = BINARY.get(token.text)
             else:
-                operator = _WORD_OPERATORS.get(token.text.lower()) if token.kind == "name" else None
+                operator = _WORD_OPERATORS.get(token.text.lower()) if token.kind is ExpressionTokenKind.NAME else None
             if operator is not None:
                 if operator.precedence < precedence:
                     break
-                if token.kind == "name":
+                if token.kind is ExpressionTokenKind.NAME:
                     self.written(token, operator.symbol)
                 self.at += 1
                 self.deeper()
@@ -273,7 +286,7 @@ class _Parser:
         if token is None:
             return self.missing("a value")
         first = self.at
-        if token.kind == "punctuator" and token.text in UNARY:
+        if token.kind is ExpressionTokenKind.PUNCTUATOR and token.text in UNARY:
             self.at += 1
             operand = self.expression(UNARY_PRECEDENCE)
             return Unary(self.since(first), UNARY[token.text], operand)
@@ -281,7 +294,11 @@ class _Parser:
 
     def postfix(self, expr: Expr, first: int) -> Expr:
         """Parse what follows an operand that begins with token `first`."""
-        while (token := self.peek()) is not None and token.text in _POSTFIX and token.kind == "punctuator":
+        while (
+            (token := self.peek()) is not None
+            and token.text in _POSTFIX
+            and token.kind is ExpressionTokenKind.PUNCTUATOR
+        ):
             self.at += 1
             self.deeper()
             if token.text == ".":
@@ -301,7 +318,7 @@ class _Parser:
 
     def member(self, expr: Expr, first: int, dot: ExpressionToken) -> Expr:
         name = self.peek()
-        if name is not None and name.kind == "name":
+        if name is not None and name.kind is ExpressionTokenKind.NAME:
             self.at += 1
             return Member(self.since(first), expr, name.text, self.span(name))
         end = self.span(dot).end
@@ -310,13 +327,13 @@ class _Parser:
 
     def primary(self, token: ExpressionToken) -> Expr:
         span = self.span(token)
-        if token.kind == "name":
+        if token.kind is ExpressionTokenKind.NAME:
             self.at += 1
             return self.word(token, span)
-        if token.kind == "number":
+        if token.kind is ExpressionTokenKind.NUMBER:
             self.at += 1
             return self.number(token, span)
-        if token.kind == "string":
+        if token.kind is ExpressionTokenKind.STRING:
             self.at += 1
             return String(span, _string_value(token.text[1:-1]))
         if token.text == "(":
@@ -357,7 +374,7 @@ class _Parser:
 
     def no_operand(self, token: ExpressionToken, span: Span) -> Expr:
         self.deeper()
-        if token.kind == "template":
+        if token.kind is ExpressionTokenKind.TEMPLATE:
             self.at += 1
             self.report(span, "template strings are not supported; write the string in single quotes", UNSUPPORTED)
         elif token.text == "~" or token.text in _STEPS:
@@ -365,7 +382,7 @@ class _Parser:
             hint = _BITS if token.text == "~" else "use `<assign>` to change a variable"
             self.report(span, f"`{token.text}` is not supported: {hint}", UNSUPPORTED)
             return self.operand()
-        elif token.kind == "junk":
+        elif token.kind is ExpressionTokenKind.JUNK:
             self.at += 1
             if token.text[0] in "\"'":
                 return self.unclosed_string(token, span)
@@ -384,7 +401,7 @@ class _Parser:
         for at in range(self.at + 1, len(self.tokens)):
             if self.tokens[at].text == "/":
                 flags = at + 1 < len(self.tokens) and self.tokens[at + 1].start == self.tokens[at].end
-                return at + 2 if flags and self.tokens[at + 1].kind == "name" else at + 1
+                return at + 2 if flags and self.tokens[at + 1].kind is ExpressionTokenKind.NAME else at + 1
         return 0
 
     def unclosed_string(self, token: ExpressionToken, span: Span) -> Expr:
@@ -397,7 +414,7 @@ class _Parser:
 
     def number(self, token: ExpressionToken, span: Span) -> Expr:
         following = self.peek()
-        if following is not None and following.kind == "name" and following.start == token.end:
+        if following is not None and following.kind is ExpressionTokenKind.NAME and following.start == token.end:
             self.at += 1
             self.report(self.span(following), f"`{token.text}{following.text}` is neither a number nor a name")
         value = _number_value(token.text)
@@ -421,11 +438,11 @@ class _Parser:
         first = self.at
         self.at += 1
         while (key := self.peek()) is not None and key.text != "}":
-            if key.kind not in ("string", "name", "number"):
+            if key.kind not in (ExpressionTokenKind.STRING, ExpressionTokenKind.NAME, ExpressionTokenKind.NUMBER):
                 self.report(self.span(key), "a member name in quotes is missing")
                 break
             self.at += 1
-            name = key.text[1:-1] if key.kind == "string" else key.text
+            name = key.text[1:-1] if key.kind is ExpressionTokenKind.STRING else key.text
             if not self.accept(":"):
                 self.report(self.span(key), f"`:` and a value are missing after `{key.text}`")
                 value: Expr = ErrorExpr(Span(self.span(key).end, self.span(key).end))
@@ -444,7 +461,7 @@ class _Parser:
 
     def accept(self, text: str) -> bool:
         token = self.peek()
-        if token is not None and token.text == text and token.kind == "punctuator":
+        if token is not None and token.text == text and token.kind is ExpressionTokenKind.PUNCTUATOR:
             self.at += 1
             return True
         return False

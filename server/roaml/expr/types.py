@@ -13,16 +13,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.exhaustive import Vocabulary
+
+
+class ScalarKind(Vocabulary):
+    BOOL = "bool"
+    INT = "int"
+    REAL = "real"
+    STRING = "string"
+
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A base type. `kind` is bool, int, real or string; `name` is its spelling, "" for the type of a literal."""
+    """A base type; `name` is its spelling, "" for the type of a literal."""
 
-    kind: str
+    kind: ScalarKind
     name: str = ""
 
     def __str__(self) -> str:
-        return self.name or {"real": "float"}.get(self.kind, self.kind)
+        return self.name or ("float" if self.kind is ScalarKind.REAL else str(self.kind))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +102,10 @@ class Unknown:
 
 Type: TypeAlias = Scalar | Array | Struct | EmptyArray | Unknown
 
-BOOL = Scalar("bool", "bool")
-INT = Scalar("int")
-REAL = Scalar("real")
-STRING = Scalar("string", "string")
+BOOL = Scalar(ScalarKind.BOOL, "bool")
+INT = Scalar(ScalarKind.INT)
+REAL = Scalar(ScalarKind.REAL)
+STRING = Scalar(ScalarKind.STRING, "string")
 UNKNOWN = Unknown()
 EMPTY_ARRAY = EmptyArray()
 
@@ -107,9 +116,9 @@ INTEGER_RANGES = {f"int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16
 
 BASE_TYPES: dict[str, Scalar] = {
     "bool": BOOL,
-    **{name: Scalar("int", name) for name in INTEGER_RANGES},
-    "float32": Scalar("real", "float32"),
-    "float64": Scalar("real", "float64"),
+    **{name: Scalar(ScalarKind.INT, name) for name in INTEGER_RANGES},
+    "float32": Scalar(ScalarKind.REAL, "float32"),
+    "float64": Scalar(ScalarKind.REAL, "float64"),
     "string": STRING,
 }
 
@@ -174,11 +183,11 @@ def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[st
 
 
 def is_number(type_: Type) -> bool:
-    return isinstance(type_, Scalar) and type_.kind in ("int", "real")
+    return isinstance(type_, Scalar) and type_.kind in (ScalarKind.INT, ScalarKind.REAL)
 
 
-def is_kind(type_: Type, kind: str) -> bool:
-    return isinstance(type_, Scalar) and type_.kind == kind
+def is_kind(type_: Type, kind: ScalarKind) -> bool:
+    return isinstance(type_, Scalar) and type_.kind is kind
 
 
 def fits(value: Type, target: Type) -> bool:
@@ -191,7 +200,7 @@ def fits(value: Type, target: Type) -> bool:
         case (Unknown(), _) | (_, Unknown()):
             return True
         case Scalar(kind=given), Scalar(kind=required):
-            return given == required or (given == "int" and required == "real")
+            return given is required or (given is ScalarKind.INT and required is ScalarKind.REAL)
         case EmptyArray(), Array() | EmptyArray():
             return True
         case Array(element=given), Array(element=required):
@@ -224,5 +233,5 @@ def same_kind(left: Type, right: Type) -> bool:
         case Array(), Array():
             return same_kind(left.element, right.element)
         case Scalar(), Scalar():
-            return left.kind == right.kind
+            return left.kind is right.kind
     return False

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from roaml.expr.format import format_expr
 from roaml.expr.tree import ArrayLiteral, Boolean, Expr, Number, ObjectLiteral, ObjectMember, String
-from roaml.expr.types import Array, EmptyArray, Struct, Type, is_kind
+from roaml.expr.types import Array, EmptyArray, ScalarKind, Struct, Type, is_kind
 from roaml.text import Span
 
 _NOWHERE = Span(0, 0)
@@ -19,11 +19,11 @@ def zero(type_: Type) -> Expr:
         return ObjectLiteral(_NOWHERE, tuple(members))
     if isinstance(type_, (Array, EmptyArray)):
         return ArrayLiteral(_NOWHERE, ())
-    if is_kind(type_, "bool"):
+    if is_kind(type_, ScalarKind.BOOL):
         return Boolean(_NOWHERE, False)
-    if is_kind(type_, "string"):
+    if is_kind(type_, ScalarKind.STRING):
         return String(_NOWHERE, "")
-    return Number(_NOWHERE, 0, is_kind(type_, "real"))
+    return Number(_NOWHERE, 0, is_kind(type_, ScalarKind.REAL))
 
 
 def zero_text(type_: Type) -> str:

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from roaml.forest.forest import Forest
 from roaml.model.tree import TreeNode
+from roaml.roles import NodeKind
 
 S, F, R, K = "SUCCESS", "FAILURE", "RUNNING", "SKIPPED"
 ANYTHING = frozenset((S, F, R, K))
@@ -90,7 +91,7 @@ class Possible:
             return _in_turn(below, S, F) | ({R} if name.startswith("Async") else frozenset())
         if name in _FALLBACKS:
             return _in_turn(below, F, S) | ({R} if name.startswith("Async") else frozenset())
-        if known.kind.value == "decorator":
+        if known.kind is NodeKind.DECORATOR:
             return self._decorator(node, name, below[0] if len(below) == 1 else ANYTHING)
         if name in ("AlwaysSuccess", "Script", "UnsetBlackboard"):
             return frozenset((S,))
@@ -98,9 +99,9 @@ class Possible:
             return frozenset((F,))
         if name == "Sleep":
             return frozenset((S, R))
-        if known.kind.value == "condition" or known.running is False:
+        if known.kind is NodeKind.CONDITION or known.running is False:
             return frozenset((S, F))
-        return ANYTHING - {K} if known.kind.value == "action" else ANYTHING
+        return ANYTHING - {K} if known.kind is NodeKind.ACTION else ANYTHING
 
     def _decorator(self, node: TreeNode, name: str, child: Answers) -> Answers:
         match name:

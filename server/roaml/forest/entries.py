@@ -17,8 +17,8 @@ from typing import TypeAlias
 from roaml.forest.cpp_types import ANY, SCRIPT
 from roaml.forest.forest import Forest, port_type, ports_of
 from roaml.forest.scripts import names_in, scripts_of
-from roaml.libraries import Direction
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
+from roaml.roles import Direction
 from roaml.text import Span
 
 ROOT = ""

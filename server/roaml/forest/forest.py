@@ -13,9 +13,10 @@ from functools import cached_property
 
 from roaml.forest.cpp_types import normal
 from roaml.forest.settings import TreeSettings
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Direction, Library, Node, NodeKind, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, PortSetting, Tree, TreeFile, TreeNode, nodes
+from roaml.roles import NodeKind
 
 CPP = library(BEHAVIORTREE_CPP)
 
@@ -192,7 +193,7 @@ def node_of(model: NodeModel) -> Node:
     ports = tuple(
         Port(
             port.name.value,
-            Direction(port.direction) if port.direction in _DIRECTIONS else Direction.INOUT,
+            port.direction,
             port.type,
             port.default,
             kind is NodeKind.SUBTREE and port.default is None,
@@ -205,7 +206,6 @@ def node_of(model: NodeModel) -> Node:
 
 
 _KINDS = frozenset(kind.value for kind in NodeKind)
-_DIRECTIONS = frozenset(direction.value for direction in Direction)
 
 
 def ports_of(node: TreeNode) -> Iterator[PortSetting]:

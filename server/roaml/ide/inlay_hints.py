@@ -34,7 +34,7 @@ from roaml.model.machine import (
     bodies,
     statements,
 )
-from roaml.model.property_file import NODE
+from roaml.model.property_file import PortKind
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree import TreeNode, nodes
@@ -387,7 +387,7 @@ def _property_file(analysis: Analysis, path: str, system: System | None) -> Iter
     """The nodes that ports name, and the names of compared numbers."""
     file = analysis.property_file(path)
     for port in file.ports if file is not None and system is not None else ():
-        nodes_ = nodes_called(system, port.name.value) if system and port.kind == NODE and port.name else ()
+        nodes_ = nodes_called(system, port.name.value) if system and port.kind is PortKind.NODE and port.name else ()
         if system is not None and port.name is not None and len(nodes_) == 1:
             symbol = Symbol(system.path, SymbolKind.TREE_INSTANCE, str(nodes_[0].number))
             parts = (InlayHintLabelPart(" "), InlayHintLabelPart(label_of(system, nodes_[0]), symbol))

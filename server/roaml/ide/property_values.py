@@ -11,7 +11,7 @@ from roaml.expr.tree import Binary, Expr, Name, Number, walk
 from roaml.ide.json_tree import members, values
 from roaml.jani.operators import BINARY_OPERATORS
 from roaml.json_syntax import JsonNumber, JsonString, JsonValue
-from roaml.model.property_file import NODE, RESULT_CODE, STATE, Port, PortVariable, PropertyFile
+from roaml.model.property_file import Port, PortKind, PortVariable, PortVariableKind, PropertyFile
 from roaml.model.value_types import GOAL_STATUSES
 from roaml.scxml.names import STATUSES
 
@@ -33,9 +33,9 @@ _COMPARING = frozenset(
 
 def names_of_port(port: Port, variable: PortVariable) -> Mapping[int, str]:
     """The names of the values of a variable; empty if they have none."""
-    if port.kind == NODE and variable.kind == STATE:
+    if port.kind is PortKind.NODE and variable.kind is PortVariableKind.STATE:
         return _STATUS_NAMES
-    return GOAL_STATUSES if variable.kind == RESULT_CODE else {}
+    return GOAL_STATUSES if variable.kind is PortVariableKind.RESULT_CODE else {}
 
 
 def names_of_global(variable: str) -> Mapping[int, str]:

@@ -15,6 +15,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from roaml.expr import parse as expr
+from roaml.expr.parse import ExpressionTokenKind
 from roaml.ide.json_tree import values
 from roaml.ide.syntax import Typed, XmlFile, expression_sources, walk, xml_file
 from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, Member
@@ -23,7 +24,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.syntax import name_of
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import NodeKind, SymbolKind, ValueRole
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Attribute
 
@@ -128,7 +129,9 @@ def _tag_kind(file: XmlFile, typed: Typed) -> TokenKind | None:
     """The token type of a tag; `None` for unknown tags. In trees an unknown tag names a plugin."""
     element, type_ = typed
     if file.grammar is BEHAVIOR_TREE:
-        return _NODES.get(type_.node, TokenKind.STRUCTURE_TAG) if type_ else TokenKind.LEAF_TAG
+        if type_ is None:
+            return TokenKind.LEAF_TAG
+        return _NODES[type_.node] if type_.node else TokenKind.STRUCTURE_TAG
     if type_ is None:
         return None
     if any(attribute.defines is SymbolKind.STATE for attribute in type_.attributes.values()):
@@ -141,11 +144,11 @@ def _tag_kind(file: XmlFile, typed: Typed) -> TokenKind | None:
 
 
 _NODES = {
-    "control": TokenKind.CONTROL_TAG,
-    "decorator": TokenKind.DECORATOR_TAG,
-    "action": TokenKind.LEAF_TAG,
-    "condition": TokenKind.LEAF_TAG,
-    "subtree": TokenKind.SUBTREE_TAG,
+    NodeKind.CONTROL: TokenKind.CONTROL_TAG,
+    NodeKind.DECORATOR: TokenKind.DECORATOR_TAG,
+    NodeKind.ACTION: TokenKind.LEAF_TAG,
+    NodeKind.CONDITION: TokenKind.LEAF_TAG,
+    NodeKind.SUBTREE: TokenKind.SUBTREE_TAG,
 }
 
 _SYMBOLS = {
@@ -168,11 +171,11 @@ _SYMBOLS = {
     ),
 }
 _VALUES = {
-    "type": TokenKind.TYPE,
-    "ros-type": TokenKind.TYPE,
-    "number": TokenKind.NUMBER,
-    "child-index": TokenKind.NUMBER,
-    "status": TokenKind.CONSTANT,
+    ValueRole.TYPE: TokenKind.TYPE,
+    ValueRole.ROS_TYPE: TokenKind.TYPE,
+    ValueRole.NUMBER: TokenKind.NUMBER,
+    ValueRole.CHILD_INDEX: TokenKind.NUMBER,
+    ValueRole.STATUS: TokenKind.CONSTANT,
 }
 
 
@@ -185,7 +188,7 @@ def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> 
         yield SemanticToken(name.span, TokenKind.VARIABLE)
     elif known is not None:
         symbol = known.defines or next(iter(known.refers), None)
-        kind = (_SYMBOLS.get(symbol) if symbol else None) or _VALUES.get(known.value)
+        kind = (_SYMBOLS.get(symbol) if symbol else None) or (_VALUES.get(known.value) if known.value else None)
         if kind is not None:
             yield SemanticToken(name.span, kind, _modifiers(declaration=bool(known.defines)))
 
@@ -213,17 +216,17 @@ def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
     for i, token in enumerate(tokens):
         before = tokens[i - 1].text if i else ""
         after = tokens[i + 1].text if i + 1 < len(tokens) else ""
-        kind = _word(token.text, before, after) if token.kind == "name" else _OTHERS.get(token.kind)
+        kind = _word(token.text, before, after) if token.kind is ExpressionTokenKind.NAME else _OTHERS.get(token.kind)
         if kind is not None and not (kind is TokenKind.OPERATOR and token.text in _PUNCTUATION):
             words.append((token.start, token.end, kind))
     return tuple(words)
 
 
 _OTHERS = {
-    "number": TokenKind.NUMBER,
-    "string": TokenKind.STRING,
-    "template": TokenKind.STRING,
-    "punctuator": TokenKind.OPERATOR,
+    ExpressionTokenKind.NUMBER: TokenKind.NUMBER,
+    ExpressionTokenKind.STRING: TokenKind.STRING,
+    ExpressionTokenKind.TEMPLATE: TokenKind.STRING,
+    ExpressionTokenKind.PUNCTUATOR: TokenKind.OPERATOR,
 }
 _PUNCTUATION = frozenset("()[]{},.;")
 _LITERALS = frozenset(("true", "false", "null", "undefined"))

@@ -10,10 +10,11 @@ from roaml.language import ElementType, Grammar
 from roaml.model.kinds import GRAMMARS
 from roaml.model.syntax import Expression, expression_from
 from roaml.project.analysis import Analysis
+from roaml.roles import ValueRole
 from roaml.text import Decoded
 from roaml.xml_syntax import Document, Element
 
-_EXPRESSIONS = ("expression", "location", "constant")
+_EXPRESSIONS = (ValueRole.EXPRESSION, ValueRole.LOCATION, ValueRole.CONSTANT)
 
 
 class XmlFile(NamedTuple):

@@ -17,8 +17,7 @@ from typing import Any
 from lxml import etree
 
 from roaml.language.resources import schema_path
-from roaml.libraries import UNBOUNDED
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValueRole
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
@@ -51,7 +50,6 @@ class PortType:
     """A port of a tree node.
 
     Attributes:
-        direction: "in" or "out".
         type: a base type or "any".
         required: whether it must be set.
         default: its value if it is not set.
@@ -59,7 +57,7 @@ class PortType:
         alias_of: the port of which this is another name, or "".
     """
 
-    direction: str
+    direction: Direction
     type: str
     required: bool
     default: str = ""
@@ -74,8 +72,7 @@ class AttributeType:
     Attributes:
         defines: kind of symbol that the value names first, if any.
         refers: kinds of symbols that the value may name.
-        value: the kind of any other value (expression, constant, location, type, ros-type, path, number, status,
-            child-index, script), or "".
+        value: the role of any other value.
         value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
         ignored: whether no rule reports that the attribute has no effect; `None` if it has an effect.
         use: the successor, if the attribute is deprecated.
@@ -88,7 +85,7 @@ class AttributeType:
     simple: SimpleType = SimpleType()
     defines: SymbolKind | None = None
     refers: tuple[SymbolKind, ...] = ()
-    value: str = ""
+    value: ValueRole | None = None
     value_type: str = ""
     ignored: bool | None = None
     use: str = ""
@@ -125,7 +122,7 @@ class ElementType:
         code: the corresponding result code, or 0.
         ignored: whether it has no effect on the model.
         use: the successor, if the element is deprecated.
-        node: control, decorator, action, condition or subtree, or "".
+        node: the kind of a node of a tree.
         translated: false for tree nodes that are known but cannot be translated.
     """
 
@@ -139,7 +136,7 @@ class ElementType:
     any_attribute: bool = False
     text: bool = False
     refers: tuple[SymbolKind, ...] = ()
-    value: str = ""
+    value: ValueRole | None = None
     value_type: str = ""
     sends: ProtocolPart | None = None
     receives: ProtocolPart | None = None
@@ -147,7 +144,7 @@ class ElementType:
     binds: tuple[Binding, ...] = ()
     ignored: bool = False
     use: str = ""
-    node: str = ""
+    node: NodeKind | None = None
     translated: bool = True
 
     @property
@@ -234,6 +231,7 @@ SYSTEM = Grammar("roaml.xsd", ("roaml", "convince_mc_tc"), "system file")
 XML_PROPERTIES = Grammar("properties.xsd", ("properties",), "properties in XML")
 STRUCTS = Grammar("structs.xsd", ("types",), "struct declarations")
 BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
+XML_GRAMMARS = (HL_SCXML, PLAIN_SCXML, SYSTEM, XML_PROPERTIES, STRUCTS, BEHAVIOR_TREE)
 
 
 @dataclass
@@ -288,7 +286,7 @@ class _Reader:
             shape.any_attribute,
             shape.text,
             refers=_symbols(roles.get("refers")),
-            value=value.get("is", ""),
+            value=_value_role(value),
             value_type=value.get("type", ""),
             sends=_part(roles.get("sends")),
             receives=_part(roles.get("receives")),
@@ -296,7 +294,7 @@ class _Reader:
             binds=tuple(Binding(r["name"], r.get("only", "")) for kind, r in _roles(node) if kind == "binds"),
             ignored=ignored is not None,
             use=deprecated["use"] if deprecated else "",
-            node=tree_node.get("kind", ""),
+            node=NodeKind(kind) if (kind := tree_node.get("kind")) else None,
             translated=tree_node.get("translated") != "false",
         )
 
@@ -351,7 +349,7 @@ class _Reader:
             self.simple(node),
             defines=next(iter(_symbols(roles.get("defines"))), None),
             refers=_symbols(roles.get("refers")),
-            value=value.get("is", ""),
+            value=_value_role(value),
             value_type=value.get("type", value.get("kind", "")),
             ignored=None if ignored is None else ignored.get("quietly") == "true",
             use=roles.get("deprecated", {}).get("use", ""),
@@ -421,7 +419,11 @@ def _number(text: str | None) -> float | None:
     return None if text is None else float(text)
 
 
+def _value_role(role: Mapping[str, str]) -> ValueRole | None:
+    return ValueRole(role["is"]) if role else None
+
+
 def _port(role: Mapping[str, str]) -> PortType:
     required, constant = (role.get(key) == "true" for key in ("required", "constant"))
     default, alias_of = role.get("default", ""), role.get("alias-of", "")
-    return PortType(role["direction"], role["type"], required, default, constant, alias_of)
+    return PortType(Direction(role["direction"]), role["type"], required, default, constant, alias_of)

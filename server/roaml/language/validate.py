@@ -20,7 +20,7 @@ from lxml import etree
 
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
-from roaml.libraries import UNBOUNDED
+from roaml.roles import UNBOUNDED
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
 from roaml.xml_syntax.escapes import replace_forbidden

@@ -13,17 +13,15 @@ from typing import Any
 
 from lxml import etree
 
-from roaml.libraries.node import UNBOUNDED, Absent, Direction, Library, Node, NodeKind, Port, Renamed
+from roaml.libraries.node import Absent, Library, Node, Port, Renamed
+from roaml.roles import UNBOUNDED, Direction, NodeKind
 
 __all__ = [
     "BEHAVIORTREE_CPP",
     "LIBRARIES",
-    "UNBOUNDED",
     "Absent",
-    "Direction",
     "Library",
     "Node",
-    "NodeKind",
     "Port",
     "Renamed",
     "library",
@@ -90,7 +88,7 @@ def _port(element: Any) -> Port:
         _text(element),
         element.get("alias-of", ""),
         element.get("system-type", ""),
-        element.get("system-direction", ""),
+        Direction(direction) if (direction := element.get("system-direction")) else None,
         element.get("system-constant") == "true",
     )
 

@@ -3,45 +3,11 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-UNBOUNDED = 1_000_000
-
-
-class NodeKind(enum.Enum):
-    CONTROL = "control"
-    DECORATOR = "decorator"
-    ACTION = "action"
-    CONDITION = "condition"
-    SUBTREE = "subtree"
-
-    @property
-    def children(self) -> tuple[int, int]:
-        """The minimum and maximum number of children of a node of this kind."""
-        match self:
-            case NodeKind.CONTROL:
-                return (1, UNBOUNDED)
-            case NodeKind.DECORATOR:
-                return (1, 1)
-            case NodeKind.ACTION | NodeKind.CONDITION | NodeKind.SUBTREE:
-                return (0, 0)
-
-
-class Direction(enum.Enum):
-    IN = "in"
-    OUT = "out"
-    INOUT = "inout"
-
-    @property
-    def reads(self) -> bool:
-        return self is not Direction.OUT
-
-    @property
-    def writes(self) -> bool:
-        return self is not Direction.IN
+from roaml.roles import Direction, NodeKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +30,7 @@ class Port:
     text: str = ""
     alias_of: str = ""
     system_type: str = ""
-    system_direction: str = ""
+    system_direction: Direction | None = None
     system_constant: bool = False
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from roaml.expr.parse import parse
 from roaml.expr.tree import Boolean, Expr, String
-from roaml.expr.types import STRING, UNKNOWN, Type, is_kind, resolve_type
+from roaml.expr.types import STRING, UNKNOWN, ScalarKind, Type, is_kind, resolve_type
 from roaml.lower.data import as_type
 from roaml.lower.expressions import LoweringScope
 from roaml.lower.program import TranslatableSystem
@@ -103,7 +103,7 @@ def literal(text: str, type_: Type, span: Span) -> Expr:
     """A port's text as a value of its type; strings need no quotes (docs/spec/trees.md#port-values)."""
     if type_ in (STRING, UNKNOWN):
         return String(span, text)
-    if is_kind(type_, "bool"):
+    if is_kind(type_, ScalarKind.BOOL):
         return Boolean(span, text.strip() == "true")
     tree, _ = parse(Decoded(text, span.start))
     return as_type(tree, type_)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from roaml.expr.tree import ArrayLiteral, Expr, Number, ObjectLiteral, Unary
-from roaml.expr.types import Array, Struct, Type, is_kind, leaves, unwrap
+from roaml.expr.types import Array, ScalarKind, Struct, Type, is_kind, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.expressions import SEPARATOR, Path
 from roaml.scxml.model import Data
@@ -44,7 +44,7 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
 def as_type(value: Expr, element: Type) -> Expr:
     """Literals of a real type are reals, including those written without a point
     (docs/spec/plain-scxml.md#initial-reals)."""
-    if not is_kind(element, "real"):
+    if not is_kind(element, ScalarKind.REAL):
         return value
     match value:
         case Number():

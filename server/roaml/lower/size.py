@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
+from roaml.expr.operators import OperatorKind
 from roaml.expr.tree import ArrayLiteral, Binary, Expr, Name, ObjectLiteral, String, is_draw, walk
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Type, is_kind, resolve_type, unwrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, ScalarKind, Type, is_kind, resolve_type, unwrap
 from roaml.lower.interfaces import fields
 from roaml.lower.nodes import builtin_machine
 from roaml.lower.program import TranslatableSystem
@@ -345,9 +346,9 @@ class _Counter:
         """Two arrays are compared element by element."""
         count = 0
         for node in walk(value.tree) if value else ():
-            if isinstance(node, Binary) and node.operator.kind == "equality":
+            if isinstance(node, Binary) and node.operator.kind is OperatorKind.EQUALITY:
                 sides = [self.type(side, handler, part) for side in (node.left, node.right)]
-                arrays = [side for side in sides if isinstance(side, Array) or is_kind(side, "string")]
+                arrays = [side for side in sides if isinstance(side, Array) or is_kind(side, ScalarKind.STRING)]
                 if len(arrays) == 2 and not any(map(_is_literal, (node.left, node.right))):
                     count += 10 * min(cells_of(side, self.program.parameters.max_array_size) for side in arrays)
         return count

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, Struct, Type, leaves, unwrap
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, ScalarKind, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
@@ -28,7 +28,7 @@ from roaml.scxml.names import FIELD_PREFIX, STATUSES, named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
-_NAMED = {"int": BASE_TYPES["int64"], "real": REAL}
+_NAMED = {ScalarKind.INT: BASE_TYPES["int64"], ScalarKind.REAL: REAL}
 """The type of a variable for a value whose type has no name, by the kind of the value."""
 
 MAX_COMBINATIONS = 10_000

@@ -9,34 +9,25 @@ from fractions import Fraction
 
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
-from roaml.forest.cpp_types import mismatch
-from roaml.forest.forest import CPP, Forest, port_type
-from roaml.libraries import NodeKind
+from roaml.forest.forest import Forest, port_type
 from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
+from roaml.lower.programs.assembly import NodeProgram, programs
+from roaml.lower.programs.automaton import NodeTooLargeError, node_automaton
+from roaml.lower.programs.board import Board, build_board
+from roaml.lower.programs.code import RUNNING, TYPES, Child, Known, NodeCode
+from roaml.lower.programs.entries import BoardEntry
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
+from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.refusal import TreeRefusal
+from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
-from roaml.mocks import assembly
-from roaml.mocks.assembly import NodeProgram, programs
-from roaml.mocks.automaton import (
-    RUNNING,
-    STATUS_CODES,
-    TYPES,
-    Child,
-    Known,
-    NodeCode,
-    NodeTooLargeError,
-    node_automaton,
-    ticks_of,
-)
-from roaml.mocks.board import Board, build_board, node_scripts
-from roaml.mocks.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.mocks.mock import Mock, mock_for
-from roaml.mocks.refusal import TreeRefusal
-from roaml.mocks.scripts import CompiledScript, ScriptRefusal, compiled
-from roaml.mocks.unfolding import ExecutedNode, ExecutedTree, unfold
+from roaml.mocks.unfolding import unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
+from roaml.roles import NodeKind
 from roaml.scxml.model import (
     Assign,
     Automaton,
@@ -147,7 +138,7 @@ class _Builder:
     def build(self) -> MockedTree:
         missing = []
         for node in self.tree.nodes:
-            program = self.program(node)
+            program = program_of(node)
             self.programs[node.number] = program
             if program is None and self.find_mock(node) is None:
                 missing.append(node)
@@ -177,62 +168,31 @@ class _Builder:
         self.assumed.reverse()
         return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.options)
 
-    def program(self, node: ExecutedNode) -> NodeProgram | None:
-        """The program of a node of the libraries; `None` for a leaf that needs a mock."""
-        if node.type == "SubTree" and node.children:
-            return programs()["SubTree"]
-        is_library = node.known is not None and bool(node.known.library)
-        if is_library and node.type in programs():
-            self.check_children(node)
-            return programs()[node.type]
-        if node.children:
-            reason = f"`{node.type}` has children, and it is not known what it does with them"
-            raise TreeRefusal(node.origin, reason)
-        if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
-            raise TreeRefusal(node.origin, f"`{node.type}` needs children")
-        absent = CPP.absent.get(node.type)
-        if node.known is None and absent is not None:
-            raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}")
-        return None
-
-    def check_children(self, node: ExecutedNode) -> None:
-        assert node.known is not None
-        least, most = node.known.children
-        if not least <= len(node.children) <= most:
-            raise TreeRefusal(
-                node.origin, f"`{node.type}` has {len(node.children)} children, which the library rejects"
-            )
-
     # ------------------------------------------------------------------- nodes
 
     def code(self, node: ExecutedNode, board: Board, children: tuple[Child, ...]) -> NodeCode:
         program = self.programs[node.number]
-        known: dict[str, Known] = {}
-        bound: dict[str, BoardEntry] = {}
         outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...] = ()
-        elements: tuple[Known, ...] = ()
         if program is None:
-            program = self.mock(node, known)
+            values = PortValues()
+            program = self.mock(node, values.known)
             outputs = tuple(self.outputs(node, board))
         else:
-            self.set_ports(node, program, board, known, bound)
-            if program.name.startswith("Loop"):
-                elements = self.elements(node, known)
-        if any(instruction_uses_event(instruction) for instruction in program.tick):
-            known["event"] = self.event(node)
+            values = port_values(node, program, board)
+        if asks_world(program):
+            values.known["event"] = self.event(node)
         return NodeCode(
             node.number,
             node.automaton,
             program,
             children,
-            known,
-            bound,
-            self.scripts(node, board),
+            values.known,
+            values.bound,
+            compiled_scripts(node, board),
             board.flag_of.get(node.number),
             outputs,
-            elements,
-            board.flags,
-            _flags_at(node, board),
+            values.elements,
+            flags_at(node, board),
             self.options.rate,
             self.options.counts,
             node.origin,
@@ -277,164 +237,6 @@ class _Builder:
                 written += [(flag, (1,)) for flag in board.flags[entry]]
         return written
 
-    def scripts(self, node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
-        result = {}
-        for attribute, script, is_condition in node_scripts(node):
-            try:
-                result[attribute] = compiled(
-                    script, lambda entry: board.entries.get(node.frame.entry(entry)), is_condition=is_condition
-                )
-            except ScriptRefusal as refusal:
-                raise TreeRefusal(Location(node.origin.path, refusal.span), refusal.reason) from None
-        return result
-
-    # ------------------------------------------------------------------- ports
-
-    def set_ports(
-        self,
-        node: ExecutedNode,
-        program: NodeProgram,
-        board: Board,
-        known: dict[str, Known],
-        bound: dict[str, BoardEntry],
-    ) -> None:
-        """The values of the ports that a program uses: constants, or entries."""
-        if program.name in ("SetBlackboard", "UnsetBlackboard"):
-            self.set_blackboard(node, board, known, bound)
-            return
-        given = {port: (entry, text, span) for port, entry, text, span in node.ports()}
-        declared = node.known.ports if node.known else ()
-        kinds = {entry.kind for entry in self.switch_entries(program, given, board)}
-        for port in declared:
-            if port.name in ("if", "code", "entry", "queue", "value" if program.name.startswith("Loop") else ""):
-                if port.name == "value" and port.name in given:
-                    entry = given["value"][0]
-                    if entry is not None and entry in board.entries:
-                        bound["value"] = board.entries[entry]
-                continue
-            entry, text, span = given.get(port.name, (None, port.default, node.node.element.name_span))
-            if entry is not None:
-                if entry in board.entries:
-                    bound[port.name] = board.entries[entry]
-                elif port.name in _needed(program):
-                    reason = f"nothing sets the entry `{entry}`; give it a value with --entry {entry}=VALUE"
-                    raise TreeRefusal(Location(node.origin.path, span), reason)
-                continue
-            if text is None:
-                continue
-            type_ = port_type(port)
-            if program.name.startswith("Switch"):
-                known[port.name] = _case(text, kinds)
-            elif type_ == "NodeStatus":
-                known[port.name] = STATUS_CODES.get(text.strip(), RUNNING)
-            else:
-                known[port.name] = self.literal(node, type_, text)
-        missing = [port for port in _needed(program) if port not in known and port not in bound]
-        if missing and not program.name.startswith("Switch"):
-            raise TreeRefusal(node.origin, f"`{node.type}` needs the port `{missing[0]}`")
-        if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
-            program.name.startswith("Switch")
-        ):
-            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to a text")
-        for port_name in ("else", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
-            if port_name in bound:
-                raise TreeRefusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
-
-    def switch_entries(
-        self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
-    ) -> list[BoardEntry]:
-        if not program.name.startswith("Switch"):
-            return []
-        return [board.entries[entry] for entry, _, _ in given.values() if entry is not None and entry in board.entries]
-
-    def literal(self, node: ExecutedNode, type_: str, text: str) -> Known:
-        wrong = mismatch(type_, text)
-        value = read_literal(wrong.instead if wrong is not None and wrong.ignored else text)[1]
-        if isinstance(value, str) and kind_of_cpp(type_) not in (EntryKind.TEXT, None):
-            raise TreeRefusal(node.origin, f"`{text}` is not a value for a port of the type {type_}")
-        return value
-
-    def set_blackboard(
-        self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, BoardEntry]
-    ) -> None:
-        target: str | None = None
-        for port, entry, text, span in node.ports():
-            if port in ("output_key", "key"):
-                if entry is not None:
-                    reason = (
-                        f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
-                        f'the tree runs; write `{port}="{entry}"` for the entry itself'
-                    )
-                    raise TreeRefusal(Location(node.origin.path, span), reason)
-                target = node.frame.entry(text.strip())
-        if target is None or target not in board.entries:
-            known["value"] = 0
-            return
-        if node.type == "UnsetBlackboard":
-            raise TreeRefusal(node.origin, f"`{target}` is read by the tree; a model cannot remove it")
-        bound["output_key"] = board.entries[target]
-        kind = board.entries[target].kind
-        for port, entry, text, span in node.ports():
-            if port != "value":
-                continue
-            if entry is None:
-                known["value"] = text if kind is EntryKind.TEXT else read_literal(text)[1]
-            elif entry in board.entries and (board.entries[entry].kind is EntryKind.TEXT) is (kind is EntryKind.TEXT):
-                bound["value"] = board.entries[entry]
-            else:
-                reason = f"the value of `{entry}` is not known, and the tree reads `{target}`"
-                raise TreeRefusal(Location(node.origin.path, span), reason)
-
-    def elements(self, node: ExecutedNode, known: dict[str, Known]) -> tuple[Known, ...]:
-        """The elements of the queue of a loop."""
-        known.setdefault("if_empty", STATUS_CODES["SUCCESS"])
-        for port, entry, text, span in node.ports():
-            if port == "queue":
-                if entry is not None:
-                    reason = "a queue in the blackboard cannot be translated; write its elements as `1;2;3`"
-                    raise TreeRefusal(Location(node.origin.path, span), reason)
-                items = [item.strip() for item in text.split(";")] if text.strip() else []
-                if node.type == "LoopString":
-                    return tuple(items)
-                read = tuple(read_literal(item)[1] for item in items)
-                return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
-        return ()
-
-
-def _flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ...]]:
-    """The flags of observed entries that a node writes and whose values nothing reads."""
-    flags: dict[str, tuple[BoardEntry, ...]] = {}
-    for port, bound, text, _ in node.ports():
-        names_entry = node.type == "SetBlackboard" and port == "output_key" and bound is None
-        entry = node.frame.entry(text.strip()) if names_entry else bound
-        if entry is not None and entry in board.flags and entry not in board.entries:
-            flags[port] = board.flags[entry]
-    return flags
-
-
-def instruction_uses_event(instruction: assembly.Instruction) -> bool:
-    """Whether an instruction depends on something that happens in the world."""
-    match instruction:
-        case assembly.Choose(probability):
-            return getattr(probability, "id", "") == "event"
-    return False
-
-
-def _needed(program: NodeProgram) -> set[str]:
-    """The ports without which a program cannot work."""
-    names: set[str] = set()
-    for instruction in program.tick:
-        if isinstance(instruction, assembly.Read):
-            names.update(instruction.ports)
-    return names
-
-
-def _case(text: str, kinds: set[EntryKind]) -> Known:
-    """A constant of a switch: a number if the variable is one."""
-    if not kinds or EntryKind.TEXT in kinds:
-        return text
-    return read_literal(text)[1]
-
 
 # ----------------------------------------------------------------- other automata
 
@@ -477,7 +279,7 @@ def _blackboard(board: Board, origin: Location) -> Automaton | None:
         Transition(
             blackboard_write(entry.variable),
             None,
-            (Target("idle", 1.0, (Assign(name(entry.variable), event_data("value"), origin),), origin),),
+            (Target("idle", 1.0, _stored(board, entry, origin), origin),),
             origin,
         )
         for entry in entries
@@ -486,4 +288,13 @@ def _blackboard(board: Board, origin: Location) -> Automaton | None:
     asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
     return Automaton(
         BLACKBOARD, Role.BLACKBOARD, "idle", data, (State("idle", (), (), (*writes, asked), origin),), origin
+    )
+
+
+def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, ...]:
+    """What the blackboard does when an entry is written: its observers see that it was."""
+    flags = board.flags.get(entry.variable, ())
+    return (
+        Assign(name(entry.variable), event_data("value"), origin),
+        *(Assign(name(flag.variable), integer(1), origin) for flag in flags),
     )

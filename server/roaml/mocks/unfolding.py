@@ -4,17 +4,16 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.forest import Forest, ports_of
-from roaml.libraries import Node
-from roaml.mocks.refusal import TreeRefusal
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
+from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
-from roaml.text import Location, Span
+from roaml.text import Location
 
 MAX_DEPTH = 200
 """The maximum nesting depth of nodes and subtrees."""
@@ -39,60 +38,11 @@ class TreeFrame:
     def entry(self, name: str) -> str:
         """The full name of the entry to which a name refers."""
         if name.startswith("@"):
-            return _identifier(name[1:])
+            return identifier(name[1:])
         frame = self
         while name not in frame.remapped and frame.autoremap and frame.outer is not None and name[:1] != "_":
             frame = frame.outer
-        return frame.remapped.get(name) or _identifier(frame.prefix + name)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ExecutedNode:
-    """A node of the executed tree.
-
-    Attributes:
-        number: 1000 for the root, then counted in pre-order.
-        type: the name of its type; `SubTree` for a subtree.
-        name: its name, otherwise that of its type or of the subtree.
-        known: the declaration of its type; `None` if there is none.
-    """
-
-    number: int
-    type: str
-    name: str
-    node: TreeNode
-    known: Node | None
-    frame: TreeFrame
-    children: tuple[int, ...]
-    origin: Location
-
-    @property
-    def is_leaf(self) -> bool:
-        return not self.children
-
-    @property
-    def automaton(self) -> str:
-        return f"BT_plugin_{self.number}_{self.name}"
-
-    def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
-        """Each port that the tree sets: its name, the entry to which it is bound (or `None`), and its text."""
-        for setting in ports_of(self.node):
-            bound = entry_of(setting)
-            entry = None if bound is None else self.frame.entry(bound)
-            yield setting.attribute.name, entry, setting.value.value, setting.value.span
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ExecutedTree:
-    """Attributes:
-    name: of the tree.
-    nodes: in pre-order.
-    initial: entry -> the text that a `<SubTree>` gives it.
-    """
-
-    name: str
-    nodes: tuple[ExecutedNode, ...]
-    initial: Mapping[str, str]
+        return frame.remapped.get(name) or identifier(frame.prefix + name)
 
 
 def unfold(forest: Forest) -> ExecutedTree:
@@ -167,7 +117,7 @@ class _Unfolder:
     def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
         if type_ in frame.trees:
             raise TreeRefusal(origin, f"the tree `{type_}` contains itself")
-        word = f"{frame.prefix}{_identifier(name)}"
+        word = f"{frame.prefix}{identifier(name)}"
         count = self.prefixes[word] = self.prefixes.get(word, 0) + 1
         prefix = f"{word}__" if count == 1 else f"{word}_{count}__"
         remapped: dict[str, str] = {}
@@ -175,17 +125,12 @@ class _Unfolder:
         given = {setting.attribute.name for setting in ports_of(node)}
         defaults = [p for p in model.ports if p.default is not None and p.name not in given] if model else []
         for port in defaults:
-            self.initial[_identifier(prefix + port.name)] = port.default or ""
+            self.initial[identifier(prefix + port.name)] = port.default or ""
         for setting in ports_of(node):
             key, bound = setting.attribute.name, entry_of(setting)
             if bound is None:
-                self.initial[_identifier(prefix + key)] = setting.value.value
-                remapped[key] = _identifier(prefix + key)
+                self.initial[identifier(prefix + key)] = setting.value.value
+                remapped[key] = identifier(prefix + key)
             else:
                 remapped[key] = frame.entry(bound)
         return TreeFrame(prefix, remapped, is_autoremapped(node), frame, frame.trees | {type_})
-
-
-def _identifier(name: str) -> str:
-    word = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"

@@ -41,7 +41,7 @@ from roaml.model.syntax import (
     type_of,
     value_of,
 )
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element
 
@@ -163,7 +163,7 @@ class _Builder:
         return Declaration(element, kind, handle, interface, name_of(element.get("type")))
 
     def port(self, element: Element) -> Port:
-        direction = element.name.rpartition("_")[2]
+        direction = Direction(element.name.rpartition("_")[2])
         return Port(element, name_of(element.get("key")), type_of(element.get("type")), direction)
 
     # ---------------------------------------------------------------- states

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, Struct, Type, is_kind, leaves, unwrap, wrap
+from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
@@ -66,7 +66,7 @@ def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
         inner, bounds = unwrap(leaf)
         if isinstance(inner, EmptyArray):
             inner, bounds = INT, (*bounds, None)
-        if is_kind(inner, "string"):
+        if is_kind(inner, ScalarKind.STRING):
             inner, bounds = INT, (*bounds, None)
         yield full, wrap(inner, bounds)
         for dimension in range(len(bounds)):

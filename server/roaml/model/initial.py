@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from roaml.expr import infer
 from roaml.expr.tree import ArrayLiteral, Expr, ObjectLiteral
-from roaml.expr.types import Array, Struct, Type, Unknown, fits, is_kind
+from roaml.expr.types import Array, ScalarKind, Struct, Type, Unknown, fits, is_kind
 from roaml.text import Span
 
 
@@ -61,7 +61,7 @@ def check_bound(expr: Expr, target: Type) -> tuple[InitialProblem, ...]:
     """Why `expr` cannot be a bound of a variable: unlike for a value, an int is not allowed for a real."""
     problems = check_initial(expr, target)
     given, _ = infer.infer(expr, lambda _: None)
-    if not problems and is_kind(target, "real") and is_kind(given, "int"):
+    if not problems and is_kind(target, ScalarKind.REAL) and is_kind(given, ScalarKind.INT):
         return (WrongType(expr.span, given, target),)
     return problems
 

@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from roaml.language import ElementType
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -66,12 +66,12 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Port:
-    """A port of a behavior tree plugin. `direction` is "in" or "out"."""
+    """A port of a behavior tree plugin."""
 
     element: Element
     key: Name | None
     type: TypeRef | None
-    direction: str
+    direction: Direction
 
 
 @dataclass(frozen=True, slots=True, eq=False)

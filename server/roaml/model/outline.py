@@ -33,18 +33,18 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
 @dataclass(frozen=True, slots=True)
 class PortOutline:
-    """`direction` is "in" or "out"; `type` is as written; `read` and `written` state whether the machine reads or
+    """`type` is as written; `read` and `written` state whether the machine reads or
     writes the port."""
 
     key: str
     type: str
-    direction: str
+    direction: Direction
     read: bool
     written: bool
 

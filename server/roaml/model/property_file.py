@@ -6,22 +6,58 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from roaml.exhaustive import Vocabulary
 from roaml.language import XML_PROPERTIES
 from roaml.model.syntax import Expression, Name, TypeRef, expression_from, expression_of, name_of, type_of
 from roaml.observers.notation import Notation, read
 from roaml.text import Decoded
 from roaml.xml_syntax import Document, Element
 
-STATE, EVENT, GOAL_ID, RESULT_CODE, ACCEPTED = "state_var", "event_var", "goal_id", "result_code", "accepted"
-VARIABLES = (STATE, EVENT, GOAL_ID, RESULT_CODE, ACCEPTED)
 
-TOPIC, SERVICE, ACTION, NODE, PLAIN = "ros_topic", "ros_service", "ros_action", "bt_node", "scxml_event_send"
+class PortVariableKind(Vocabulary):
+    """The kind of a variable of a port. The values are the names of the elements."""
+
+    STATE = "state_var"
+    EVENT = "event_var"
+    GOAL_ID = "goal_id"
+    RESULT_CODE = "result_code"
+    ACCEPTED = "accepted"
+
+
+class PortKind(Vocabulary):
+    """The kind of thing that a port listens to. The values are the names of the elements."""
+
+    TOPIC = "ros_topic"
+    SERVICE = "ros_service"
+    ACTION = "ros_action"
+    NODE = "bt_node"
+    PLAIN = "scxml_event_send"
+
+
+class ObservedPart(Vocabulary):
+    """The part of an interface, or of the protocol of the tree, that a port listens to: its attribute `event`."""
+
+    PUBLISH = "publish"
+    REQUEST = "request"
+    RESPONSE = "response"
+    GOAL_REQUEST = "goal_request"
+    GOAL_RESPONSE = "goal_response"
+    FEEDBACK = "feedback"
+    RESULT = "result"
+    TICK = "tick"
+    HALT = "halt"
+
+
+_VARIABLES = {kind.value: kind for kind in PortVariableKind}
+_PORTS = {kind.value: kind for kind in PortKind}
+_PARTS = {part.value: part for part in ObservedPart}
+
 NAME_ATTRIBUTES = {
-    TOPIC: "topic_name",
-    SERVICE: "service_name",
-    ACTION: "action_name",
-    NODE: "node",
-    PLAIN: "event",
+    PortKind.TOPIC: "topic_name",
+    PortKind.SERVICE: "service_name",
+    PortKind.ACTION: "action_name",
+    PortKind.NODE: "node",
+    PortKind.PLAIN: "event",
 }
 """Kind of port -> the attribute with the name of the interface, node or event that it listens to."""
 
@@ -30,10 +66,10 @@ GUARANTEES, ASSUMES = "guarantees", "assumes"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortVariable:
-    """`kind` is the name of its element. `field` is the dotted path into a message, or the parameter of an event."""
+    """`field` is the dotted path into a message, or the parameter of an event."""
 
     element: Element
-    kind: str
+    kind: PortVariableKind
     id: Name | None
     type: TypeRef | None
     field: Name | None
@@ -42,17 +78,21 @@ class PortVariable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Port:
-    """`kind` is the name of its element, `name` the interface, node or event that it listens to, `event` the part of
-    the interface."""
+    """`name` is the interface, node or event that it listens to, `event` the part of the interface."""
 
     element: Element
-    kind: str
+    kind: PortKind
     name: Name | None
     type: Name | None
     event: Name | None
     origin: Name | None
     target: Name | None
     variables: tuple[PortVariable, ...]
+
+    @property
+    def part(self) -> ObservedPart | None:
+        """The value of the attribute `event`; `None` if it is missing or not one of its values."""
+        return _PARTS.get(self.event.value) if self.event is not None else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +170,7 @@ def build_property_file(document: Document) -> PropertyFile | None:
         for section in root.elements
         if section.name == "ports"
         for element in section.elements
-        if element.name in NAME_ATTRIBUTES
+        if element.name in _PORTS
     ]
     properties = [
         _property(document, element, section.name)
@@ -143,17 +183,20 @@ def build_property_file(document: Document) -> PropertyFile | None:
 
 
 def _port(document: Document, element: Element) -> Port:
-    variables = tuple(_variable(document, child) for child in element.elements if child.name in VARIABLES)
-    name, type_ = name_of(element.get(NAME_ATTRIBUTES[element.name])), name_of(element.get("type"))
-    event = None if element.name == PLAIN else name_of(element.get("event"))
+    variables = tuple(_variable(document, child) for child in element.elements if child.name in _VARIABLES)
+    kind = _PORTS[element.name]
+    name, type_ = name_of(element.get(NAME_ATTRIBUTES[kind])), name_of(element.get("type"))
+    event = None if kind is PortKind.PLAIN else name_of(element.get("event"))
     origin, target = name_of(element.get("origin")), name_of(element.get("target"))
-    return Port(element, element.name, name, type_, event, origin, target, variables)
+    return Port(element, kind, name, type_, event, origin, target, variables)
 
 
 def _variable(document: Document, element: Element) -> PortVariable:
     field = name_of(element.get("field")) or name_of(element.get("param"))
     initial = expression_of(document, element.get("expr"))
-    return PortVariable(element, element.name, name_of(element.get("id")), type_of(element.get("type")), field, initial)
+    return PortVariable(
+        element, _VARIABLES[element.name], name_of(element.get("id")), type_of(element.get("type")), field, initial
+    )
 
 
 def _property(document: Document, element: Element, section: str) -> WrittenProperty:

@@ -23,13 +23,13 @@ from roaml.expr.infer import (
 )
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Name, walk
-from roaml.expr.types import UNKNOWN, Type, is_kind
+from roaml.expr.types import UNKNOWN, ScalarKind, Type, is_kind
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
 from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
     ASSUMES,
-    EVENT,
+    PortVariableKind,
     PropertyFile,
     TimeInterval,
     WrittenProperty,
@@ -171,7 +171,7 @@ class _Linker:
                     self.report(ProblemKind.PORT_VARIABLE, name.span, message)
                 self.by_id.setdefault(variable.id, (port, variable))
                 initial = variable.written.initial
-                if initial is not None and variable.kind != EVENT:
+                if initial is not None and variable.kind is not PortVariableKind.EVENT:
                     self._check_initial(initial, variable.type)
 
     def _check_initial(self, initial: Expression, type_: Type) -> None:
@@ -269,7 +269,7 @@ class _Linker:
             if isinstance(problem, UnknownName):
                 close = close_names(problem.name, self.by_id)
             self.report(ProblemKind.CONDITION, problem.span, _in_words(problem, close), close)
-        if not reported and type_ != UNKNOWN and not is_kind(type_, "bool"):
+        if not reported and type_ != UNKNOWN and not is_kind(type_, ScalarKind.BOOL):
             message = f"a condition is true or false, but this is of type `{type_}`"
             self.report(ProblemKind.CONDITION, condition.span, message)
         self._check_together(condition)
@@ -289,7 +289,7 @@ class _Linker:
 
     def _event(self, tree: object) -> tuple[LinkedPort, LinkedVariable] | None:
         linked = self.by_id.get(tree.name) if isinstance(tree, Name) else None
-        return linked if linked is not None and linked[1].kind == EVENT else None
+        return linked if linked is not None and linked[1].kind is PortVariableKind.EVENT else None
 
     def _pattern(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
         assert written.pattern is not None

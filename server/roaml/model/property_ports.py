@@ -10,25 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import Kind
 from roaml.model.globals import GlobalVariable
-from roaml.model.property_file import (
-    ACCEPTED,
-    ACTION,
-    EVENT,
-    GOAL_ID,
-    NODE,
-    PLAIN,
-    RESULT_CODE,
-    SERVICE,
-    STATE,
-    TOPIC,
-    Port,
-    PortVariable,
-    PropertyFile,
-)
+from roaml.model.property_file import ObservedPart, Port, PortKind, PortVariable, PortVariableKind, PropertyFile
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
@@ -43,38 +30,52 @@ from roaml.text import Span
 FindInterface = Callable[[str, str], "InterfaceType | NotFound"]
 
 INT32 = BASE_TYPES["int32"]
-INTERFACE_KINDS: Mapping[str, Kind] = {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}
+INTERFACE_KINDS: Mapping[PortKind, Kind] = {PortKind.TOPIC: "msg", PortKind.SERVICE: "srv", PortKind.ACTION: "action"}
 """Kind of port -> the kind of its ROS type."""
-_WORDS = {TOPIC: "topic", SERVICE: "service", ACTION: "action", NODE: "node of the behavior tree", PLAIN: "event"}
+_WORDS = {
+    PortKind.TOPIC: "topic",
+    PortKind.SERVICE: "service",
+    PortKind.ACTION: "action",
+    PortKind.NODE: "node of the behavior tree",
+    PortKind.PLAIN: "event",
+}
 EVENTS = {
-    TOPIC: ("publish",),
-    SERVICE: ("request", "response"),
-    ACTION: ("goal_request", "goal_response", "feedback", "result"),
-    NODE: ("tick", "response", "halt"),
+    PortKind.TOPIC: (ObservedPart.PUBLISH,),
+    PortKind.SERVICE: (ObservedPart.REQUEST, ObservedPart.RESPONSE),
+    PortKind.ACTION: (
+        ObservedPart.GOAL_REQUEST,
+        ObservedPart.GOAL_RESPONSE,
+        ObservedPart.FEEDBACK,
+        ObservedPart.RESULT,
+    ),
+    PortKind.NODE: (ObservedPart.TICK, ObservedPart.RESPONSE, ObservedPart.HALT),
 }
 """Kind of port -> the values of its attribute `event`."""
 _PARTS = {
-    "publish": "message",
-    "request": "request",
-    "response": "response",
-    "goal_request": "goal",
-    "feedback": "feedback",
-    "result": "result",
+    ObservedPart.PUBLISH: "message",
+    ObservedPart.REQUEST: "request",
+    ObservedPart.RESPONSE: "response",
+    ObservedPart.GOAL_REQUEST: "goal",
+    ObservedPart.FEEDBACK: "feedback",
+    ObservedPart.RESULT: "result",
 }
-_GIVEN_BY = {GOAL_ID: EVENTS[ACTION], RESULT_CODE: ("result",), ACCEPTED: ("goal_response",)}
+_GIVEN_BY = {
+    PortVariableKind.GOAL_ID: EVENTS[PortKind.ACTION],
+    PortVariableKind.RESULT_CODE: (ObservedPart.RESULT,),
+    PortVariableKind.ACCEPTED: (ObservedPart.GOAL_RESPONSE,),
+}
 """Kind of variable -> the events of an action that carry its value."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinkedVariable:
     """Attributes:
-    kind: the name of its element.
     type: the type of the value; `UNKNOWN` if not known.
     parameter: the parameter of the events that it reads, "" if it reads none.
     """
 
     id: str
-    kind: str
+    kind: PortVariableKind
     type: Type
     parameter: str
     written: PortVariable
@@ -103,26 +104,24 @@ class PortLinker:
         self.problems.append(Problem(kind, span, message, tuple(close)))
 
     def link(self, port: Port) -> LinkedPort:
-        events = self._event_names(port)
-        if port.name is None or events is None:
-            return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
-        match port.kind:
-            case "ros_topic" | "ros_service" | "ros_action":
-                return self._interface(port, port.name, events)
-            case "bt_node":
-                return self._node(port, port.name, events)
-        return self._plain(port, port.name)
-
-    def _event_names(self, port: Port) -> str | None:
-        """The value of the attribute `event`; `None` if it is not one of its values, which the schema reports."""
-        if port.kind == PLAIN:
-            return ""
-        return port.event.value if port.event and port.event.value in EVENTS[port.kind] else None
+        if port.name is not None and port.kind is PortKind.PLAIN:
+            return self._plain(port, port.name)
+        if port.name is None or port.part is None or port.part not in EVENTS[port.kind]:
+            return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)  # reported by the schema
+        if port.kind is PortKind.NODE:
+            return self._node(port, port.name, port.part)
+        return self._interface(port, port.name, port.part)
 
     def _unlinked(self, port: Port) -> Iterator[LinkedVariable]:
         for variable in port.variables:
             if variable.id is not None:
-                type_ = BOOL if variable.kind in (EVENT, ACCEPTED) else INT32 if variable.kind != STATE else UNKNOWN
+                type_ = (
+                    BOOL
+                    if variable.kind in (PortVariableKind.EVENT, PortVariableKind.ACCEPTED)
+                    else INT32
+                    if variable.kind is not PortVariableKind.STATE
+                    else UNKNOWN
+                )
                 yield LinkedVariable(variable.id.value, variable.kind, type_, "", variable)
 
     def _is_complete(self) -> bool:
@@ -130,35 +129,43 @@ class PortLinker:
 
     # ------------------------------------------------------------ interfaces
 
-    def _interface(self, port: Port, name: Name, event: str) -> LinkedPort:
+    def _interface(self, port: Port, name: Name, event: ObservedPart) -> LinkedPort:
         channel = self._channel(port, name)
         if channel is None:
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
         type_ = self._type(port, channel)
         part = type_.part(_PARTS[event]) if type_ is not None and event in _PARTS else None
-        if part is None and event == "goal_response":
+        if part is None and event is ObservedPart.GOAL_RESPONSE:
             part = Struct("", (), "answer to a goal")
         problems = len(self.problems)
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete() and len(self.problems) == problems:
-            what = {"publish": "publishes on", "request": "calls", "goal_request": "sends goals to"}
+            what = {
+                ObservedPart.PUBLISH: "publishes on",
+                ObservedPart.REQUEST: "calls",
+                ObservedPart.GOAL_REQUEST: "sends goals to",
+            }
             who = what.get(event, "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
 
-    def _channels(self, kind: str) -> Mapping[str, Channel]:
-        return {TOPIC: self.system.topics, SERVICE: self.system.services, ACTION: self.system.actions}[kind]
+    def _channels(self, kind: PortKind) -> Mapping[str, Channel]:
+        return {
+            PortKind.TOPIC: self.system.topics,
+            PortKind.SERVICE: self.system.services,
+            PortKind.ACTION: self.system.actions,
+        }[kind]
 
     def _channel(self, port: Port, name: Name) -> Channel | None:
-        key = sanitise(name.value) if port.kind == TOPIC else name.value
+        key = sanitise(name.value) if port.kind is PortKind.TOPIC else name.value
         channel = self._channels(port.kind).get(key)
         if channel is not None:
             return channel
-        if port.kind == TOPIC and key == CLOCK_TOPIC and self.system.has_timer:
+        if port.kind is PortKind.TOPIC and key == CLOCK_TOPIC and self.system.has_timer:
             return Channel(CLOCK_TOPIC)
-        for kind in (TOPIC, SERVICE, ACTION):
-            other = sanitise(name.value) if kind == TOPIC else name.value
+        for kind in (PortKind.TOPIC, PortKind.SERVICE, PortKind.ACTION):
+            other = sanitise(name.value) if kind is PortKind.TOPIC else name.value
             if kind != port.kind and other in self._channels(kind):
                 message = (
                     f"`{name.value}` is {_article(_WORDS[kind])}, not {_article(_WORDS[port.kind])}; use `<{kind}>`"
@@ -199,8 +206,8 @@ class PortLinker:
         self.report(ProblemKind.PORT_TYPE, port.type.span, message, written_types[:1])
         return types[0] if types else None
 
-    def _channel_events(self, port: Port, channel: Channel, event: str) -> Iterator[PortEvent]:
-        if port.kind == TOPIC:
+    def _channel_events(self, port: Port, channel: Channel, event: ObservedPart) -> Iterator[PortEvent]:
+        if port.kind is PortKind.TOPIC:
             senders = [e for e in channel.sources if ProtocolPart.MESSAGE in e.use.sends]
             senders = self._chosen(port.origin, senders, "publishes on", channel)
             name = f"topic_{channel.name}_msg"
@@ -211,27 +218,31 @@ class PortLinker:
                 for sender in senders:
                     yield PortEvent(name, sender.automaton.name)
             return
-        chooser = port.origin if event in ("request", "goal_request") else port.target
+        chooser = port.origin if event in (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST) else port.target
         clients = self._chosen(chooser, channel.users, "is a client of", channel)
         if port.target is None and port.origin is None and len(channel.users) > 1:
             self._warn_of_clients(port, channel, event)
-        stem = f"{'srv' if port.kind == SERVICE else 'action'}_{sanitise(channel.name)}"
+        stem = f"{'srv' if port.kind is PortKind.SERVICE else 'action'}_{sanitise(channel.name)}"
         for client in clients:
             who, number = safe_name(client.automaton.name), channel.users.index(client)
-            goal = (GOAL_ID, number)
+            goal = (PortVariableKind.GOAL_ID.value, number)
             match event:
-                case "request" if ProtocolPart.REQUEST in client.use.sends:
+                case ObservedPart.REQUEST if ProtocolPart.REQUEST in client.use.sends:
                     yield PortEvent(f"{stem}_req_client_{who}")
-                case "response" if channel.sources:
+                case ObservedPart.RESPONSE if channel.sources:
                     yield PortEvent(f"{stem}_response_client_{who}")
-                case "goal_request" if ProtocolPart.GOAL in client.use.sends:
+                case ObservedPart.GOAL_REQUEST if ProtocolPart.GOAL in client.use.sends:
                     yield PortEvent(f"{stem}_goal_req_client_{who}", constants=(goal,))
-                case "goal_response" if channel.sources:
-                    yield PortEvent(f"{stem}_goal_accept_client_{who}", constants=(goal, (ACCEPTED, True)))
-                    yield PortEvent(f"{stem}_goal_reject_client_{who}", constants=(goal, (ACCEPTED, False)))
-                case "feedback" if channel.sources:
+                case ObservedPart.GOAL_RESPONSE if channel.sources:
+                    yield PortEvent(
+                        f"{stem}_goal_accept_client_{who}", constants=(goal, (PortVariableKind.ACCEPTED.value, True))
+                    )
+                    yield PortEvent(
+                        f"{stem}_goal_reject_client_{who}", constants=(goal, (PortVariableKind.ACCEPTED.value, False))
+                    )
+                case ObservedPart.FEEDBACK if channel.sources:
                     yield PortEvent(f"{stem}_feedback_handle_client_{who}", constants=(goal,))
-                case "result" if channel.sources:
+                case ObservedPart.RESULT if channel.sources:
                     yield PortEvent(f"{stem}_result_handle_client_{who}", constants=(goal,))
 
     def _chosen(
@@ -248,17 +259,17 @@ class PortLinker:
             self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
         return chosen
 
-    def _warn_of_clients(self, port: Port, channel: Channel, event: str) -> None:
+    def _warn_of_clients(self, port: Port, channel: Channel, event: ObservedPart) -> None:
         assert port.name is not None
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
-        attribute = "origin" if event in ("request", "goal_request") else "target"
+        attribute = "origin" if event in (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST) else "target"
         number = len(channel.users)
         message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to choose"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)
 
     # ------------------------------------------------------------- the tree
 
-    def _node(self, port: Port, name: Name, event: str) -> LinkedPort:
+    def _node(self, port: Port, name: Name, event: ObservedPart) -> LinkedPort:
         matches = nodes_called(self.system, name.value)
         if len(matches) != 1:
             if matches:
@@ -275,7 +286,7 @@ class PortLinker:
                 message = f"the tree has no node `{name.value}`{hint}"
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
-        status = Struct("", (("status", INT32),) if event == "response" else (), f"{event} of a node")
+        status = Struct("", (("status", INT32),) if event is ObservedPart.RESPONSE else (), f"{event} of a node")
         variables = tuple(self._variables(port, status, "", event))
         return LinkedPort(port, (PortEvent(f"bt_{matches[0].number}_{event}"),), variables)
 
@@ -291,7 +302,7 @@ class PortLinker:
             self.report(ProblemKind.UNKNOWN_PORT, name.span, f"the system sends no event `{name.value}`{hint}", close)
         data = None if params is None else Struct("", tuple(params.items()), f"the event `{name.value}`")
         sender = port.origin.value if port.origin is not None else ""
-        variables = tuple(self._variables(port, data, "", ""))
+        variables = tuple(self._variables(port, data, "", None))
         return LinkedPort(port, (PortEvent(name.value, sender),), variables, is_known=params is not None)
 
     def _parameters(self, event: str) -> dict[str, Type] | None:
@@ -303,25 +314,29 @@ class PortLinker:
 
     # ------------------------------------------------------------ variables
 
-    def _variables(self, port: Port, data: Struct | None, prefix: str, event: str) -> Iterator[LinkedVariable]:
+    def _variables(
+        self, port: Port, data: Struct | None, prefix: str, event: ObservedPart | None
+    ) -> Iterator[LinkedVariable]:
         """Link the variables of a port. `data` is the data of the event, `None` if not known."""
         for variable in port.variables:
             if variable.id is None:
                 continue
             match variable.kind:
-                case "event_var":
-                    yield LinkedVariable(variable.id.value, EVENT, BOOL, "", variable)
-                case "state_var":
+                case PortVariableKind.EVENT:
+                    yield LinkedVariable(variable.id.value, PortVariableKind.EVENT, BOOL, "", variable)
+                case PortVariableKind.STATE:
                     type_, parameter = self._field(variable, data, prefix)
-                    yield LinkedVariable(variable.id.value, STATE, type_, parameter, variable)
-                case _:
-                    if port.kind == ACTION and event not in _GIVEN_BY[variable.kind]:
-                        carriers = _either(_GIVEN_BY[variable.kind])
+                    yield LinkedVariable(variable.id.value, PortVariableKind.STATE, type_, parameter, variable)
+                case PortVariableKind.GOAL_ID | PortVariableKind.RESULT_CODE | PortVariableKind.ACCEPTED:
+                    if port.kind is PortKind.ACTION and event not in _GIVEN_BY[variable.kind]:
+                        carriers = _either(map(str, _GIVEN_BY[variable.kind]))
                         message = f"`{event}` carries no `<{variable.kind}>`; it is carried by {carriers}"
                         self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
-                    type_ = BOOL if variable.kind == ACCEPTED else INT32
-                    parameter = "code" if variable.kind == RESULT_CODE else ""
+                    type_ = BOOL if variable.kind is PortVariableKind.ACCEPTED else INT32
+                    parameter = "code" if variable.kind is PortVariableKind.RESULT_CODE else ""
                     yield LinkedVariable(variable.id.value, variable.kind, type_, parameter, variable)
+                case _:
+                    assert_never(variable.kind)
 
     def _field(self, variable: PortVariable, data: Struct | None, prefix: str) -> tuple[Type, str]:
         if variable.field is None:
@@ -361,15 +376,15 @@ def observed_names(file: PropertyFile) -> Iterator[str]:
     """The flags of the events of topics and plain events that the ports of a file listen to, in the names of global
     variables, without a system to link them to."""
     for port in file.ports:
-        if port.name is not None and port.kind in (TOPIC, PLAIN):
-            name = f"topic_{sanitise(port.name.value)}_msg" if port.kind == TOPIC else port.name.value
+        if port.name is not None and port.kind in (PortKind.TOPIC, PortKind.PLAIN):
+            name = f"topic_{sanitise(port.name.value)}_msg" if port.kind is PortKind.TOPIC else port.name.value
             yield f"{name}.valid"
 
 
 def part_of(port: Port, find: Callable[[str, str], InterfaceType | None]) -> Struct | None:
     """The message, or the part of a service or action, that a port of a ROS interface carries; `None` if its type or
     its event is not known, or if there is none."""
-    part = _PARTS.get(port.event.value) if port.event is not None and port.kind in INTERFACE_KINDS else None
+    part = _PARTS.get(port.part) if port.part is not None and port.kind in INTERFACE_KINDS else None
     type_ = find(INTERFACE_KINDS[port.kind], port.type.value) if part is not None and port.type is not None else None
     return None if type_ is None or part is None else type_.part(part)
 
@@ -400,12 +415,12 @@ def names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name in names if name))
 
 
-def _written_names(channel: Channel, kind: str) -> Iterator[str]:
+def _written_names(channel: Channel, kind: PortKind) -> Iterator[str]:
     for endpoint in channel.endpoints:
         name = endpoint.automaton.interface_name(endpoint.use)
         if name is not None:
             yield name
-    if kind == TOPIC and channel.name == CLOCK_TOPIC:
+    if kind is PortKind.TOPIC and channel.name == CLOCK_TOPIC:
         yield CLOCK_TOPIC
 
 

@@ -7,13 +7,11 @@ from collections.abc import Iterator, Mapping
 
 from roaml.expr.tree import Name as NameExpr
 from roaml.model.property_file import (
-    ACTION,
     ASSUMES,
-    EVENT,
-    NODE,
-    SERVICE,
-    TOPIC,
+    ObservedPart,
     Port,
+    PortKind,
+    PortVariableKind,
     PropertyFile,
     WrittenProperty,
 )
@@ -73,7 +71,11 @@ def conditions_of(written: WrittenProperty) -> dict[str, Expression]:
 
 
 def _sentence(file: PropertyFile, written: WrittenProperty) -> str:
-    ports = {variable.id.value: port for port, variable in file.variables if variable.id and variable.kind == EVENT}
+    ports = {
+        variable.id.value: port
+        for port, variable in file.variables
+        if variable.id and variable.kind is PortVariableKind.EVENT
+    }
     if written.formula is not None and written.formula.notation.formula is not None:
         clauses = {atom.text.strip(): clause(atom, ports) for atom in written.formula.atoms}
         return formula_sentence(written.formula.notation.formula, clauses)
@@ -107,23 +109,23 @@ def event_clause(port: Port) -> SentenceClause:
     name = quoted(port.name.value) if port.name is not None else "…"
     by = f" by {quoted(port.origin.value)}" if port.origin is not None else ""
     to = f" to {quoted(port.target.value)}" if port.target is not None else ""
-    event = port.event.value if port.event is not None else ""
-    if port.kind == TOPIC:
+    part = port.part
+    if port.kind is PortKind.TOPIC:
         return _is("a message", f"published on {name}{by}")
-    if port.kind == SERVICE:
-        return _is(f"a response of {name}", f"sent{to}") if event == "response" else _is(name, f"called{by}")
-    if port.kind == ACTION:
-        match event:
-            case "goal_response":
+    if port.kind is PortKind.SERVICE:
+        return _is(f"a response of {name}", f"sent{to}") if part is ObservedPart.RESPONSE else _is(name, f"called{by}")
+    if port.kind is PortKind.ACTION:
+        match part:
+            case ObservedPart.GOAL_RESPONSE:
                 return _is(f"a goal{by} for {name}", "accepted or rejected")
-            case "feedback" | "result":
-                return _is(f"{'feedback' if event == 'feedback' else 'a result'} of {name}", f"sent{to}")
+            case ObservedPart.FEEDBACK | ObservedPart.RESULT:
+                return _is(f"{'feedback' if part is ObservedPart.FEEDBACK else 'a result'} of {name}", f"sent{to}")
         return _is("a goal", f"sent to {name}{by}")
-    if port.kind == NODE:
+    if port.kind is PortKind.NODE:
         return (
             SentenceClause(name, "answers")
-            if event == "response"
-            else _is(name, "halted" if event == "halt" else "ticked")
+            if part is ObservedPart.RESPONSE
+            else _is(name, "halted" if part is ObservedPart.HALT else "ticked")
         )
     return _is(name, f"sent{by}{to}")
 

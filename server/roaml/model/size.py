@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import Array, EmptyArray, Struct, Type, is_kind
+from roaml.expr.types import Array, EmptyArray, ScalarKind, Struct, Type, is_kind
 
 MAX_CELLS = 1_000_000
 """The default maximum number of cells of a system (`max-cells`)."""
@@ -80,7 +80,7 @@ def _cells(type_: Type, most: int, sent: bool, rows: int, lengths: int) -> int:
         type_ = type_.element
     if isinstance(type_, Struct):
         return sum(_cells(member, most, sent, rows, lengths) for _, member in type_.members)
-    if isinstance(type_, EmptyArray) or is_kind(type_, "string"):
+    if isinstance(type_, EmptyArray) or is_kind(type_, ScalarKind.STRING):
         return lengths + rows + rows * most
     return lengths + rows
 

@@ -522,7 +522,7 @@ def builtin_plugins() -> Mapping[str, MachineOutline]:
 def _builtin(element: ElementType) -> MachineOutline:
     has_children = element.any_child is not None
     ports = tuple(
-        PortOutline(a.name, a.port.type, a.port.direction, a.port.direction == "in", a.port.direction == "out")
+        PortOutline(a.name, a.port.type, a.port.direction, a.port.direction.reads, a.port.direction.writes)
         for a in element.ports
         if a.port
     )

@@ -11,6 +11,7 @@ from functools import cached_property
 from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
+from roaml.roles import Direction, ValueRole
 from roaml.xml_syntax import Attribute, Document, Element, Text
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
@@ -73,7 +74,7 @@ class PortModel:
 
     element: Element
     name: Name | None
-    direction: str
+    direction: Direction
     default: str | None
     type: str = ""
     text: str = ""
@@ -147,7 +148,7 @@ def _node(element: Element) -> TreeNode:
     ports, scripts = [], []
     for attribute in element.attributes:
         name = attribute.name
-        if known.get(name) and known[name].value == "script":
+        if name in known and known[name].value is ValueRole.SCRIPT:
             scripts.append(attribute)
         elif not _is_port(name, explicit or is_subtree):
             continue
@@ -179,14 +180,17 @@ def port_key(plugin: str, name: str) -> str:
     return type_.port_key(name) if type_ else name
 
 
+_DIRECTIONS = {"input": Direction.IN, "output": Direction.OUT}
+"""The beginnings of names of elements; other ones are misspelled or `<inout_port>`."""
+
+
 def _model(element: Element) -> NodeModel:
     id_ = name_of(element.get("ID"))
     ports = []
     for child in element.elements:
-        direction, _, kind = child.name.partition("_")
+        prefix, _, kind = child.name.partition("_")
         if kind == "port":
-            default = child.get("default")
-            direction = {"input": "in", "output": "out"}.get(direction, direction)
+            direction, default = _DIRECTIONS.get(prefix, Direction.INOUT), child.get("default")
             name = name_of(child.get("name"))
             if name and id_:
                 name = Name(port_key(id_.value, name.value), name.span)

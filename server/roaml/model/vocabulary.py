@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from roaml.expr.types import ScalarKind
 from roaml.interfaces import types as interfaces
 from roaml.language import HL_SCXML
 from roaml.roles import SymbolKind
@@ -33,7 +34,12 @@ OUTSIDE_THREADS = ("ros_action_start_thread", "ros_action_handle_thread_free")
 UNUSUAL_IN_THREADS = ("ros_action_handle_goal",)
 """The elements that are allowed in an action thread, but seldom directly."""
 
-DEFAULT_TYPES = {"int": "int32", "real": "float64", "bool": "bool", "string": "string"}
+DEFAULT_TYPES = {
+    ScalarKind.INT: "int32",
+    ScalarKind.REAL: "float64",
+    ScalarKind.BOOL: "bool",
+    ScalarKind.STRING: "string",
+}
 """The type of a declaration for a value, by the kind of the value."""
 
 FOREIGN_TYPES = {

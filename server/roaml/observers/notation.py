@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary
 from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Since, Window, historically, implies, once
 from roaml.text import Span
 
@@ -55,33 +56,52 @@ class _ProblemError(Exception):
         self.message = message
 
 
+class _TokenKind(Vocabulary):
+    AND = "and"
+    OR = "or"
+    NOT = "not"
+    IMPLIES = "implies"
+    SINCE = "since"
+    HISTORICALLY = "historically"
+    ONCE = "once"
+    OPEN = "("
+    CLOSE = ")"
+    TRUE = "true"
+    FALSE = "false"
+    ATOM = "{…}"
+    BOUNDS = "[…]"
+    OTHER = "other"
+    END = "end"
+
+
 class _Token(NamedTuple):
-    kind: str
+    kind: _TokenKind
     text: str
     span: Span
 
 
 _SPELLINGS = {
-    "&&": "and",
-    "and": "and",
-    "||": "or",
-    "or": "or",
-    "!": "not",
-    "not": "not",
-    "->": "implies",
-    "implies": "implies",
-    "S": "since",
-    "since": "since",
-    "H": "historically",
-    "historically": "historically",
-    "O": "once",
-    "once": "once",
-    "(": "(",
-    ")": ")",
-    "true": "true",
-    "false": "false",
+    "&&": _TokenKind.AND,
+    "and": _TokenKind.AND,
+    "||": _TokenKind.OR,
+    "or": _TokenKind.OR,
+    "!": _TokenKind.NOT,
+    "not": _TokenKind.NOT,
+    "->": _TokenKind.IMPLIES,
+    "implies": _TokenKind.IMPLIES,
+    "S": _TokenKind.SINCE,
+    "since": _TokenKind.SINCE,
+    "H": _TokenKind.HISTORICALLY,
+    "historically": _TokenKind.HISTORICALLY,
+    "O": _TokenKind.ONCE,
+    "once": _TokenKind.ONCE,
+    "(": _TokenKind.OPEN,
+    ")": _TokenKind.CLOSE,
+    "true": _TokenKind.TRUE,
+    "false": _TokenKind.FALSE,
 }
-_BINARY = frozenset(("and", "or", "implies", "since"))
+_BINARY = frozenset((_TokenKind.AND, _TokenKind.OR, _TokenKind.IMPLIES, _TokenKind.SINCE))
+_BRACES = {"atom": _TokenKind.ATOM, "bounds": _TokenKind.BOUNDS}
 _TOKEN = re.compile(
     r"(?P<space>\s+)"
     r"|(?P<atom>\{(?:[^{}'\"]|'[^']*'|\"[^\"]*\")*\})"
@@ -95,12 +115,12 @@ _BOUNDS = re.compile(r"\[\s*(\d{0,18})\s*:\s*(\d{0,18})\s*\]", re.ASCII)
 
 def _tokens(text: str) -> Iterator[_Token]:
     for match in _TOKEN.finditer(text):
-        kind, span = match.lastgroup or "other", Span(*match.span())
-        if kind == "word":
-            yield _Token(_SPELLINGS.get(match[0], "other"), match[0], span)
-        elif kind != "space":
-            yield _Token(kind, match[0], span)
-    yield _Token("end", "", Span(len(text), len(text)))
+        group, span = match.lastgroup or "other", Span(*match.span())
+        if group == "word":
+            yield _Token(_SPELLINGS.get(match[0], _TokenKind.OTHER), match[0], span)
+        elif group != "space":
+            yield _Token(_BRACES.get(group, _TokenKind.OTHER), match[0], span)
+    yield _Token(_TokenKind.END, "", Span(len(text), len(text)))
 
 
 class _Parser:
@@ -110,7 +130,7 @@ class _Parser:
         self.at = 0
         self.depth = 0
         self.operators = 0
-        self.atoms = [Span(t.span.start + 1, t.span.end - 1) for t in self.tokens if t.kind == "atom"]
+        self.atoms = [Span(t.span.start + 1, t.span.end - 1) for t in self.tokens if t.kind is _TokenKind.ATOM]
 
     @property
     def next(self) -> _Token:
@@ -118,12 +138,12 @@ class _Parser:
 
     def take(self) -> _Token:
         token = self.next
-        if token.kind != "end":
+        if token.kind is not _TokenKind.END:
             self.at += 1
         return token
 
-    def accept(self, kind: str) -> bool:
-        if self.next.kind != kind:
+    def accept(self, kind: _TokenKind) -> bool:
+        if self.next.kind is not kind:
             return False
         self.take()
         self.operators += kind in _BINARY
@@ -133,7 +153,7 @@ class _Parser:
 
     def whole(self) -> Formula:
         formula = self.implication()
-        if self.next.kind != "end":
+        if self.next.kind is not _TokenKind.END:
             raise _ProblemError(
                 self.next.span, f"expected an operator or the end of the formula before `{self.next.text}`"
             )
@@ -141,25 +161,25 @@ class _Parser:
 
     def implication(self) -> Formula:
         left = self.disjunction()
-        if self.accept("implies"):
+        if self.accept(_TokenKind.IMPLIES):
             return self.deeper(lambda: implies(left, self.implication()))
         return left
 
     def disjunction(self) -> Formula:
         formula = self.conjunction()
-        while self.accept("or"):
+        while self.accept(_TokenKind.OR):
             formula = Or(formula, self.conjunction())
         return formula
 
     def conjunction(self) -> Formula:
         formula = self.since()
-        while self.accept("and"):
+        while self.accept(_TokenKind.AND):
             formula = And(formula, self.since())
         return formula
 
     def since(self) -> Formula:
         formula = self.unary()
-        while self.accept("since"):
+        while self.accept(_TokenKind.SINCE):
             window = self.window()
             formula = Since(formula, self.unary(), window)
         return formula
@@ -170,34 +190,34 @@ class _Parser:
     def _unary(self) -> Formula:
         token = self.take()
         match token.kind:
-            case "not":
+            case _TokenKind.NOT:
                 return Not(self.unary())
-            case "historically":
+            case _TokenKind.HISTORICALLY:
                 window = self.window()
                 return historically(self.unary(), window)
-            case "once":
+            case _TokenKind.ONCE:
                 window = self.window()
                 return once(self.unary(), window)
-            case "true" | "false":
-                return Constant(token.kind == "true")
-            case "atom":
+            case _TokenKind.TRUE | _TokenKind.FALSE:
+                return Constant(token.kind is _TokenKind.TRUE)
+            case _TokenKind.ATOM:
                 content = token.text[1:-1].strip()
                 if not content:
                     raise _ProblemError(token.span, "there is no condition in these braces")
                 return Atom(content)
-            case "(":
+            case _TokenKind.OPEN:
                 formula = self.implication()
-                if not self.accept(")"):
+                if not self.accept(_TokenKind.CLOSE):
                     raise _ProblemError(self.next.span, "`)` is expected")
                 return formula
-            case "bounds":
+            case _TokenKind.BOUNDS:
                 raise _ProblemError(token.span, "bounds are only allowed after `S`, `H` or `O`: `O[:5] { alarm }`")
-            case "end":
+            case _TokenKind.END:
                 raise _ProblemError(token.span, "expected a condition in braces: `{ level < 30 }`")
         raise _ProblemError(token.span, f"expected a condition in braces instead of `{token.text}`: `{{ level < 30 }}`")
 
     def window(self) -> Window:
-        if self.next.kind != "bounds":
+        if self.next.kind is not _TokenKind.BOUNDS:
             return Window()
         token = self.take()
         match = _BOUNDS.fullmatch(token.text)

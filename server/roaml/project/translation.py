@@ -14,7 +14,7 @@ from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
-from roaml.model.property_file import EVENT
+from roaml.model.property_file import PortVariableKind
 from roaml.model.property_links import LinkedFile, LinkedProperty
 from roaml.model.property_ports import LinkedVariable
 from roaml.model.size import Size
@@ -62,9 +62,9 @@ def _observed(property_: LinkedProperty) -> ObservedProperty:
 
 
 def _observed_variable(variable: LinkedVariable) -> ObservedVariable:
-    initial = None if variable.kind == EVENT else variable.written.initial
+    initial = None if variable.kind is PortVariableKind.EVENT else variable.written.initial
     tree = None if initial is None else initial.tree
-    return ObservedVariable(variable.id, variable.kind, variable.type, variable.parameter, tree)
+    return ObservedVariable(variable.id, variable.kind.value, variable.type, variable.parameter, tree)
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:

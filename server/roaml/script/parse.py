@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary
 from roaml.script.tree import (
     Assignment,
     Binary,
@@ -76,10 +77,24 @@ class ScriptProblem:
     replacement: str = ""
 
 
-class _Token(NamedTuple):
-    """`kind` is number, name, string, operator, junk or end; `start` and `end` are offsets in the decoded text."""
+class _TokenKind(Vocabulary):
+    """The values are names of groups in `_TOKEN`, but for `END`."""
 
-    kind: str
+    NUMBER = "number"
+    NAME = "name"
+    STRING = "string"
+    OPERATOR = "operator"
+    JUNK = "junk"
+    END = "end"
+
+
+_KINDS = {**{kind.value: kind for kind in _TokenKind}, "strange": _TokenKind.JUNK}
+
+
+class _Token(NamedTuple):
+    """`start` and `end` are offsets in the decoded text."""
+
+    kind: _TokenKind
     text: str
     start: int
     end: int
@@ -102,11 +117,11 @@ def parse(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
 
 def _tokens(text: str) -> list[_Token]:
     tokens = [
-        _Token("junk" if match.lastgroup == "strange" else match.lastgroup or "junk", match[0], *match.span())
+        _Token(_KINDS[match.lastgroup or "junk"], match[0], *match.span())
         for match in _TOKEN.finditer(text)
         if match.lastgroup != "space"
     ]
-    return [*tokens, _Token("end", "", len(text), len(text))]
+    return [*tokens, _Token(_TokenKind.END, "", len(text), len(text))]
 
 
 class _Parser:
@@ -132,12 +147,12 @@ class _Parser:
 
     def next(self) -> _Token:
         token = self.token
-        if token.kind != "end":
+        if token.kind is not _TokenKind.END:
             self.at += 1
         return token
 
     def takes(self, *texts: str) -> bool:
-        if self.token.kind == "operator" and self.token.text in texts:
+        if self.token.kind is _TokenKind.OPERATOR and self.token.text in texts:
             self.at += 1
             return True
         return False
@@ -147,11 +162,11 @@ class _Parser:
     def script(self) -> tuple[Script, tuple[ScriptProblem, ...]]:
         span = self.source.span(0, len(self.source.text))
         statements: list[Expr] = []
-        if self.token.kind == "end":
+        if self.token.kind is _TokenKind.END:
             self.problems.append(ScriptProblem(span, "the script is empty"))
         elif self.token.text == ";":
             self.problems.append(ScriptProblem(self.span(self.token), "a script cannot begin with `;`"))
-        while self.token.kind != "end":
+        while self.token.kind is not _TokenKind.END:
             if not self.takes(";"):
                 statements.append(self.statement())
         return Script(span, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
@@ -161,12 +176,12 @@ class _Parser:
         self.depth = 0
         try:
             expr = self.expression(_ASSIGNMENT)
-            if self.token.text in (")", ":") or self.token.kind == "junk" or self._begins_nothing():
+            if self.token.text in (")", ":") or self.token.kind is _TokenKind.JUNK or self._begins_nothing():
                 raise self.unexpected()
         except _MistakeError as mistake:
             place = mistake.token
             self.problems.append(ScriptProblem(self.span(place), mistake.message, mistake.replacement))
-            while self.token.kind != "end" and self.token.text != ";":
+            while self.token.kind is not _TokenKind.END and self.token.text != ";":
                 self.at += 1
             return ErrorExpr(self.since(start))
         return expr
@@ -174,14 +189,14 @@ class _Parser:
     def _begins_nothing(self) -> bool:
         """Whether the next token can neither continue this statement nor begin another one."""
         token = self.token
-        return token.kind == "operator" and token.text not in (";", "(", *UNARY)
+        return token.kind is _TokenKind.OPERATOR and token.text not in (";", "(", *UNARY)
 
     def unexpected(self) -> _MistakeError:
         token = self.token
         text = token.text
-        if token.kind == "end":
+        if token.kind is _TokenKind.END:
             return _MistakeError(token, "the script ends where a value is expected")
-        if token.kind == "junk":
+        if token.kind is _TokenKind.JUNK:
             return self._junk(token)
         if text in ASSIGNMENTS:
             return _MistakeError(token, f"`{text}` needs the name of an entry on its left")
@@ -235,7 +250,7 @@ class _Parser:
 
     def _strength(self) -> int | None:
         token = self.token
-        if token.kind != "operator":
+        if token.kind is not _TokenKind.OPERATOR:
             return None
         if token.text in BINARY:
             return BINARY[token.text]
@@ -264,7 +279,7 @@ class _Parser:
             return Conditional(self.since(start), left, yes, no)
         if strength == _COMPARISON:
             operators, operands = [operator.text], [left, self.expression(_COMPARISON + 1)]
-            while self.token.kind == "operator" and self.token.text in COMPARISONS:
+            while self.token.kind is _TokenKind.OPERATOR and self.token.text in COMPARISONS:
                 height = self.height
                 operators.append(self.next().text)
                 operands.append(self.expression(_COMPARISON + 1))
@@ -275,9 +290,9 @@ class _Parser:
 
     def operand(self) -> Expr:
         token = self.token
-        if token.kind == "operator" and token.text in UNARY:
+        if token.kind is _TokenKind.OPERATOR and token.text in UNARY:
             return self._unary()
-        if token.kind == "operator" and token.text == "(":
+        if token.kind is _TokenKind.OPERATOR and token.text == "(":
             self.at += 1
             inner = self.expression(_ASSIGNMENT)
             if not self.takes(")"):
@@ -285,14 +300,14 @@ class _Parser:
             return inner
         self.height = 1
         match token.kind:
-            case "number":
+            case _TokenKind.NUMBER:
                 return self._number()
-            case "name":
+            case _TokenKind.NAME:
                 self.at += 1
                 if token.text in ("true", "false"):
                     return Boolean(self.span(token), token.text == "true")
                 return self._name(token)
-            case "string":
+            case _TokenKind.STRING:
                 self.at += 1
                 return String(self.span(token), token.text[1:-1])
         raise self.unexpected()
@@ -311,7 +326,7 @@ class _Parser:
         if token.text == "@":
             raise _MistakeError(token, "`@` must be followed by the name of an entry of the root blackboard")
         follows = self.token
-        if token.text in _WORDS and follows.kind in ("name", "number", "string"):
+        if token.text in _WORDS and follows.kind in (_TokenKind.NAME, _TokenKind.NUMBER, _TokenKind.STRING):
             raise _MistakeError(
                 token, f"`{token.text}` is not an operator; write `{_WORDS[token.text]}`", _WORDS[token.text]
             )
@@ -320,7 +335,11 @@ class _Parser:
     def _number(self) -> Expr:
         token = self.next()
         follows = self.token
-        if follows.start == token.end and follows.kind in ("name", "number", "junk") and follows.text[0] != '"':
+        if (
+            follows.start == token.end
+            and follows.kind in (_TokenKind.NAME, _TokenKind.NUMBER, _TokenKind.JUNK)
+            and follows.text[0] != '"'
+        ):
             word = token._replace(text=token.text + follows.text, end=follows.end)
             self.at += 1
             raise _MistakeError(word, f"`{word.text}` is neither a number nor a name")

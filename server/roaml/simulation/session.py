@@ -93,6 +93,8 @@ class SavedSession:
             raise ValueError(f"this is not a saved session: {error}") from None
 
 
+RECENT_INTERVAL = 16
+"""The number of steps between two snapshots that are kept for going back step by step."""
 MAX_STEPS = 10_000_000
 """The maximum number of steps of a run."""
 
@@ -127,6 +129,7 @@ class Session:
         self._resting = [resting(automaton) for automaton in self._automata]
         self._follower = Follower(self._automata, self._run.start, clock)
         self._followers: dict[int, Follower] = {0: self._follower.copied()}
+        self._recent: dict[int, Follower] = {}
         self.jump(len(self._run.steps) if saved is None else saved.position)
 
     # ------------------------------------------------------------ the position
@@ -274,6 +277,7 @@ class Session:
         step = self._run.advance(decision)
         if before is not None and step is not before:
             self._followers = {at: follower for at, follower in self._followers.items() if at <= position}
+            self._recent = {}
         if step is not None:
             self._read(step)
         return step
@@ -375,11 +379,15 @@ class Session:
     def jump(self, position: int) -> None:
         """Go to the state after `position` steps; takes new steps if there are fewer."""
         self._run.go_to(min(position, len(self._run.steps)))
-        nearest = max(at for at in self._followers if at <= self.position)
+        followers = {**self._followers, **self._recent}
+        nearest = max(at for at in followers if at <= self.position)
         if not nearest <= self._follower.position <= self.position:
-            self._follower = self._followers[nearest].copied()
+            self._follower = followers[nearest].copied()
+            self._recent = {at: follower for at, follower in self._recent.items() if at <= nearest}
         for step in self._run.steps[self._follower.position : self.position]:
             self._read(step)
+            if step.number % RECENT_INTERVAL == 0 and self.position - step.number < SNAPSHOT_INTERVAL:
+                self._recent[step.number] = self._follower.copied()
         while self.position < position and self.step() is not None:
             pass
 

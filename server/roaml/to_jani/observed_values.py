@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Boolean, Conditional, Expr, Name, Number
-from roaml.expr.types import is_kind
+from roaml.expr.types import ScalarKind, is_kind
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.model import Variable
 from roaml.jani.semantics import evaluate
@@ -87,7 +87,7 @@ class ObservedValues:
         if parameter in self.shapes:
             return Name(_NOWHERE, parameter)
         # No sender sets the field.
-        return Boolean(_NOWHERE, False) if is_kind(variable.type, "bool") else Number(_NOWHERE, 0, False)
+        return Boolean(_NOWHERE, False) if is_kind(variable.type, ScalarKind.BOOL) else Number(_NOWHERE, 0, False)
 
 
 def observed_values(

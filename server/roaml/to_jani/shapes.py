@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from roaml.expr.types import Array, EmptyArray, Scalar, Type, is_kind, unwrap
+from roaml.expr.types import Array, EmptyArray, Scalar, ScalarKind, Type, is_kind, unwrap
 from roaml.jani.expressions import ArrayConstructor, ArrayValue, Boolean, Expression, Integer, Real
 from roaml.jani.types import BOOL, INT, REAL, ArrayType, BasicType
 from roaml.jani.types import Type as JaniType
 
-_KINDS = {"bool": BOOL, "int": INT, "real": REAL, "string": INT}
+_KINDS = {ScalarKind.BOOL: BOOL, ScalarKind.INT: INT, ScalarKind.REAL: REAL, ScalarKind.STRING: INT}
 _ZEROS: dict[BasicType, Expression] = {BOOL: Boolean(False), INT: Integer(0), REAL: Real(0.0)}
 _ITERATOR = "__array_iterator_dim_"
 
@@ -53,7 +53,7 @@ def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape
     """The shape of a variable. A parameter of an event has the capacity `max_array_size` in every dimension
     (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
-    if isinstance(element, EmptyArray) or is_kind(element, "string"):
+    if isinstance(element, EmptyArray) or is_kind(element, ScalarKind.STRING):
         bounds = (*bounds, None)
     capacities = tuple(max_array_size if sent or bound is None else bound for bound in bounds)
     return ArrayShape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities)
@@ -83,4 +83,4 @@ def constructed_zero(shape: ArrayShape) -> Expression:
 
 
 def is_array(type_: Type) -> bool:
-    return isinstance(type_, (Array, EmptyArray)) or is_kind(type_, "string")
+    return isinstance(type_, (Array, EmptyArray)) or is_kind(type_, ScalarKind.STRING)

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
     Binary,
@@ -327,7 +327,7 @@ class JaniScope:
                 return operand
 
     def binary(self, expr: Binary) -> Expression:
-        if expr.operator.kind == "equality":
+        if expr.operator.kind is OperatorKind.EQUALITY:
             left, right = self.array(expr.left), self.array(expr.right)
             if left is not None and right is not None:
                 same = equal_arrays(left, right)

@@ -22,8 +22,8 @@ from roaml.jani.properties import (
     UnaryPath,
     UnaryPathOperator,
 )
+from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
-from roaml.mocks.unfolding import ExecutedNode
 from roaml.scxml.names import TREE_ROOT_PREFIX
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker

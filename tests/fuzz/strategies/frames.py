@@ -261,7 +261,7 @@ def _notification(random: Random, uri: str, number: int) -> Message:
 # --------------------------------------------------------------------- damage
 
 
-def _frame(message: Json) -> bytes:
+def frame(message: Json) -> bytes:
     body = json.dumps(message).encode()
     return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
 
@@ -271,13 +271,13 @@ def _odd_value(random: Random, message: Message) -> bytes:
     places = list(_places(message))
     holder, key = random.choice(places)
     holder[key] = copy.deepcopy(random.choice(ODD))
-    return _frame(message)
+    return frame(message)
 
 
 def _missing(random: Random, message: Message) -> bytes:
     holder, key = random.choice(list(_places(message)))
     del holder[key]
-    return _frame(message)
+    return frame(message)
 
 
 def _places(value: Json) -> Iterator[tuple[Json, Any]]:
@@ -332,16 +332,16 @@ def _noise(random: Random, message: Message) -> bytes:
         b"{}",
         b"Content-",
     ]
-    return random.choice(noise) + b"\r\n" + _frame(message)
+    return random.choice(noise) + b"\r\n" + frame(message)
 
 
 def _twice(_: Random, message: Message) -> bytes:
-    return _frame(message) * 2
+    return frame(message) * 2
 
 
 def _early_end(random: Random, message: Message) -> bytes:
     ending = {"jsonrpc": "2.0", "id": 5000, "method": "shutdown"}
-    return _frame(ending) + _frame(message) if random.random() < 0.5 else _frame(message) + _frame(ending)
+    return frame(ending) + frame(message) if random.random() < 0.5 else frame(message) + frame(ending)
 
 
 WAYS: tuple[Callable[[Random, Message], bytes], ...] = (
@@ -375,12 +375,12 @@ def make(seed: int) -> Frames:
             case.damage.append(f"{way.__name__} in message {number}, {message['method']}")
             parts.append(way(random, copy.deepcopy(message)))
         else:
-            parts.append(_frame(message))
+            parts.append(frame(message))
             if "id" in message:
                 case.asked.append(message["id"])
     # Behind damage in an id, two requests may have the same one.
     case.asked = [] if any("_twice" in each or "_odd" in each for each in case.damage) else case.asked
-    parts += (b"\r\n", _frame({"jsonrpc": "2.0", "id": LAST, "method": "no/such", "params": {}}))
+    parts += (b"\r\n", frame({"jsonrpc": "2.0", "id": LAST, "method": "no/such", "params": {}}))
     case.data = b"".join(parts)
     return case
 

@@ -30,6 +30,8 @@ interface Choices {
     readonly end: string | null;
     readonly fault: string | null;
     readonly isByHand: boolean;
+    readonly property: string;
+    readonly verdicts: Readonly<Record<string, "passed" | "failed" | "undecided">>;
     readonly choices: readonly Choice[];
 }
 
@@ -44,6 +46,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
     private readonly subscriptions: { dispose(): unknown }[];
     private session: vscode.DebugSession | undefined;
     private entries: readonly Entry[] = [];
+    private revealed: vscode.DebugSession | undefined;
 
     readonly onDidChangeTreeData = this.changed.event;
 
@@ -80,6 +83,11 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         return item;
     }
 
+    /** `reveal` needs it. */
+    getParent({ choice, outcome }: Entry): Entry | undefined {
+        return outcome && this.entries.find((entry) => entry.choice === choice);
+    }
+
     getChildren(entry?: Entry): Entry[] {
         if (entry === undefined) return [...this.entries];
         if (entry.outcome || entry.choice.outcomes.length < 2) return [];
@@ -92,16 +100,15 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
 
     private async update(session: vscode.DebugSession): Promise<void> {
         try {
-            const found = (await session.customRequest("choices")) as Choices;
-            const time = found.time === null ? "" : `, ${found.time.toFixed(3)} s`;
-            const hand = found.isByHand ? `, ${vscode.l10n.t("chosen by hand")}` : "";
-            const description = `${vscode.l10n.t("step {0}", found.step)}${time}${hand}`;
-            this.show(
-                session,
-                found.choices.map((choice) => ({ choice })),
-                description,
-                found.fault ?? found.end ?? "",
-            );
+            const choices = (await session.customRequest("choices")) as Choices;
+            const time = choices.time === null ? "" : `, ${choices.time.toFixed(3)} s`;
+            const hand = choices.isByHand ? `, ${vscode.l10n.t("chosen by hand")}` : "";
+            const description = `${vscode.l10n.t("step {0}", choices.step)}${time}${hand}`;
+            const entries = choices.choices.map((choice) => ({ choice }));
+            const end = choices.end === null ? "" : vscode.l10n.t("The run has ended: {0}.", choices.end);
+            const messages = [choices.fault ?? "", end, verdict(choices)];
+            this.show(session, entries, description, messages.filter((text) => text !== "").join(" "));
+            await this.reveal(session);
         } catch (error) {
             this.log.debug(`no choices: ${String(error)}`);
         }
@@ -118,6 +125,14 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         this.view.description = description;
         this.view.message = message;
         this.changed.fire(undefined);
+    }
+
+    /** Opens the view at the first stop of a session. */
+    private async reveal(session: vscode.DebugSession): Promise<void> {
+        const [first] = this.entries;
+        if (first === undefined || this.revealed === session) return;
+        this.revealed = session;
+        if (!this.view.visible) await this.view.reveal(first, { select: false, focus: false });
     }
 
     private async choose({ choice, outcome }: Entry): Promise<void> {
@@ -141,6 +156,14 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
             void vscode.window.showErrorMessage(error instanceof Error ? error.message : String(error));
         }
     }
+}
+
+/** The verdict on the property of the run, in its current state. */
+function verdict({ property, verdicts }: Choices): string {
+    const status = verdicts[property];
+    if (status === "passed") return vscode.l10n.t("The property {0} holds in this run.", property);
+    if (status === "failed") return vscode.l10n.t("The property {0} does not hold in this run.", property);
+    return status === undefined ? "" : vscode.l10n.t("The property {0} is not decided yet.", property);
 }
 
 function percent(probability: number): string {

@@ -11,6 +11,7 @@ from roaml.expr.zero import zero_text
 from roaml.model.name_forms import variable_problem
 from roaml.project.analysis import Analysis
 from roaml.project.paths import full, seen_from, split_name
+from roaml.roles import Direction
 from roaml.scxml.names import safe_name
 from roaml.text import SourceFile
 
@@ -57,7 +58,7 @@ def node(name: str) -> str:
 """
 
 
-def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool = False) -> str:
+def plugin(name: str, ports: Iterable[tuple[Direction, str, str]] = (), *, child: bool = False) -> str:
     """A plugin that reads and sets its ports and returns SUCCESS at once or, with a child, the status of the child.
 
     Args:
@@ -67,13 +68,17 @@ def plugin(name: str, ports: Iterable[tuple[str, str, str]] = (), *, child: bool
     """
     ports = tuple(ports)
     inputs = [
-        (key, f"{key}_input" if variable_problem(key) else key, type_) for way, key, type_ in ports if way == "in"
+        (key, f"{key}_input" if variable_problem(key) else key, type_)
+        for way, key, type_ in ports
+        if way is Direction.IN
     ]
-    outputs = [(key, type_) for way, key, type_ in ports if way == "out"]
+    outputs = [(key, type_) for direction, key, type_ in ports if direction is Direction.OUT]
     parts = []
     if ports:
         parts.append(
-            "".join(f'    <bt_declare_port_{way} key="{key}" type="{type_}" />\n' for way, key, type_ in ports)
+            "".join(
+                f'    <bt_declare_port_{direction} key="{key}" type="{type_}" />\n' for direction, key, type_ in ports
+            )
         )
     if inputs:
         data = (f'        <data id="{id_}" type="{type_}" expr="{_zero(type_)}" />\n' for _, id_, type_ in inputs)

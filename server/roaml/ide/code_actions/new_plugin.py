@@ -12,6 +12,7 @@ from roaml.model.system import System
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.paths import folder_of, name_of
+from roaml.roles import Direction
 from roaml.scxml.names import safe_name
 
 
@@ -51,15 +52,15 @@ def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target
     return WorkspaceEdit({s: changes for s, changes in edits.items() if changes}, {target: text})
 
 
-def port_of(system: System | None, setting: PortSetting) -> tuple[str, str, str]:
+def port_of(system: System | None, setting: PortSetting) -> tuple[Direction, str, str]:
     """The direction, key and type that a setting suggests: a variable that another node sets is read, others are
     set."""
     variable = setting.variable
     if variable is None:
-        return "in", setting.key.value, _type_of(setting.value.value)
+        return Direction.IN, setting.key.value, _type_of(setting.value.value)
     bound = system.blackboard.get(variable.removeprefix("@"), ()) if system else ()
     types = [use.port.type for use in bound if use.port.type != "any"]
-    direction = "in" if any(use.port.written for use in bound) else "out"
+    direction = Direction.IN if any(use.port.written for use in bound) else Direction.OUT
     return direction, setting.key.value, types[0] if types else "int32"
 
 

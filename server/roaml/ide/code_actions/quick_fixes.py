@@ -29,6 +29,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
+from roaml.roles import Direction
 from roaml.rules.elements.missing_element import MissingChild
 from roaml.rules.files.missing_file import UnusableFile
 from roaml.rules.support.names import WrongName
@@ -245,7 +246,7 @@ def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
     systems = (analysis.system(system) for system in analysis.memberships.get(path, ()))
     for variable in (ports for system in systems if system for ports in system.blackboard.values()):
         own = [bound for bound in variable if bound.automaton.path == path and bound.port.key == key]
-        if any(bound.port.direction == "out" for bound in own) and any(bound.port.read for bound in variable):
+        if any(bound.port.direction is Direction.OUT for bound in own) and any(bound.port.read for bound in variable):
             return True
     return False
 

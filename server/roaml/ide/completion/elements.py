@@ -20,7 +20,7 @@ from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, XML_PROPERTIES, AttributeType, ElementType, Grammar
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
-from roaml.roles import SymbolKind
+from roaml.roles import NodeKind, SymbolKind, ValueRole
 from roaml.xml_syntax import Element
 
 _MAX_CHOICES = 20
@@ -96,7 +96,7 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
 
 def likely(request: Request, subject: CompletionSubject, attribute: AttributeType) -> list[str]:
     """The likely value of an attribute, if it has only a few choices."""
-    if attribute.value == "ros-type":
+    if attribute.value is ValueRole.ROS_TYPE:
         return []
     labels = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
     return labels if len(labels) <= _MAX_CHOICES else []
@@ -110,7 +110,11 @@ def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
         return True
     if attribute.name in ("name", "ID") and type_.node:
         return False
-    names = attribute.defines or attribute.refers or attribute.value in ("type", "ros-type", "number")
+    names = (
+        attribute.defines
+        or attribute.refers
+        or attribute.value in (ValueRole.TYPE, ValueRole.ROS_TYPE, ValueRole.NUMBER)
+    )
     return bool(names) or attribute.name == "expr"
 
 
@@ -118,7 +122,7 @@ def _close(made: Snippet, name: str, type_: ElementType | None) -> None:
     """The end of a start tag, and the end tag if the element usually has content."""
     if type_ is not None and type_.text and not type_.attributes:
         made.text(">").end().text(f"</{name}>")
-    elif type_ is not None and type_.node in ("action", "condition", "subtree"):
+    elif type_ is not None and type_.node in (NodeKind.ACTION, NodeKind.CONDITION, NodeKind.SUBTREE):
         made.text("/>").end()
     elif type_ is not None and (type_.any_child or any(child not in type_.attributes for child in type_.children)):
         made.text(">\n\t").end().text(f"\n</{name}>")
@@ -173,7 +177,7 @@ def _known_nodes(request: Request, *, bare: bool) -> Iterator[CompletionItem]:
         known = forest.node(name) if forest else None
         if known is not None:
             insert = _plugin(request, name, request.file.grammar, has_children=known.children[1] > 0) if bare else ""
-            detail = f"{known.kind.value}, {known.library}" if known.library else known.kind.value
+            detail = f"{known.kind}, {known.library}" if known.library else str(known.kind)
             about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
             rank = Rank.USUAL if known.library else Rank.BEST
             yield CompletionItem(name, ItemKind.PLUGIN, insert, detail, about, rank)
@@ -185,7 +189,7 @@ def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
     else:
         insert = _plugin(request, type_.name, request.file.grammar, has_children=bool(type_.any_child)) if bare else ""
     rank = Rank.USUAL if type_.translated and not type_.use else Rank.LAST
-    detail = type_.node if type_.translated else f"{type_.node}, cannot be translated"
+    detail = str(type_.node) if type_.translated else f"{type_.node}, cannot be translated"
     about = Symbol(parents[-1].element.name, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
     return CompletionItem(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
 

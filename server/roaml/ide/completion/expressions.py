@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
-from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, Struct, StructKind, Type, fits, unwrap, wrap
+from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, ScalarKind, Struct, StructKind, Type, fits, unwrap, wrap
 from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
@@ -211,7 +211,7 @@ def _members(request: Request, object_: str, scope: Mapping[str, Type]) -> Itera
         return
     tree, findings = parse(Decoded(object_, 0))
     type_ = UNKNOWN if findings else infer(tree, scope.get)[0]
-    if isinstance(type_, Array) or (isinstance(type_, Scalar) and type_.kind == "string"):
+    if isinstance(type_, Array) or (isinstance(type_, Scalar) and type_.kind is ScalarKind.STRING):
         yield CompletionItem("length", ItemKind.MEMBER, detail=str(INT))
     # The member of an array of structs is the array of the members (docs/spec/types.md#leaves).
     inner, bounds = unwrap(type_)

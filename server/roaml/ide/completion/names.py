@@ -16,7 +16,7 @@ from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, NodeKind, SymbolKind
 
 _SHOWN = 3
 
@@ -92,7 +92,7 @@ def _ports(request: Request, subject: CompletionSubject) -> Iterator[CompletionI
                 about = Symbol(path, SymbolKind.PORT, declared.key)
                 yield CompletionItem(declared.key, ItemKind.PORT, detail=declared.type, about=about)
         return
-    direction = {"bt_get_input": "in", "bt_set_output": "out"}.get(subject.type.name)
+    direction = {"bt_get_input": Direction.IN, "bt_set_output": Direction.OUT}.get(subject.type.name)
     for port in request.machine.ports:
         if port.key is not None and direction in (None, port.direction):
             detail = port.type.text if port.type else ""
@@ -220,17 +220,17 @@ def _plugin_names(request: Request, subject: CompletionSubject) -> Iterator[Comp
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
         yield CompletionItem(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
-    category = subject.type.name.lower()
+    category = next((kind for kind in NodeKind if kind.value == subject.type.name.lower()), None)
     if request.forest is not None:
         for name in dict.fromkeys(request.forest.names):
             known = request.forest.node(name)
-            if known is not None and known.kind.value == category:
+            if known is not None and known.kind is category:
                 about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
                 yield CompletionItem(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
         return
     for name in builtin_plugins():
         type_ = request.file.grammar.elements[name]
-        if type_.node == category:
+        if type_.node is category:
             yield CompletionItem(
                 name,
                 ItemKind.PLUGIN,

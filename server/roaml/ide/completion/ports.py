@@ -18,7 +18,7 @@ from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
 from roaml.model.value_types import CHANNEL_KINDS
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.xml_syntax import Element
 
 
@@ -28,7 +28,7 @@ class SettablePort:
 
     key: str
     type: str
-    direction: str
+    direction: Direction
     required: bool
     default: str
     about: Symbol
@@ -75,7 +75,7 @@ def _of_library(known: Node) -> Iterator[SettablePort]:
         if not port.alias_of:
             about = Symbol("", SymbolKind.JSON, port.name, describe_forest.port(known, port))
             default = port.default or ""
-            yield SettablePort(port.name, port.type, port.direction.value, port.required, default, about)
+            yield SettablePort(port.name, port.type, port.direction, port.required, default, about)
 
 
 def node_name(element: Element) -> str:
@@ -140,7 +140,7 @@ def _around(element: Element, offset: int) -> bool:
 
 
 def _constants(request: Request, name: str, port: SettablePort) -> Iterator[CompletionItem]:
-    if port.direction == "out":
+    if port.direction is Direction.OUT:
         return
     if port.default and blackboard_variable(port.default) is None:
         yield CompletionItem(port.default, ItemKind.VALUE, detail="default", rank=Rank.LIKELY)
@@ -185,4 +185,6 @@ def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[Compl
 
 def add_port(snippet: Snippet, port: SettablePort) -> None:
     """`key="…"`; the default of an output is a variable with its own name."""
-    snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction == "out" else [port.default]).text('"')
+    snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction is Direction.OUT else [port.default]).text(
+        '"'
+    )

@@ -15,7 +15,7 @@ from roaml.ide.names.in_property_file import SYMBOL_KINDS
 from roaml.ide.property_values import names_of_port
 from roaml.ide.syntax import Typed
 from roaml.language import XML_PROPERTIES, AttributeType, ElementType
-from roaml.model.property_file import NODE, PLAIN, STATE, TOPIC, Port
+from roaml.model.property_file import Port, PortKind, PortVariableKind
 from roaml.model.property_ports import EVENTS, LinkedVariable, names_of, part_of
 from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
@@ -96,7 +96,7 @@ def _ports(system: System) -> Iterator[CompletionItem]:
     for kind, name, channel in _channels(system):
         type_ = next((endpoint.use.type for endpoint in channel.endpoints), "")
         for event in EVENTS[kind]:
-            attribute = f"{kind[4:]}_name"
+            attribute = f"{kind.value.removeprefix('ros_')}_name"
             snippet = Snippet().text(f'{kind} {attribute}="{name}" type="{type_}" event="{event}">\n\t')
             insert = str(snippet.text('<event_var id="').stop(["name"]).text(f'"/>\n</{kind}>').end())
             symbol = Symbol(system.path, SYMBOL_KINDS[kind], channel.name)
@@ -108,7 +108,7 @@ def _ports(system: System) -> Iterator[CompletionItem]:
         yield CompletionItem(f"bt_node {path}", ItemKind.SKELETON, insert, label, None, Rank.USUAL)
 
 
-def _channels(system: System) -> Iterator[tuple[str, str, Channel]]:
+def _channels(system: System) -> Iterator[tuple[PortKind, str, Channel]]:
     """Kind of port, name as written, channel."""
     for kind, symbol_kind in SYMBOL_KINDS.items():
         for channel in system.channels(symbol_kind).values():
@@ -118,15 +118,19 @@ def _channels(system: System) -> Iterator[tuple[str, str, Channel]]:
 
 def is_wanted(parents: tuple[Typed, ...], type_: ElementType, attribute: AttributeType) -> bool:
     """Whether a new element gets an attribute."""
-    if type_.name == STATE and attribute.name in ("field", "param"):
-        in_plain = bool(parents) and parents[-1].element.name == PLAIN
+    if type_.name == PortVariableKind.STATE.value and attribute.name in ("field", "param"):
+        in_plain = bool(parents) and parents[-1].element.name == PortKind.PLAIN.value
         return (attribute.name == "param") == in_plain
     return attribute.required or attribute.name in ("pattern", "within")
 
 
 def has_effect(parents: tuple[Typed, ...], type_: ElementType, attribute: AttributeType) -> bool:
     """Whether an attribute says anything where it is written."""
-    return type_.name != STATE or attribute.name not in ("field", "param") or is_wanted(parents, type_, attribute)
+    return (
+        type_.name != PortVariableKind.STATE.value
+        or attribute.name not in ("field", "param")
+        or is_wanted(parents, type_, attribute)
+    )
 
 
 # ---------------------------------------------------------------------- values
@@ -179,7 +183,7 @@ def _ends(system: System, port: Port | None) -> Iterator[CompletionItem]:
 def _is_named(channel: Channel, port: Port) -> bool:
     name = port.name.value if port.name is not None else ""
     written = (endpoint.automaton.interface_name(endpoint.use) or "" for endpoint in channel.endpoints)
-    if port.kind == TOPIC:
+    if port.kind is PortKind.TOPIC:
         return name.strip("/") in (text.strip("/") for text in written)
     return name in written
 
@@ -192,7 +196,7 @@ def fields(request: Request, subject: CompletionSubject) -> Iterator[CompletionI
 
 
 def _fields(request: Request, port: Port | None) -> Iterator[tuple[str, Type, str]]:
-    if port is not None and port.kind == NODE:
+    if port is not None and port.kind is PortKind.NODE:
         yield "status", BASE_TYPES["int32"], ""
         return
     part = part_of(port, request.environment.interface) if port is not None else None
@@ -265,8 +269,13 @@ def _written(request: Request) -> Mapping[str, LinkedVariable]:
     for _, written in request.property_file.variables if request.property_file is not None else ():
         if written.id is not None:
             text = written.type.text.strip() if written.type is not None else ""
-            type_ = BASE_TYPES.get(text, BASE_TYPES["int32"] if written.kind in ("goal_id", "result_code") else UNKNOWN)
-            is_bool = written.kind in ("event_var", "accepted")
+            type_ = BASE_TYPES.get(
+                text,
+                BASE_TYPES["int32"]
+                if written.kind in (PortVariableKind.GOAL_ID, PortVariableKind.RESULT_CODE)
+                else UNKNOWN,
+            )
+            is_bool = written.kind in (PortVariableKind.EVENT, PortVariableKind.ACCEPTED)
             found[written.id.value] = LinkedVariable(
                 written.id.value, written.kind, BOOL if is_bool else type_, "", written
             )

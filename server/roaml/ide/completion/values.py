@@ -20,11 +20,11 @@ from roaml.interfaces.types import Kind
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import type_of
-from roaml.roles import SymbolKind
+from roaml.roles import SymbolKind, ValueRole
 from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
-_EXPRESSIONS = ("expression", "location")
+_EXPRESSIONS = (ValueRole.EXPRESSION, ValueRole.LOCATION)
 _OF_ROS = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
@@ -80,29 +80,29 @@ def in_text(request: Request, subject: CompletionSubject, span: Span) -> tuple[S
 
 
 def _of_value(
-    request: Request, subject: CompletionSubject, name: str, value: str, value_type: str
+    request: Request, subject: CompletionSubject, name: str, value: ValueRole | None, value_type: str
 ) -> Iterator[CompletionItem]:
     match value:
-        case "type" if property_files.is_property_file(request):
+        case ValueRole.TYPE if property_files.is_property_file(request):
             yield from property_files.field_type(request, subject)
             yield from types(request)
-        case "type":
+        case ValueRole.TYPE:
             yield from types(request)
-        case "ros-type":
+        case ValueRole.ROS_TYPE:
             if property_files.is_property_file(request):
                 yield from property_files.port_types(request, subject)
             yield from ros_types(request, value_type)
-        case "constant" if "bound" in name:
+        case ValueRole.CONSTANT if "bound" in name:
             yield from _bounds(request, subject)
-        case "constant":
+        case ValueRole.CONSTANT:
             yield from _constants(request, subject)
-        case "status":
+        case ValueRole.STATUS:
             yield from (CompletionItem(name, ItemKind.VALUE) for name in STATUSES)
-        case "child-index":
+        case ValueRole.CHILD_INDEX:
             yield from _children(request)
-        case "path":
+        case ValueRole.PATH:
             yield from paths(request, subject)
-        case "number" if subject.type.name == "target":
+        case ValueRole.NUMBER if subject.type.name == "target":
             yield from _remaining_probability(subject)
 
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 
 from roaml.ide.describe.markdown import code, lines, name, paragraphs, prose
 from roaml.libraries import Node, Port
+from roaml.roles import NodeKind
 
 
 def node(known: Node) -> str:
     """A node: its ports, its behaviour, and the source of its declaration."""
     ports = "".join(f"\n  {_line(port)}" for port in known.ports if not port.alias_of)
-    kind = known.kind.value if known.kind.value in ("action", "condition", "decorator") else f"{known.kind.value} node"
+    kind = (
+        str(known.kind)
+        if known.kind in (NodeKind.ACTION, NodeKind.CONDITION, NodeKind.DECORATOR)
+        else f"{known.kind} node"
+    )
     since = f" since {known.since}" if known.since else ""
     return paragraphs(
         code(f"{kind} {known.name}{ports}"),
@@ -29,7 +34,7 @@ def port(known: Node, described: Port) -> str:
 def _line(described: Port) -> str:
     default = f" = {described.default}" if described.default else ""
     type_ = f" : {described.type}" if described.type else ""
-    return f"{described.direction.value} {described.name}{type_}{default}"
+    return f"{described.direction} {described.name}{type_}{default}"
 
 
 def _text(text: str, library: str) -> str:

@@ -13,18 +13,19 @@ from roaml.expr.operators import FUNCTIONS, Function, Operator, UnaryOperator
 from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, Scalar, Struct, Type, unwrap
 from roaml.ide.describe.markdown import code, lines, name, names, paragraphs
 from roaml.language import AttributeType, ElementType, PortType, ValueChoice
+from roaml.roles import NodeKind, ValueRole
 
 _WANTED = {
-    "expression": "an expression",
-    "constant": "a constant expression",
-    "location": "the target that is written",
+    ValueRole.EXPRESSION: "an expression",
+    ValueRole.CONSTANT: "a constant expression",
+    ValueRole.LOCATION: "the target that is written",
 }
 _ROS = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 
 
 def element(type_: ElementType) -> str:
     """An element: its syntax, its meaning, the event variables in it."""
-    if type_.node and type_.node != "subtree":
+    if type_.node and type_.node is not NodeKind.SUBTREE:
         return builtin_node(type_)
     required = "".join(f' {a.name}="…"' for a in type_.attributes.values() if a.required)
     known = names(binding.name for binding in type_.binds)
@@ -39,7 +40,7 @@ def builtin_node(type_: ElementType) -> str:
     """A node of BehaviorTree.CPP: its ports and its behaviour."""
     ports = "".join(f"\n  {port(setting.name, setting.port)}" for setting in type_.ports if setting.port)
     cannot = "" if type_.translated else "It cannot be translated."
-    kind = "node" if type_.node == "subtree" else f"{type_.node} node".strip()
+    kind = "node" if type_.node in (None, NodeKind.SUBTREE) else f"{type_.node} node"
     return paragraphs(
         code(f"{kind} {type_.name}{ports}"),
         type_.documentation,
@@ -79,10 +80,10 @@ def attribute(type_: AttributeType) -> str:
 
 def _wanted(type_: AttributeType) -> str:
     """A phrase for the value of an attribute."""
-    if type_.value == "ros-type":
+    if type_.value is ValueRole.ROS_TYPE:
         return _ROS.get(type_.value_type, "")
-    phrase = _WANTED.get(type_.value, "")
-    if type_.value == "expression" and type_.value_type not in ("", "any"):
+    phrase = _WANTED.get(type_.value, "") if type_.value else ""
+    if type_.value is ValueRole.EXPRESSION and type_.value_type not in ("", "any"):
         phrase = f"{phrase} of type {name(type_.value_type)}"
     simple = type_.simple
     if simple.above is not None:
@@ -113,8 +114,7 @@ def signature(math_function: Function) -> str:
     """A function of `Math` with its parameters, `?` after the optional ones, and its result."""
     needed = len(math_function.parameters) - math_function.optional
     parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
-    result = {"same": "int or float", "real": "float"}.get(math_function.result, math_function.result)
-    return f"Math.{math_function.name}({', '.join(parameters)}) : {result}"
+    return f"Math.{math_function.name}({', '.join(parameters)}) : {math_function.result}"
 
 
 def math() -> str:

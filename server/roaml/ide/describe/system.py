@@ -21,7 +21,7 @@ from roaml.model.structs import StructDeclaration, resolve_structs
 from roaml.model.system import CLOCK_TOPIC, BoundPort, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
 
 _NODE = re.compile(r"bt_(\d{1,9})_")
@@ -188,7 +188,9 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
         code(f"{{{symbol.name}}}{type_}"),
         lines(
             f"Blackboard variable of tree {name(symbol.scope)}" if symbol.scope else "Blackboard variable",
-            f"**Written by** {_ports(bound, 'out')} · **read by** {_ports(bound, 'in')}" if bound else "",
+            f"**Written by** {_ports(bound, Direction.OUT)} · **read by** {_ports(bound, Direction.IN)}"
+            if bound
+            else "",
             _in_properties(variables),
         ),
     )
@@ -203,8 +205,8 @@ def _full_name(variable: GlobalVariable) -> str:
     )
 
 
-def _ports(bound: Iterable[BoundPort], direction: str) -> str:
-    port_names = (f"{b.automaton.outline.name}.{b.port.key}" for b in bound if b.port.direction == direction)
+def _ports(bound: Iterable[BoundPort], direction: Direction) -> str:
+    port_names = (f"{b.automaton.outline.name}.{b.port.key}" for b in bound if b.port.direction is direction)
     return names(port_names) or "nobody"
 
 

@@ -6,16 +6,7 @@ from __future__ import annotations
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.markdown import code, name, paragraphs
 from roaml.ide.names.lookup import thing
-from roaml.model.property_file import (
-    ACCEPTED,
-    EVENT,
-    GOAL_ID,
-    RESULT_CODE,
-    Port,
-    PortVariable,
-    PropertyFile,
-    WrittenProperty,
-)
+from roaml.model.property_file import Port, PortVariable, PortVariableKind, PropertyFile, WrittenProperty
 from roaml.model.property_sentences import event_clause, formula, quoted, sentence
 from roaml.project.analysis import Analysis
 
@@ -45,19 +36,25 @@ def variable(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _type(declared: PortVariable) -> str:
-    if declared.kind in (GOAL_ID, RESULT_CODE):
+    if declared.kind in (PortVariableKind.GOAL_ID, PortVariableKind.RESULT_CODE):
         return "int32"
-    return "bool" if declared.kind in (EVENT, ACCEPTED) else declared.type.text if declared.type else "?"
+    return (
+        "bool"
+        if declared.kind in (PortVariableKind.EVENT, PortVariableKind.ACCEPTED)
+        else declared.type.text
+        if declared.type
+        else "?"
+    )
 
 
 def _value(port: Port, declared: PortVariable) -> str:
     happens = str(event_clause(port))
-    if declared.kind == EVENT:
+    if declared.kind is PortVariableKind.EVENT:
         return f"True in the step in which {happens}, false in all others"
     what = {
-        GOAL_ID: "The number of the goal",
-        RESULT_CODE: "The code of the result",
-        ACCEPTED: "Whether the goal was accepted",
+        PortVariableKind.GOAL_ID: "The number of the goal",
+        PortVariableKind.RESULT_CODE: "The code of the result",
+        PortVariableKind.ACCEPTED: "Whether the goal was accepted",
     }.get(declared.kind, f"The value of {quoted(declared.field.value if declared.field else '')}")
     before = f"; {name(declared.initial.text)} before" if declared.initial is not None else ""
     return f"{what} at the last time that {happens}{before}"

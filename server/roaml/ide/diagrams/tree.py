@@ -14,6 +14,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
 from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
 from roaml.project.analysis import Analysis
+from roaml.roles import Direction
 from roaml.text import Location
 from roaml.views.tree import ports_of, title_of
 
@@ -75,9 +76,9 @@ class _Tree:
             node, name = str(instance.number), f"{{{variable}}}"
             place = self.place(instance, key)
             direction = self.direction(instance, key)
-            if direction != "in":
+            if direction.writes:
                 yield DiagramEdge(node, name, EdgeKind.WRITES, (key,), place=place)
-            if direction != "out":
+            if direction.reads:
                 yield DiagramEdge(name, node, EdgeKind.READS, (key,), place=place)
 
     def bound(self) -> Iterator[tuple[Instance, str, str]]:
@@ -93,17 +94,17 @@ class _Tree:
         setting = next((port for port in node.ports if port.key.value == key), None) if node else None
         return Location(instance.source.path, setting.attribute.span) if setting else None
 
-    def direction(self, instance: Instance, key: str) -> str:
-        """The direction of a port: "in", "out" or "inout"; if it is unknown, "in"."""
+    def direction(self, instance: Instance, key: str) -> Direction:
+        """The direction of a port; `IN` if it is unknown."""
         outline = self.system.plugin(instance.plugin)[1] if self.system else builtin_plugins().get(instance.plugin)
         port = outline.port(key) if outline else None
-        return port.direction if port else "in"
+        return port.direction if port else Direction.IN
 
     def kind(self, instance: Instance, node: TreeNode | None) -> DiagramNodeKind:
         written = node.element.name if node else ""
         described = self.described.get(instance.plugin, "")
         if node is not None and node.type is not None and node.type.node and node.type.name not in EXPLICIT:
-            word = node.type.node
+            word = node.type.node.value
         else:
             word = (written if written in EXPLICIT else described).lower()
         return _KINDS.get(word, DiagramNodeKind.CONTROL if instance.children else DiagramNodeKind.ACTION)

@@ -11,6 +11,7 @@ from roaml.ide.describe.system_parameter import parameter
 from roaml.ide.hover.place import Place
 from roaml.language import AttributeType
 from roaml.model.kinds import FileKind
+from roaml.roles import ValueRole
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, Element
 
@@ -38,7 +39,7 @@ def _value(place: Place, element: Element, attribute: Attribute, known: Attribut
     said = ""
     if place.kind is FileKind.SYSTEM:
         said = parameter(element, attribute)
-    elif known.value == "type":
+    elif known.value is ValueRole.TYPE:
         said = _type(place, attribute.value.strip())
     elif attribute.name == "rate_hz":
         said = rate(attribute.value)

@@ -15,7 +15,7 @@ from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_sl
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
 from roaml.model.expand import Instance
-from roaml.model.property_file import ACTION, NODE, PLAIN, SERVICE, TOPIC, Port, PortVariable, PropertyFile
+from roaml.model.property_file import Port, PortKind, PortVariable, PropertyFile
 from roaml.model.property_ports import INTERFACE_KINDS, part_of
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
@@ -26,7 +26,11 @@ from roaml.text import Span
 
 FindInterface = Callable[[str, str], InterfaceType | None]
 
-SYMBOL_KINDS = {TOPIC: SymbolKind.TOPIC, SERVICE: SymbolKind.SERVICE, ACTION: SymbolKind.ACTION}
+SYMBOL_KINDS = {
+    PortKind.TOPIC: SymbolKind.TOPIC,
+    PortKind.SERVICE: SymbolKind.SERVICE,
+    PortKind.ACTION: SymbolKind.ACTION,
+}
 
 
 def in_property_file(
@@ -96,9 +100,9 @@ class _PropertyFile:
     def port(self, port: Port, name: Name) -> Iterator[Occurrence]:
         if len(name.value) != name.span.end - name.span.start:
             return  # written with entities
-        if port.kind == NODE:
+        if port.kind is PortKind.NODE:
             yield from self.node(name)
-        elif port.kind == PLAIN:
+        elif port.kind is PortKind.PLAIN:
             yield from self.pieces(self.table.get(f"{name.value}.valid", ()), name.span)
         else:
             kind = SYMBOL_KINDS[port.kind]
@@ -193,7 +197,7 @@ class _PropertyFile:
         name = variable.field
         if name is None or len(name.value) != name.span.end - name.span.start:
             return
-        if port.kind == PLAIN and port.name is not None:
+        if port.kind is PortKind.PLAIN and port.name is not None:
             pieces = self.table.get(f"{port.name.value}__{name.value}", ())
             yield from self.pieces(pieces, name.span, len(port.name.value) + 2)
             return

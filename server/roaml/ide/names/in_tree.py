@@ -15,7 +15,7 @@ from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
 from roaml.model.system import System
 from roaml.model.tree import SUBTREES, NodeModel, PortSetting, TreeNode, blackboard_variable, is_variable_name, nodes
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.script.tree import Assignment, walk
 from roaml.script.tree import Name as Variable
 from roaml.text import Span
@@ -211,7 +211,7 @@ def _access(outline: MachineOutline | None, key: str) -> Access:
     port = outline.port(key) if outline else None
     if port is None:
         return Access.TEXT
-    return Access.WRITE if port.direction == "out" else Access.READ
+    return Access.WRITE if port.direction is Direction.OUT else Access.READ
 
 
 def _stripped(name: Name) -> Name:

@@ -16,7 +16,7 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     Binary,
     Boolean,
@@ -209,14 +209,14 @@ class ConditionFacts:
                 for part, chosen in ((condition.then, True), (condition.otherwise, False)):
                     for tested in self.assume(knowledge, condition.test, chosen):
                         yield from self.assume(tested, part, holds)
-            case Binary() if condition.operator.kind in ("order", "equality"):
+            case Binary() if condition.operator.kind in (OperatorKind.ORDER, OperatorKind.EQUALITY):
                 yield from self._compare(knowledge, condition, holds)
             case _:
                 yield from self._narrow(knowledge, condition, TRUTH, Domain(frozenset((holds,))))
 
     def _compare(self, knowledge: Knowledge, condition: Binary, holds: bool) -> Iterator[Knowledge]:
         left, right, relation = condition.left, condition.right, _relation(condition.operator, holds)
-        if self._is_logical(left) and self._is_logical(right) and condition.operator.kind == "equality":
+        if self._is_logical(left) and self._is_logical(right) and condition.operator.kind is OperatorKind.EQUALITY:
             for value in (True, False):
                 for first in self.assume(knowledge, left, value):
                     yield from self.assume(first, right, value if "=" in relation else not value)
@@ -335,7 +335,7 @@ class ConditionFacts:
             case Unary():
                 return expr.operator is UnaryOperator.NOT
             case Binary():
-                return expr.operator.kind not in ("arithmetic",)
+                return expr.operator.kind is not OperatorKind.ARITHMETIC
         return False
 
 

@@ -9,10 +9,10 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.forest.forest import Forest
 from roaml.language import BEHAVIOR_TREE
-from roaml.libraries import UNBOUNDED, NodeKind
 from roaml.model.gaps import GapAct
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import TreeNode, nodes
+from roaml.roles import UNBOUNDED, NodeKind
 from roaml.rules.rule import Rule, TreeContext
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.expr.types import Unknown, is_kind
+from roaml.expr.types import ScalarKind, Unknown, is_kind
 from roaml.model.machine import CallChild, Chart
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -47,7 +47,7 @@ def _variable(context: MachineContext, chart: Chart, name: Name) -> Iterator[Fin
         close = close_names(name.value, variables)
         hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an integer variable"
         yield RULE.at(name.span, f"`{name.value}` is not the index of a child{hint}", *replacements(name.span, close))
-    elif not (isinstance(type_, Unknown) or is_kind(type_, "int")):
+    elif not (isinstance(type_, Unknown) or is_kind(type_, ScalarKind.INT)):
         yield RULE.at(name.span, f"the index of a child must be an integer, not `{type_}`")
 
 

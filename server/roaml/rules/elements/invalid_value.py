@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import InvalidValue
+from roaml.roles import ValueRole
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
 from roaml.text import TextEdit
 
@@ -22,7 +23,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
             fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []
             yield RULE.at(attribute.span, f"`{attribute.name}` is empty{advice}", *fixes)
-        elif type_.value != "ros-type":  # unknown-ros-type reports these with more detail
+        elif type_.value is not ValueRole.ROS_TYPE:  # unknown-ros-type reports these with more detail
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)
             hint = did_you_mean(close) if len(choices) > 1 else ""

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
-from roaml.expr.types import EmptyArray, Struct, Type, Unknown, is_kind, leaves, same_kind, unwrap
+from roaml.expr.types import EmptyArray, ScalarKind, Struct, Type, Unknown, is_kind, leaves, same_kind, unwrap
 from roaml.model.machine import Declaration, Param, RosSend, Send
 from roaml.model.outline import SentField
 from roaml.model.system import PlainEvent
@@ -96,10 +96,15 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPar
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
     """Report fields with different types in two senders. The reference translator gives a field the type of its value
     (docs/spec/expressions.md#whole-reals)."""
-    real = {name for name, value in sent if is_kind(value.sent, "real")} | real_elsewhere
+    real = {name for name, value in sent if is_kind(value.sent, ScalarKind.REAL)} | real_elsewhere
     for name, value in sent:
-        if name in real and is_kind(value.sent, "int") and value.required and is_kind(value.required, "real"):
-            hint = ROUND if is_kind(value.type, "real") else ""
+        if (
+            name in real
+            and is_kind(value.sent, ScalarKind.INT)
+            and value.required
+            and is_kind(value.required, ScalarKind.REAL)
+        ):
+            hint = ROUND if is_kind(value.type, ScalarKind.REAL) else ""
             message = f"`{name}` is an integer here, but a real number where it is sent elsewhere{hint}"
             yield RULE.at(value.value.span, message, severity=Severity.INFORMATION)
 
@@ -113,7 +118,7 @@ def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[st
         if endpoint.automaton.path != automaton.path
         for _, fields in endpoint.use.fields
         for field in fields
-        if is_kind(field.type, "real")
+        if is_kind(field.type, ScalarKind.REAL)
     }
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.tree import Conditional, access_path
-from roaml.expr.types import BOOL, Array, fits, is_kind, is_number
+from roaml.expr.types import BOOL, Array, ScalarKind, fits, is_kind, is_number
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValueUse
 from roaml.rules.rule import MachineContext, Rule
@@ -29,7 +29,7 @@ def _fixes(value: TypedValue) -> Iterator[Fix]:
     end = Span(tree.span.end, tree.span.end)
     if is_number(value.type):
         yield Fix("Compare with 0", (TextEdit(end, " != 0"),), preferred=False)
-    elif (is_kind(value.type, "string") or isinstance(value.type, Array)) and access_path(tree) is not None:
+    elif (is_kind(value.type, ScalarKind.STRING) or isinstance(value.type, Array)) and access_path(tree) is not None:
         yield Fix("Test whether it is empty", (TextEdit(end, ".length != 0"),), preferred=False)
 
 

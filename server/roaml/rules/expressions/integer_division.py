@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import IntegerDivision
 from roaml.expr.tree import Binary, Call, Expr, Member, walk
-from roaml.expr.types import is_kind
+from roaml.expr.types import ScalarKind, is_kind
 from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span, TextEdit
@@ -18,7 +18,9 @@ WHOLE = ("floor", "ceil")
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if not isinstance(value.value, Expression) or (value.required is not None and is_kind(value.required, "int")):
+        if not isinstance(value.value, Expression) or (
+            value.required is not None and is_kind(value.required, ScalarKind.INT)
+        ):
             continue  # type-mismatch reports this with more detail
         problems = [problem for problem in value.problems if isinstance(problem, IntegerDivision)]
         meant = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
-from roaml.expr.types import BOOL, Array, Struct, is_kind, is_number, unwrap
+from roaml.expr.types import BOOL, Array, ScalarKind, Struct, is_kind, is_number, unwrap
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
@@ -17,7 +17,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         for problem in value.problems:
             match problem:
-                case BadOperand(operator="+") if is_kind(problem.given, "string"):
+                case BadOperand(operator="+") if is_kind(problem.given, ScalarKind.STRING):
                     yield RULE.at(problem.span, "strings cannot be joined: `+` requires numbers")
                 case BadOperand(operator="?"):
                     yield RULE.at(
@@ -32,9 +32,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case MixedTypes():
                     message = f"{phrase(problem.first)} and {phrase(problem.other)} have no common type"
                     yield RULE.at(problem.span, message)
-                case BadIndex() if isinstance(problem.indexed, Array) or is_kind(problem.indexed, "string"):
+                case BadIndex() if isinstance(problem.indexed, Array) or is_kind(problem.indexed, ScalarKind.STRING):
                     message = f"an index must be an integer, not {phrase(problem.index)}"
-                    fixes = [_floor(problem.span)] if is_kind(problem.index, "real") else []
+                    fixes = [_floor(problem.span)] if is_kind(problem.index, ScalarKind.REAL) else []
                     yield RULE.at(problem.span, message, *fixes)
                 case BadIndex():
                     yield RULE.at(

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import infer
 from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, String, walk
-from roaml.expr.types import Array, Scalar, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
+from roaml.expr.types import Array, Scalar, ScalarKind, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedValue, ValueUse
@@ -89,7 +89,7 @@ def _too_long(tree: Expr, required: Type, size: int | None) -> Iterator[Finding]
                 type_ = required.member(member.key)
                 if type_ is not None:
                     yield from _too_long(member.value, type_, size)
-        case String(), _ if is_kind(required, "string"):
+        case String(), _ if is_kind(required, ScalarKind.STRING):
             length = len(tree.value.encode("utf-8", "replace"))
             yield from _longer(tree.span, "a string holds", "bytes", length, size)
 
@@ -126,19 +126,19 @@ def _fixes(context: MachineContext, value: TypedValue, given: Type, required: Ty
 
 def _other_value(value: Expression, use: ValueUse, given: Type, required: Type) -> Iterator[Fix]:
     span, text = value.span, value.text.strip()
-    if isinstance(value.tree, String) and is_number(required) | is_kind(required, "bool"):
-        written, pattern = value.tree.value, r"-?\d+" if is_kind(required, "int") else r"-?\d+(\.\d+)?"
-        if re.fullmatch("true|false" if is_kind(required, "bool") else pattern, written):
+    if isinstance(value.tree, String) and is_number(required) | is_kind(required, ScalarKind.BOOL):
+        written, pattern = value.tree.value, r"-?\d+" if is_kind(required, ScalarKind.INT) else r"-?\d+(\.\d+)?"
+        if re.fullmatch("true|false" if is_kind(required, ScalarKind.BOOL) else pattern, written):
             yield Fix(f"Change to `{written}`", (TextEdit(span, written),))
-    if is_kind(given, "real") and is_kind(required, "int"):
+    if is_kind(given, ScalarKind.REAL) and is_kind(required, ScalarKind.INT):
         if text.endswith(".0") and text[:-2].isdigit():
             yield Fix(f"Change to `{text[:-2]}`", (TextEdit(span, text[:-2]),))
         elif use not in (ValueUse.INITIAL, ValueUse.BOUND):
             edits = (TextEdit(Span(span.start, span.start), "Math.floor("), TextEdit(Span(span.end, span.end), ")"))
             yield Fix(f"Change to `Math.floor({text})`", edits)
-    elif is_kind(given, "int") and is_kind(required, "real") and text.removeprefix("-").isdigit():
+    elif is_kind(given, ScalarKind.INT) and is_kind(required, ScalarKind.REAL) and text.removeprefix("-").isdigit():
         yield Fix(f"Change to `{text}.0`", (TextEdit(span, f"{text}.0"),))
-    elif is_kind(given, "int") and is_kind(required, "bool") and text in ("0", "1"):
+    elif is_kind(given, ScalarKind.INT) and is_kind(required, ScalarKind.BOOL) and text in ("0", "1"):
         literal = "true" if text == "1" else "false"
         yield Fix(f"Change to `{literal}`", (TextEdit(span, literal),))
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.expr.types import Scalar, Type, unwrap
+from roaml.expr.types import Scalar, ScalarKind, Type, unwrap
 from roaml.jani.infer import TypeScope
 from roaml.jani.notes import TYPE
 from roaml.jani.typecheck import check_property
@@ -23,7 +23,7 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
         yield from (finding for finding in check_property(property_, scope) if finding.code == TYPE)
 
 
-_KINDS = {"bool": BOOL, "int": INT, "real": REAL}
+_KINDS = {ScalarKind.BOOL: BOOL, ScalarKind.INT: INT, ScalarKind.REAL: REAL}
 
 
 def _jani_type(type_: Type) -> JaniType:

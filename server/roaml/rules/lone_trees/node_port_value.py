@@ -10,8 +10,9 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.forest.cpp_types import SCRIPT, mismatch
 from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest, ports_of
-from roaml.libraries import Direction, Node, Port
+from roaml.libraries import Node, Port
 from roaml.model.tree import PortSetting, TreeNode
+from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.forest import forest_of
 from roaml.text import TextEdit
@@ -98,7 +99,7 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
 
 def _severity(known: Node) -> Severity:
     """The severity of a finding: only a warning for models in files, which may differ from the node."""
-    return Severity.ERROR if known.library or known.kind.value == "subtree" else Severity.WARNING
+    return Severity.ERROR if known.library or known.kind is NodeKind.SUBTREE else Severity.WARNING
 
 
 RULE = Rule("node-port-value", Severity.ERROR, "The value of a port is invalid.", tree=check)

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from roaml.expr.types import Array, EmptyArray, Struct, Type, Unknown, is_kind
+from roaml.expr.types import Array, EmptyArray, ScalarKind, Struct, Type, Unknown, is_kind
 
 
 def phrase(type_: Type) -> str:
     """A type as a noun phrase."""
-    if is_kind(type_, "string"):
+    if is_kind(type_, ScalarKind.STRING):
         return "a string"
     if isinstance(type_, EmptyArray):
         return "an array"

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import GapAct
+from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.blackboard import described, places, renamings
 from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
@@ -28,7 +29,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             continue
         close = close_names(variable, unwritten)
         for bound, span, written in places(context, variable, ports):
-            if bound.port.direction == "in":
+            if bound.port.direction is Direction.IN:
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)
             else:

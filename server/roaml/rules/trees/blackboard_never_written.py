@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import GapAct
+from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.blackboard import described, places, renamings
 
@@ -21,7 +22,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             continue
         close = close_names(variable, set_)
         for bound, span, written in places(context, variable, ports):
-            if bound.port.direction == "out":
+            if bound.port.direction is Direction.OUT:
                 yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
             else:
                 message = f"nobody writes {described(variable, written)}{did_you_mean(close)}"

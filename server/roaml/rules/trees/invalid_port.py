@@ -8,11 +8,12 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove, rename_tag
-from roaml.expr.types import BASE_TYPES
+from roaml.expr.types import BASE_TYPES, ScalarKind
 from roaml.model.machine import Port
 from roaml.model.syntax import Name, TypeRef
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.vocabulary import FOREIGN_TYPES
+from roaml.roles import Direction
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
 ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
@@ -40,10 +41,14 @@ def _key(port: Port, key: Name) -> Iterator[Finding]:
     if not ATTRIBUTE.match(key.value):
         yield RULE.at(key.span, f"a tree cannot set `{key.value}`: it is not a valid attribute name")
     elif key.value == CHILDREN_COUNT:
-        if port.direction == "out":
+        if port.direction is Direction.OUT:
             to_input = rename_tag(port.element, "bt_declare_port_in")
             yield RULE.at(key.span, f"`{CHILDREN_COUNT}` is set by the tree, so it must be an input port", to_input)
-        elif port.type is not None and port.type.text in BASE_TYPES and BASE_TYPES[port.type.text].kind != "int":
+        elif (
+            port.type is not None
+            and port.type.text in BASE_TYPES
+            and BASE_TYPES[port.type.text].kind is not ScalarKind.INT
+        ):
             fixes = replacements(port.type.span, ["int32"])
             yield RULE.at(port.type.span, f"`{CHILDREN_COUNT}` must be an integer, not `{port.type.text}`", *fixes)
 

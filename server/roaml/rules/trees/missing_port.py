@@ -10,7 +10,7 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.system import CHILDREN_COUNT, builtin_plugins
 from roaml.model.tree import TreeNode, nodes
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, listing
 from roaml.text import Span, TextEdit
 
@@ -59,7 +59,7 @@ def _finding(node: TreeNode, plugin: MachineOutline, path: str, missing: list[Po
 
 
 def _example(port: PortOutline) -> str:
-    if port.direction == "out":
+    if port.direction is Direction.OUT:
         return f"{{{port.key}}}"
     if port.type.startswith("float"):
         return "0.0"

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, fits, is_kind, is_number
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, ScalarKind, fits, is_kind, is_number
 from roaml.model.expand import PortConstant, Reference
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
@@ -23,7 +23,7 @@ from roaml.model.tree import (
     looks_like_reference,
     nodes,
 )
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
@@ -97,7 +97,7 @@ def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Fi
 
 def _constant(text: str, span: Span, port: PortOutline, path: str) -> Iterator[Finding]:
     related = [Related(Symbol(path, SymbolKind.PORT, port.key), "declared here")] if path else []
-    if port.direction == "out":
+    if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if is_variable_name(name) else []
         message = f"`{port.key}` is an output port; bind it to a blackboard variable, `{{name}}`"
@@ -119,7 +119,7 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
             if (
                 setting.variable is None
                 or port is None
-                or port.direction == "out"
+                or port.direction is Direction.OUT
                 or not isinstance(value, PortConstant)
             ):
                 continue
@@ -193,7 +193,7 @@ class ConstantProblem:
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
     type_ = BASE_TYPES.get(port.type)
-    if type_ is None or is_kind(type_, "string"):
+    if type_ is None or is_kind(type_, ScalarKind.STRING):
         return None
     if not text:
         return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")

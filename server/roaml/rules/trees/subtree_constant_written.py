@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.expand import PortConstant
+from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.instances import instances
 
@@ -17,7 +18,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for node, automaton in instances(context):
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)
-            if port is None or port.direction == "in" or setting.variable is None:
+            if port is None or port.direction is Direction.IN or setting.variable is None:
                 continue
             value = automaton.port(port.key)
             if isinstance(value, PortConstant):

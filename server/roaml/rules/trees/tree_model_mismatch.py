@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.edit.elements import remove, rename_tag
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import NodeModel
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 
 
@@ -36,7 +36,7 @@ def _check(context: TreeContext, model: NodeModel, plugin: MachineOutline, path:
             close = close_names(port.name.value, [p.key for p in plugin.ports])
             message = f"`{plugin.name}` has no port `{port.name.value}`{did_you_mean(close)}"
             yield RULE.at(port.name.span, message, *replacements(port.name.span, close), drop, related=related)
-        elif port.direction not in ("inout", known.direction):
+        elif port.direction not in (Direction.INOUT, known.direction):
             message = f"the port `{port.name.value}` of `{plugin.name}` is an {known.direction}put port"
             fix = rename_tag(port.element, f"{known.direction}put_port")
             yield RULE.at(port.element.name_span, message, fix, related=related)

@@ -11,6 +11,7 @@ from roaml.expr.types import Scalar
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
 from roaml.model.vocabulary import DEFAULT_TYPES
+from roaml.roles import Direction
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.ports import reads, writes
@@ -25,20 +26,20 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not _is_misspelled_declaration(context.machine, key.value):
             close = close_names(key.value, ports)
             message = f"there is no port `{key.value}`{did_you_mean(close)}"
-            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, "in"))
-    outputs = [name for name, port in ports.items() if port.direction == "out"]
+            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.IN))
+    outputs = [name for name, port in ports.items() if port.direction is Direction.OUT]
     for key in writes(context.machine):
         port = ports.get(key.value)
         close = close_names(key.value, outputs)
         if port is None and not _is_misspelled_declaration(context.machine, key.value):
             message = f"there is no output port `{key.value}`{did_you_mean(close)}"
-            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, "out"))
-        elif port is not None and port.direction == "in":
+            yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.OUT))
+        elif port is not None and port.direction is Direction.IN:
             message = f"`{key.value}` is an input port and cannot be written{did_you_mean(close)}"
             yield RULE.at(key.span, message, *replacements(key.span, close))
 
 
-def _declare(context: MachineContext, key: Name, direction: str) -> Iterator[Fix]:
+def _declare(context: MachineContext, key: Name, direction: Direction) -> Iterator[Fix]:
     """Declare a port, if its type can be inferred from its uses. Nodes of the tree must then set it."""
     type_ = _type_of(context, key)
     if type_ is not None:

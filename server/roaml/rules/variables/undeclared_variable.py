@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import first_in, last_in
 from roaml.expr.infer import UnknownName, infer
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Conditional, Expr, Name, Unary
 from roaml.expr.types import BOOL, Scalar, Type
 from roaml.expr.zero import zero_text
@@ -101,7 +101,7 @@ def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], requ
         case Binary(operator=Operator.AND | Operator.OR, left=left, right=right):
             return _beside(left, name, variables, BOOL) or _beside(right, name, variables, BOOL)
         case Binary(operator=operator, left=left, right=right):
-            result_type = required if operator.kind == "arithmetic" else None
+            result_type = required if operator.kind is OperatorKind.ARITHMETIC else None
             types = (_closer(infer(side, variables)[0], result_type) for side in (right, left))
             found_types = (
                 _beside(side, name, variables, type_) for side, type_ in zip((left, right), types, strict=True)

@@ -24,11 +24,13 @@ class BoardEntry:
     Attributes:
         variable: its name in the whole tree.
         initial: its value before anything writes it; `None` if it does not exist then.
+        type: the type of the variable of the blackboard if a plugin determines it; "" for the type of `kind`.
     """
 
     variable: str
     kind: EntryKind
     initial: int | float | str | None = None
+    type: str = ""
 
     @property
     def local(self) -> str:

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import parsed
-from roaml.libraries import Direction
-from roaml.mocks import assembly
-from roaml.mocks.assembly import NodeProgram
-from roaml.mocks.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
-from roaml.mocks.unfolding import ExecutedNode, ExecutedTree
+from roaml.lower.programs import assembly
+from roaml.lower.programs.assembly import NodeProgram
+from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
+from roaml.roles import Direction
 from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
 from roaml.text import Decoded
@@ -44,6 +44,10 @@ class Board:
     flags: Mapping[str, tuple[BoardEntry, ...]]
     flag_of: Mapping[int, BoardEntry]
     values: Mapping[str, tuple[int | float | str, ...]]
+
+    def unset(self, name: str) -> str:
+        """Why an entry that nothing sets cannot be read."""
+        return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
 
 
 def node_scripts(node: ExecutedNode) -> Iterator[tuple[str, Script, bool]]:

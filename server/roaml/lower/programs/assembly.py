@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The programs of nodes -> instructions (docs/spec/mocks.md#nodes).
 
-A program is a class in the syntax of Python; the comment at the top of `programs/behaviortree_cpp.txt` describes its
+A program is a class in the syntax of Python; the comment at the top of `definitions/behaviortree_cpp.txt` describes its
 statements. Nothing is executed by Python: the syntax tree is compiled.
 """
 
@@ -182,7 +182,7 @@ def programs() -> Mapping[str, NodeProgram]:
     """The programs of all nodes, by name."""
     result: dict[str, NodeProgram] = {}
     for file in FILES:
-        text = (importlib.resources.files(__package__) / "programs" / file).read_text(encoding="utf-8")
+        text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
         for statement in ast.parse(text).body:
             assert isinstance(statement, ast.ClassDef)
             program = _program(statement, result)

@@ -18,7 +18,7 @@ from roaml.expr.tree import Conditional as ConditionalExpr
 from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, integer, name
 from roaml.lower.program import NOWHERE
-from roaml.mocks.entries import BoardEntry, EntryKind, constant, read_literal
+from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.script import tree as syntax
 from roaml.text import Span
 
@@ -56,22 +56,30 @@ class _Value:
     kind: EntryKind | None
 
 
-def compiled(parsed: syntax.Script, entry: Callable[[str], BoardEntry | None], *, is_condition: bool) -> CompiledScript:
+def compiled(
+    parsed: syntax.Script,
+    entry: Callable[[str], BoardEntry | None],
+    unset: Callable[[str], str],
+    *,
+    is_condition: bool,
+) -> CompiledScript:
     """A script as assignments.
 
     Args:
         entry: name -> the entry; `None` if nothing sets it.
+        unset: name -> why it cannot be read if nothing sets it.
         is_condition: whether its value is used.
 
     Raises:
         ScriptRefusal: the script cannot be translated.
     """
-    return _Compiler(entry).script(parsed, is_condition=is_condition)
+    return _Compiler(entry, unset).script(parsed, is_condition=is_condition)
 
 
 @dataclass
 class _Compiler:
     entry: Callable[[str], BoardEntry | None]
+    unset: Callable[[str], str]
     reads: dict[str, BoardEntry] = field(default_factory=dict)
     writes: dict[str, BoardEntry] = field(default_factory=dict)
     assignments: list[tuple[str, Expr]] = field(default_factory=list)
@@ -98,7 +106,7 @@ class _Compiler:
     def find(self, expr: syntax.Name) -> BoardEntry:
         entry = self.entry(expr.name)
         if entry is None:
-            self.refuse(expr, f"nothing sets the entry `{expr.name}`; give it a value with --entry {expr.name}=VALUE")
+            self.refuse(expr, self.unset(expr.name))
         return entry
 
     def value(self, expr: syntax.Expr) -> _Value:

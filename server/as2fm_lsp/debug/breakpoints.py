@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Requests that set breakpoints. What a client has set before the launch is set when the model has been read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from as2fm_lsp.debug.arguments import Arguments
+from as2fm_lsp.debug.session import Body, DebugSession, Handler
+from as2fm_lsp.debug.variables import Shown
+from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter, WatchedVariable, breakpoint_of, nodes_named
+from roaml.debugging.debugger import Debugger
+from roaml.debugging.evaluate import WatchError
+
+
+class BreakpointRequests:
+    """The handlers of these requests, and what has been set."""
+
+    def __init__(self, session: DebugSession) -> None:
+        self._session = session
+        self._next_breakpoint = 1
+        self._wanted: dict[str, tuple[str, list[tuple[int, Arguments]]]] = {}
+        self._functions: list[tuple[int, Arguments]] = []
+        self._filters: list[tuple[str, str]] = []
+        self._data: dict[str, WatchedVariable] = {}
+        self.handlers: Mapping[str, Handler] = {
+            "setBreakpoints": self._set_breakpoints,
+            "setFunctionBreakpoints": self._set_function_breakpoints,
+            "setExceptionBreakpoints": self._set_exception_breakpoints,
+            "dataBreakpointInfo": self._data_breakpoint_info,
+            "setDataBreakpoints": self._set_data_breakpoints,
+            "breakpointLocations": self._breakpoint_locations,
+        }
+
+    def set_all(self) -> list[dict[str, Any]]:
+        """Set all breakpoints in a model that has been read; returns their descriptions."""
+        changed: list[dict[str, Any]] = []
+        for path in self._wanted:
+            changed += self._set_lines(path)
+        changed += self._set_functions()
+        self._set_filters()
+        return changed
+
+    def _set_breakpoints(self, arguments: Arguments) -> Body:
+        path = self._session.client.path(arguments.object("source"))
+        wanted = arguments.objects("breakpoints")
+        if not wanted and arguments.has("lines"):
+            wanted = [Arguments({"line": line}) for line in _lines(arguments)]
+        for each in wanted:
+            each.number("line")
+        self._wanted[os.path.realpath(path)] = path, [(self._number(), each) for each in wanted]
+        return {"breakpoints": self._set_lines(os.path.realpath(path))}
+
+    def _number(self) -> int:
+        self._next_breakpoint += 1
+        return self._next_breakpoint - 1
+
+    def _set_lines(self, key: str) -> list[dict[str, Any]]:
+        """Set the breakpoints of a file; returns their descriptions."""
+        path, wanted = self._wanted[key]
+        debugger = self._session.debugger
+        if debugger is None:
+            message = "not checked before the launch"
+            return [{"id": number, "verified": False, "message": message} for number, _ in wanted]
+        known = next((each for each in debugger.places.by_path if os.path.realpath(each) == key), path)
+        bodies, set_ = [], []
+        for number, each in wanted:
+            body: dict[str, Any] = {"id": number, "verified": False, "source": self._session.client.source(path)}
+            line = debugger.places.next_line(known, each.number("line") + 1 - self._session.client.first_line)
+            try:
+                if line is None:
+                    raise WatchError("no line from here on is executed in this system")
+                name = f"{os.path.basename(path)}:{line}"
+                set_.append((line, self._breakpoint(number, name, each)))
+                body |= {"verified": True, "line": line - 1 + self._session.client.first_line}
+            except WatchError as error:
+                body["message"] = str(error)
+            bodies.append(body)
+        debugger.breakpoints.lines[known] = set_
+        debugger.breakpoints_changed()
+        return bodies
+
+    def _breakpoint(self, number: int, name: str, given: Arguments) -> Breakpoint:
+        condition, hits = given.text("condition"), given.text("hitCondition")
+        return breakpoint_of(number, name, condition, hits, given.text("logMessage"))
+
+    def _set_function_breakpoints(self, arguments: Arguments) -> Body:
+        wanted = arguments.objects("breakpoints")
+        for each in wanted:
+            each.text("name", None)
+        self._functions = [(self._number(), each) for each in wanted]
+        return {"breakpoints": self._set_functions()}
+
+    def _set_functions(self) -> list[dict[str, Any]]:
+        debugger = self._session.debugger
+        if debugger is None:
+            message = "not checked before the launch"
+            return [{"id": number, "verified": False, "message": message} for number, _ in self._functions]
+        chosen: list[tuple[str, Breakpoint]] = []
+
+        def add(number: int, given: Arguments) -> None:
+            name = given.text("name")
+            if not debugger.session.has_event(name) and not nodes_named(debugger.sources, name):
+                raise WatchError(f"there is no topic, service, action, event or node `{name}`")
+            chosen.append((name, self._breakpoint(number, name, given)))
+
+        bodies = _set_each(self._functions, add)
+        debugger.breakpoints.names = chosen
+        debugger.breakpoints_changed()
+        return bodies
+
+    def _set_exception_breakpoints(self, arguments: Arguments) -> Body:
+        wanted = [(name, "") for name in arguments.texts("filters")]
+        wanted += [(each.text("filterId", None), each.text("condition")) for each in arguments.objects("filterOptions")]
+        self._filters = wanted
+        return {"breakpoints": self._set_filters()}
+
+    def _set_filters(self) -> list[dict[str, Any]]:
+        bodies: list[dict[str, Any]] = []
+        set_: dict[ExceptionFilter, Breakpoint] = {}
+        for name, condition in self._filters:
+            try:
+                filter_ = next((each for each in ExceptionFilter if each.value == name), None)
+                if filter_ is None:
+                    raise WatchError(f"there is no filter `{name}`")
+                set_[filter_] = breakpoint_of(0, name, condition)
+                bodies.append({"verified": True})
+            except WatchError as error:
+                bodies.append({"verified": False, "message": str(error)})
+        if self._session.debugger is not None:
+            self._session.debugger.breakpoints.filters = set_
+            self._session.debugger.breakpoints_changed()
+        return bodies
+
+    def _data_breakpoint_info(self, arguments: Arguments) -> Body:
+        self._session.stopped  # noqa: B018
+        name = arguments.text("name", None)
+        children: list[Shown] = []
+        if arguments.has("variablesReference"):
+            children = self._session.children(arguments.number("variablesReference"))
+        entry = next((child.entry for child in children if child.entry.name == name), None)
+        if entry is None or entry.variable is None:
+            return {"dataId": None, "description": f"`{name}` is not a variable that can be watched"}
+        variable = entry.variable
+        owner = "" if variable.instance < 0 else f"{self._session.loaded.session.automata[variable.instance]}/"
+        data = f"{owner}{variable.name}"
+        self._data[data] = variable
+        return {"dataId": data, "description": f"{name} changes", "accessTypes": ["write"], "canPersist": True}
+
+    def _set_data_breakpoints(self, arguments: Arguments) -> Body:
+        debugger = self._session.loaded
+        chosen: list[tuple[WatchedVariable, Breakpoint]] = []
+
+        def add(number: int, given: Arguments) -> None:
+            data = given.text("dataId", None)
+            variable = self._variable(debugger, data)
+            if variable is None:
+                raise WatchError(f"there is no variable `{data}`")
+            chosen.append((variable, self._breakpoint(number, f"{data} changes", given)))
+
+        numbered = [(self._number(), given) for given in arguments.objects("breakpoints")]
+        bodies = _set_each(numbered, add)
+        debugger.breakpoints.variables = chosen
+        debugger.breakpoints_changed()
+        return {"breakpoints": bodies}
+
+    def _variable(self, debugger: Debugger, data: str) -> WatchedVariable | None:
+        if data in self._data:
+            return self._data[data]
+        owner, _, name = data.rpartition("/")
+        automata = list(debugger.session.automata)
+        if owner in automata and name:
+            return WatchedVariable(automata.index(owner), name)
+        return WatchedVariable(-1, name) if not owner and name else None
+
+    def _breakpoint_locations(self, arguments: Arguments) -> Body:
+        path = os.path.realpath(self._session.client.path(arguments.object("source")))
+        offset = 1 - self._session.client.first_line
+        first = arguments.number("line") + offset
+        last = arguments.number("endLine", first - offset) + offset
+        places = {} if self._session.debugger is None else self._session.debugger.places.by_path
+        lines = next((lines for each, lines in places.items() if os.path.realpath(each) == path), [])
+        chosen = [line - 1 + self._session.client.first_line for line in lines if first <= line <= last]
+        return {"breakpoints": [{"line": line} for line in chosen]}
+
+
+def _lines(arguments: Arguments) -> list[Any]:
+    lines = arguments.members.get("lines")
+    return lines if isinstance(lines, list) else []
+
+
+def _set_each(
+    breakpoints: Iterable[tuple[int, Arguments]], add: Callable[[int, Arguments], None]
+) -> list[dict[str, Any]]:
+    """Set breakpoints with their numbers; returns a description of each. One that cannot be set has the reason."""
+    bodies = []
+    for number, given in breakpoints:
+        body: dict[str, Any] = {"id": number, "verified": False}
+        try:
+            add(number, given)
+            body["verified"] = True
+        except WatchError as error:
+            body["message"] = str(error)
+        bodies.append(body)
+    return bodies

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the handlers of requests share: the connection, the run that is debugged, and where it has stopped."""
+
+from __future__ import annotations
+
+import os
+import urllib.parse
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.debug.framing import write_message
+from as2fm_lsp.debug.launch import Launch
+from as2fm_lsp.debug.variables import References, Shown
+from roaml.debugging.debugger import Debugger, Stop, StopReason
+from roaml.debugging.frames import Frame
+from roaml.jani.node import Origin
+
+Body = Mapping[str, Any] | None
+Handler = Callable[[Arguments], Body]
+
+
+class Connection:
+    """Numbers and sends messages."""
+
+    def __init__(self, output: BinaryIO) -> None:
+        self._output = output
+        self._sequence = 0
+
+    def send(self, message: dict[str, Any]) -> None:
+        self._sequence += 1
+        write_message(self._output, {"seq": self._sequence, **message})
+
+    def event(self, event: str, body: Body = None) -> None:
+        self.send({"type": "event", "event": event, **({} if body is None else {"body": body})})
+
+    def is_broken(self, error: Exception) -> bool:
+        """Whether nobody reads the output any more."""
+        return isinstance(error, (BrokenPipeError, ConnectionError)) or self._output.closed
+
+
+@dataclass(frozen=True, slots=True)
+class ClientFormat:
+    """How the client writes places.
+
+    Attributes:
+        first_line: the number of the first line, 0 or 1.
+        first_column: the number of the first column, 0 or 1.
+        uses_uris: whether paths are URIs.
+    """
+
+    first_line: int = 1
+    first_column: int = 1
+    uses_uris: bool = False
+
+    def path(self, source: Arguments) -> str:
+        """The path of a `Source`, absolute.
+
+        Raises:
+            RequestError: there is none.
+        """
+        path = source.text("path", None)
+        if path.startswith("file:"):
+            path = urllib.parse.unquote(urllib.parse.urlsplit(path).path)
+            path = path[1:] if os.name == "nt" else path
+        if "\0" in path:
+            raise RequestError("`path` is not a path")
+        return os.path.abspath(path)
+
+    def source(self, path: str) -> dict[str, Any]:
+        """A `Source`."""
+        return {"name": os.path.basename(path), "path": Path(path).as_uri() if self.uses_uris else path}
+
+
+class DebugSession:
+    """
+    Attributes:
+        debugger: the run; `None` before the launch and after `terminate`.
+        launch: the arguments of the last launch.
+        has_begun: whether the client has been told where the run is.
+        stop: where the run has stopped last.
+        frames: the frames that the client knows, by their numbers.
+        references: the variables that the client may open.
+        after: what is done after the response to the current request.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.client = ClientFormat()
+        self.debugger: Debugger | None = None
+        self.launch: Launch | None = None
+        self.has_begun = False
+        self.stop: Stop | None = None
+        self.frames: dict[int, Frame] = {}
+        self.references = References()
+        self.after: list[Callable[[], None]] = []
+
+    @property
+    def loaded(self) -> Debugger:
+        """
+        Raises:
+            RequestError: there is no run.
+        """
+        if self.debugger is None:
+            raise RequestError("no run has been launched")
+        return self.debugger
+
+    @property
+    def stopped(self) -> Debugger:
+        """
+        Raises:
+            RequestError: there is no run, or it is moving.
+        """
+        debugger = self.loaded
+        if not self.has_begun:
+            raise RequestError("the run has not begun; `configurationDone` is missing")
+        if debugger.is_moving:
+            raise RequestError("the run is moving; pause it first")
+        return debugger
+
+    def report(self, stop: Stop) -> None:
+        """Tell the client that the run has stopped."""
+        self.stop = stop
+        self.forget()
+        body: dict[str, Any] = {"reason": stop.reason.value, "threadId": stop.thread, "allThreadsStopped": True}
+        if stop.text:
+            body["text"] = stop.text
+            if stop.reason is not StopReason.EXCEPTION:
+                body["description"] = f"Paused: {stop.text}"
+        if stop.breakpoints:
+            body["hitBreakpointIds"] = list(stop.breakpoints)
+        self.connection.event("stopped", body)
+
+    def report_later(self, stop: Stop) -> None:
+        """Tell the client after the response to the current request."""
+        self.after.append(lambda: self.report(stop))
+
+    def log(self, text: str, origin: Origin | None = None) -> None:
+        """Write a line to the console of the client."""
+        self.connection.event("output", {"category": "stdout", "output": f"{text}\n", **self.where(origin)})
+
+    # ------------------------------------------------------------ valid while the run is stopped
+
+    def forget(self) -> None:
+        """Forget frames and variables; they are valid only while the run is stopped."""
+        self.frames = {}
+        self.references = References()
+
+    def frame(self, arguments: Arguments) -> Frame:
+        """
+        Raises:
+            RequestError: there is no such frame.
+        """
+        number = arguments.number("frameId")
+        if number not in self.frames:
+            raise RequestError(f"there is no frame {number}")
+        return self.frames[number]
+
+    def children(self, reference: int) -> list[Shown]:
+        """The variables behind a reference.
+
+        Raises:
+            RequestError: there is no such reference.
+        """
+        children = self.references.children(reference)
+        if children is None:
+            raise RequestError(f"there are no variables with the reference {reference}")
+        return list(children)
+
+    def where(self, origin: Origin | None) -> dict[str, Any]:
+        """`source`, `line` and `column` of a place; empty if it is not in a file."""
+        place = None if self.debugger is None else self.debugger.sources.place(origin)
+        if place is None:
+            return {}
+        return {
+            "source": self.client.source(place.path),
+            "line": place.line - 1 + self.client.first_line,
+            "column": place.column - 1 + self.client.first_column,
+        }

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What determines the automaton of a node of a tree: its program, its children, and the values of its ports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeAlias
+
+from roaml.expr.tree import Expr
+from roaml.expr.types import BASE_TYPES, Type
+from roaml.lower.programs.assembly import NodeProgram
+from roaml.lower.programs.entries import BoardEntry, EntryKind
+from roaml.lower.programs.scripts import CompiledScript
+from roaml.text import Location
+
+IDLE, SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = range(6)
+"""The codes of statuses and answers. SKIPPED: the node was skipped and is IDLE; HELD: it was skipped and has another
+status. For its parent, this makes a difference (docs/spec/mocks.md#skipped)."""
+STATUS_CODES = {
+    "IDLE": IDLE,
+    "SUCCESS": SUCCESS,
+    "FAILURE": FAILURE,
+    "RUNNING": RUNNING,
+    "SKIPPED": SKIPPED,
+    "HELD": HELD,
+}
+
+Known: TypeAlias = "int | bool | float | str"
+Value: TypeAlias = "Known | Expr"
+
+TYPES: Mapping[EntryKind, Type] = {
+    EntryKind.INTEGER: BASE_TYPES["int64"],
+    EntryKind.REAL: BASE_TYPES["float64"],
+    EntryKind.TEXT: BASE_TYPES["string"],
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Child:
+    """What a node knows of a child.
+
+    Attributes:
+        number: of the child in the tree.
+        answers: the codes with which it can answer.
+        is_stateless: whether a reset has no effect on it.
+    """
+
+    number: int
+    answers: frozenset[int]
+    is_stateless: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NodeCode:
+    """Everything that determines the automaton of a node.
+
+    Attributes:
+        known: the values of ports and parameters that are constants.
+        bound: the ports that are bound to entries of the blackboard.
+        scripts: by attribute or port.
+        updated: the entry that states whether the observed one was written; `None` if nothing writes it.
+        outputs: what a mock writes when it succeeds: entries, each with its possible values.
+        elements: of the queue of a loop.
+        flags_at: port that writes an observed entry whose value nothing reads -> what states for its observers that it
+            was written.
+        rate: of the tree, in Hz.
+        counts: whether counters for measurements are included.
+    """
+
+    number: int
+    name: str
+    program: NodeProgram
+    children: tuple[Child, ...]
+    known: Mapping[str, Known]
+    bound: Mapping[str, BoardEntry]
+    scripts: Mapping[str, CompiledScript]
+    updated: BoardEntry | None
+    outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...]
+    elements: tuple[Known, ...]
+    flags_at: Mapping[str, tuple[BoardEntry, ...]]
+    rate: Fraction
+    counts: bool
+    origin: Location

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The executed tree: every node once for each use, with the entries to which its names refer
+(docs/spec/mocks.md#blackboard)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from roaml.forest.entries import entry_of
+from roaml.forest.forest import ports_of
+from roaml.libraries import Node
+from roaml.model.tree import TreeNode
+from roaml.text import Location, Span
+
+
+class Names(Protocol):
+    """The meaning of the names in one use of a tree."""
+
+    def entry(self, name: str) -> str:
+        """The full name of the entry to which a name refers."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExecutedNode:
+    """A node of the executed tree.
+
+    Attributes:
+        number: 1000 for the root, then counted in pre-order.
+        type: the name of its type; `SubTree` for a subtree.
+        name: its name, otherwise that of its type or of the subtree.
+        known: the declaration of its type; `None` if there is none.
+    """
+
+    number: int
+    type: str
+    name: str
+    node: TreeNode
+    known: Node | None
+    frame: Names
+    children: tuple[int, ...]
+    origin: Location
+
+    @property
+    def is_leaf(self) -> bool:
+        return not self.children
+
+    @property
+    def automaton(self) -> str:
+        return f"BT_plugin_{self.number}_{self.name}"
+
+    def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
+        """Each port that the tree sets: its name, the entry to which it is bound (or `None`), and its text."""
+        for setting in ports_of(self.node):
+            bound = entry_of(setting)
+            entry = None if bound is None else self.frame.entry(bound)
+            yield setting.attribute.name, entry, setting.value.value, setting.value.span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExecutedTree:
+    """Attributes:
+    name: of the tree.
+    nodes: in pre-order.
+    initial: entry -> the text that a `<SubTree>` gives it.
+    """
+
+    name: str
+    nodes: tuple[ExecutedNode, ...]
+    initial: Mapping[str, str]
+
+
+def identifier(name: str) -> str:
+    """A name as a name of a variable."""
+    word = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes of an executed tree: their programs, and the values of their ports (docs/spec/mocks.md#nodes)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from roaml.forest.cpp_types import mismatch
+from roaml.forest.forest import CPP, port_type
+from roaml.lower.programs import assembly
+from roaml.lower.programs.assembly import NodeProgram, programs
+from roaml.lower.programs.board import Board, node_scripts
+from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
+from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
+from roaml.lower.programs.executed import ExecutedNode
+from roaml.lower.programs.refusal import TreeRefusal
+from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
+from roaml.roles import NodeKind
+from roaml.text import Location
+
+
+def program_of(node: ExecutedNode) -> NodeProgram | None:
+    """The program of a node of the libraries; `None` for a leaf of the user's program.
+
+    Raises:
+        TreeRefusal: the node cannot be executed.
+    """
+    if node.type == "SubTree" and node.children:
+        return programs()["SubTree"]
+    is_library = node.known is not None and bool(node.known.library)
+    if is_library and node.type in programs():
+        _check_children(node)
+        return programs()[node.type]
+    if node.children:
+        reason = f"`{node.type}` has children, and it is not known what it does with them"
+        raise TreeRefusal(node.origin, reason)
+    if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
+        raise TreeRefusal(node.origin, f"`{node.type}` needs children")
+    absent = CPP.absent.get(node.type)
+    if node.known is None and absent is not None:
+        raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}")
+    return None
+
+
+def _check_children(node: ExecutedNode) -> None:
+    assert node.known is not None
+    least, most = node.known.children
+    if not least <= len(node.children) <= most:
+        raise TreeRefusal(node.origin, f"`{node.type}` has {len(node.children)} children, which the library rejects")
+
+
+def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
+    """The scripts of a node, by attribute or port.
+
+    Raises:
+        TreeRefusal: one cannot be translated.
+    """
+    result = {}
+    for attribute, script, is_condition in node_scripts(node):
+        try:
+            result[attribute] = compiled(
+                script,
+                lambda entry: board.entries.get(node.frame.entry(entry)),
+                board.unset,
+                is_condition=is_condition,
+            )
+        except ScriptRefusal as refusal:
+            raise TreeRefusal(Location(node.origin.path, refusal.span), refusal.reason) from None
+    return result
+
+
+def asks_world(program: NodeProgram) -> bool:
+    """Whether a program depends on something that happens in the world."""
+    return any(
+        isinstance(instruction, assembly.Choose) and getattr(instruction.probability, "id", "") == "event"
+        for instruction in program.tick
+    )
+
+
+@dataclass(eq=False)
+class PortValues:
+    """The values of the ports that a program uses: constants, or entries. `elements` are those of the queue of a
+    loop."""
+
+    known: dict[str, Known] = field(default_factory=dict)
+    bound: dict[str, BoardEntry] = field(default_factory=dict)
+    elements: tuple[Known, ...] = ()
+
+
+def port_values(node: ExecutedNode, program: NodeProgram, board: Board) -> PortValues:
+    """The values of the ports of a node.
+
+    Raises:
+        TreeRefusal: a value cannot be translated.
+    """
+    return _Reader(node, program, board).values()
+
+
+@dataclass(eq=False)
+class _Reader:
+    node: ExecutedNode
+    program: NodeProgram
+    board: Board
+
+    def values(self) -> PortValues:
+        result = PortValues()
+        self.set_ports(self.node, self.program, self.board, result.known, result.bound)
+        if self.program.name.startswith("Loop"):
+            result.elements = self.elements(self.node, result.known)
+        return result
+
+    def set_ports(
+        self,
+        node: ExecutedNode,
+        program: NodeProgram,
+        board: Board,
+        known: dict[str, Known],
+        bound: dict[str, BoardEntry],
+    ) -> None:
+        """The values of the ports that a program uses: constants, or entries."""
+        if program.name in ("SetBlackboard", "UnsetBlackboard"):
+            self.set_blackboard(node, board, known, bound)
+            return
+        given = {port: (entry, text, span) for port, entry, text, span in node.ports()}
+        declared = node.known.ports if node.known else ()
+        kinds = {entry.kind for entry in self.switch_entries(program, given, board)}
+        for port in declared:
+            if port.name in ("if", "code", "entry", "queue", "value" if program.name.startswith("Loop") else ""):
+                if port.name == "value" and port.name in given:
+                    entry = given["value"][0]
+                    if entry is not None and entry in board.entries:
+                        bound["value"] = board.entries[entry]
+                continue
+            entry, text, span = given.get(port.name, (None, port.default, node.node.element.name_span))
+            if entry is not None:
+                if entry in board.entries:
+                    bound[port.name] = board.entries[entry]
+                elif port.name in _needed(program):
+                    raise TreeRefusal(Location(node.origin.path, span), board.unset(entry))
+                continue
+            if text is None:
+                continue
+            type_ = port_type(port)
+            if program.name.startswith("Switch"):
+                known[port.name] = _case(text, kinds)
+            elif type_ == "NodeStatus":
+                known[port.name] = STATUS_CODES.get(text.strip(), RUNNING)
+            else:
+                known[port.name] = self.literal(node, type_, text)
+        missing = [port for port in _needed(program) if port not in known and port not in bound]
+        if missing and not program.name.startswith("Switch"):
+            raise TreeRefusal(node.origin, f"`{node.type}` needs the port `{missing[0]}`")
+        if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
+            program.name.startswith("Switch")
+        ):
+            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to a text")
+        for port_name in ("else", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
+            if port_name in bound:
+                raise TreeRefusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
+
+    def switch_entries(
+        self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
+    ) -> list[BoardEntry]:
+        if not program.name.startswith("Switch"):
+            return []
+        return [board.entries[entry] for entry, _, _ in given.values() if entry is not None and entry in board.entries]
+
+    def literal(self, node: ExecutedNode, type_: str, text: str) -> Known:
+        wrong = mismatch(type_, text)
+        value = read_literal(wrong.instead if wrong is not None and wrong.ignored else text)[1]
+        if isinstance(value, str) and kind_of_cpp(type_) not in (EntryKind.TEXT, None):
+            raise TreeRefusal(node.origin, f"`{text}` is not a value for a port of the type {type_}")
+        return value
+
+    def set_blackboard(
+        self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, BoardEntry]
+    ) -> None:
+        target: str | None = None
+        for port, entry, text, span in node.ports():
+            if port in ("output_key", "key"):
+                if entry is not None:
+                    reason = (
+                        f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
+                        f'the tree runs; write `{port}="{entry}"` for the entry itself'
+                    )
+                    raise TreeRefusal(Location(node.origin.path, span), reason)
+                target = node.frame.entry(text.strip())
+        if target is None or target not in board.entries:
+            known["value"] = 0
+            return
+        if node.type == "UnsetBlackboard":
+            raise TreeRefusal(node.origin, f"`{target}` is read by the tree; a model cannot remove it")
+        bound["output_key"] = board.entries[target]
+        kind = board.entries[target].kind
+        for port, entry, text, span in node.ports():
+            if port != "value":
+                continue
+            if entry is None:
+                known["value"] = text if kind is EntryKind.TEXT else read_literal(text)[1]
+            elif entry in board.entries and (board.entries[entry].kind is EntryKind.TEXT) is (kind is EntryKind.TEXT):
+                bound["value"] = board.entries[entry]
+            else:
+                reason = f"the value of `{entry}` is not known, and the tree reads `{target}`"
+                raise TreeRefusal(Location(node.origin.path, span), reason)
+
+    def elements(self, node: ExecutedNode, known: dict[str, Known]) -> tuple[Known, ...]:
+        """The elements of the queue of a loop."""
+        known.setdefault("if_empty", STATUS_CODES["SUCCESS"])
+        for port, entry, text, span in node.ports():
+            if port == "queue":
+                if entry is not None:
+                    reason = "a queue in the blackboard cannot be translated; write its elements as `1;2;3`"
+                    raise TreeRefusal(Location(node.origin.path, span), reason)
+                items = [item.strip() for item in text.split(";")] if text.strip() else []
+                if node.type == "LoopString":
+                    return tuple(items)
+                read = tuple(read_literal(item)[1] for item in items)
+                return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
+        return ()
+
+
+def flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ...]]:
+    """The flags of observed entries that a node writes and whose values nothing reads, by port."""
+    flags: dict[str, tuple[BoardEntry, ...]] = {}
+    for port, bound, text, _ in node.ports():
+        names_entry = node.type == "SetBlackboard" and port == "output_key" and bound is None
+        entry = node.frame.entry(text.strip()) if names_entry else bound
+        if entry is not None and entry in board.flags and entry not in board.entries:
+            flags[port] = board.flags[entry]
+    return flags
+
+
+def _needed(program: NodeProgram) -> set[str]:
+    """The ports without which a program cannot work."""
+    names: set[str] = set()
+    for instruction in program.tick:
+        if isinstance(instruction, assembly.Read):
+            names.update(instruction.ports)
+    return names
+
+
+def _case(text: str, kinds: set[EntryKind]) -> Known:
+    """A constant of a switch: a number if the variable is one."""
+    if not kinds or EntryKind.TEXT in kinds:
+        return text
+    return read_literal(text)[1]

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The values of expressions in the programs of nodes: known during translation, or expressions of the automaton."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Boolean, Call, Conditional, Expr, Member, Number, String, Unary
+from roaml.lower.build import binary, equal, integer, name
+from roaml.lower.program import NOWHERE
+from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
+
+RESULT = "*result"
+"""The known variable with the status that the program has returned."""
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """The values of expressions of the program of a node; `declared` are the variables of the automaton."""
+
+    code: NodeCode
+    declared: Collection[str]
+
+    def number(self, expression: ast.expr, fixed: Mapping[str, Known]) -> float:
+        value = self.value(expression, fixed)
+        assert isinstance(value, (bool, int, float)), ast.unparse(expression)
+        return value
+
+    def value(self, expression: ast.expr, fixed: Mapping[str, Known]) -> Value:
+        """The value of an expression of a program: known, or an expression of the automaton."""
+        match expression:
+            case ast.Constant(value=bool() | int() | float() | str() as constant):
+                return constant
+            case ast.Name(id=identifier):
+                return self.name(identifier, fixed)
+            case ast.Subscript(value=ast.Name(id=identifier), slice=element):
+                return name(f"{identifier}_{self.number(element, fixed)}")
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                value = self.value(operand, fixed)
+                return not value if is_known(value) else negated(expr(value))
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return -self.number(operand, fixed)
+            case ast.BoolOp(op=operator, values=values):
+                return self.logical([self.value(v, fixed) for v in values], isinstance(operator, ast.And))
+            case ast.Compare(left=left, ops=[operator], comparators=[right]):
+                return compared(self.value(left, fixed), type(operator), self.value(right, fixed))
+            case ast.BinOp(left=left, op=operator, right=right):
+                return computed(self.value(left, fixed), type(operator), self.value(right, fixed))
+            case ast.Call(func=ast.Name(id=function), args=arguments):
+                return self.call(function, [self.value(argument, fixed) for argument in arguments])
+        raise AssertionError(ast.dump(expression))
+
+    def logical(self, values: Sequence[Value], conjunction: bool) -> Value:
+        result: Expr | None = None
+        for value in values:
+            if isinstance(value, (bool, int, float, str)):
+                if bool(value) is not conjunction:
+                    return not conjunction
+            elif result is None:
+                result = value
+            else:
+                result = binary(result, Operator.AND if conjunction else Operator.OR, value)
+        return conjunction if result is None else result
+
+    def name(self, identifier: str, fixed: Mapping[str, Known]) -> Value:
+        if identifier in STATUS_CODES:
+            return STATUS_CODES[identifier]
+        if identifier in fixed:
+            return fixed[identifier]
+        if identifier in self.declared:
+            return name(identifier)
+        key = {"otherwise": "else", "result": RESULT}.get(identifier, identifier)
+        if key in fixed:
+            return fixed[key]
+        if key == "COUNT":
+            return len(self.code.children)
+        if key == "LENGTH":
+            return len(self.code.elements)
+        if key in self.code.bound:
+            return name(self.code.bound[key].local)
+        return self.code.known[key]
+
+    def call(self, function: str, arguments: Sequence[Value]) -> Value:
+        match function, arguments:
+            case "ticks", [duration]:
+                if isinstance(duration, (bool, int, float)):
+                    return ticks_of(Fraction(str(duration)), self.code.rate)
+                assert not isinstance(duration, str)
+                scaled = binary(duration, Operator.MULTIPLY, expr(float(self.code.rate)))
+                return _math("ceil", binary(scaled, Operator.DIVIDE, integer(1000)))
+            case "maximum", [first, second]:
+                if isinstance(first, (int, float)) and isinstance(second, (int, float)):
+                    return max(first, second)
+                return _math("max", expr(first), expr(second))
+            case "matches", [int() as case]:
+                return self.matches(case)
+            case "element", [position]:
+                return self.element(position)
+        raise AssertionError(function)
+
+    def matches(self, case: int) -> Value:
+        """Whether the variable of a switch equals a case."""
+        return compared(self.name("variable", {}), ast.Eq, self.name(f"case_{case + 1}", {}))
+
+    def element(self, position: Value) -> Value:
+        """The element of a queue at a position."""
+        result = expr(self.code.elements[-1])
+        for index in reversed(range(len(self.code.elements) - 1)):
+            test = equal(expr(position), integer(index))
+            result = Conditional(NOWHERE, test, expr(self.code.elements[index]), result)
+        return result
+
+
+def ticks_of(milliseconds: Fraction, rate: Fraction) -> int:
+    """The number of ticks of the tree that a duration takes, rounded up (docs/spec/nodes.md#durations)."""
+    return math.ceil(milliseconds * rate / 1000)
+
+
+def is_known(value: Value) -> bool:
+    return isinstance(value, (bool, int, float, str))
+
+
+_COMPARISONS: Mapping[type[ast.cmpop], tuple[Operator, Callable[[Any, Any], bool]]] = {
+    ast.Eq: (Operator.EQUAL, operator.eq),
+    ast.NotEq: (Operator.NOT_EQUAL, operator.ne),
+    ast.Lt: (Operator.LESS, operator.lt),
+    ast.LtE: (Operator.LESS_EQUAL, operator.le),
+    ast.Gt: (Operator.GREATER, operator.gt),
+    ast.GtE: (Operator.GREATER_EQUAL, operator.ge),
+}
+_ARITHMETIC: Mapping[type[ast.operator], tuple[Operator, Callable[[Any, Any], Any]]] = {
+    ast.Add: (Operator.ADD, operator.add),
+    ast.Sub: (Operator.SUBTRACT, operator.sub),
+    ast.Mult: (Operator.MULTIPLY, operator.mul),
+    ast.Div: (Operator.DIVIDE, operator.truediv),
+}
+
+
+def compared(left: Value, kind: type[ast.cmpop], right: Value) -> Value:
+    symbol, function = _COMPARISONS[kind]
+    if isinstance(left, (bool, int, float, str)) and isinstance(right, (bool, int, float, str)):
+        return function(left, right)
+    return binary(expr(left), symbol, expr(right))
+
+
+def computed(left: Value, kind: type[ast.operator], right: Value) -> Value:
+    symbol, function = _ARITHMETIC[kind]
+    if isinstance(left, (bool, int, float)) and isinstance(right, (bool, int, float)):
+        result: Known = function(left, right)
+        return result
+    return binary(expr(left), symbol, expr(right))
+
+
+def expr(value: Value) -> Expr:
+    match value:
+        case bool():
+            return Boolean(NOWHERE, value)
+        case int():
+            return integer(value) if value >= 0 else Unary(NOWHERE, UnaryOperator.NEGATE, integer(-value))
+        case float():
+            return Number(NOWHERE, value, True)
+        case str():
+            return String(NOWHERE, value)
+    return value
+
+
+def negated(condition: Expr) -> Expr:
+    return Unary(NOWHERE, UnaryOperator.NOT, condition)
+
+
+def _math(function: str, *arguments: Expr) -> Expr:
+    return Call(NOWHERE, Member(NOWHERE, name("Math"), function, NOWHERE), arguments)
