@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from roaml.comparison import read_comparison
 from roaml.diagnostics import Finding, Severity
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import BinaryFormula, Expectation, Probability, Property, walk
@@ -41,7 +42,8 @@ def _numbers(property_: Property) -> Iterator[Span]:
 
 
 def in_xml(file: LinkedFile) -> Iterator[Finding]:
-    expected = [written.expect.span for written in file.file.properties if written.expect is not None]
+    names = [written.expect for written in file.file.properties if written.expect is not None]
+    expected = [name.span for name in names if read_comparison(name.value) is not None]  # else `property-form`
     yield from _reported(expected, IN_XML)
 
 
