@@ -85,6 +85,7 @@ class ProtocolPart(RoleValue):
     BT_HALTED = "bt-halted"
     BT_STATUS = "bt-status"
     BT_TICK = "bt-tick"
+    CANCEL = "cancel"
     CHILD_HALT = "child-halt"
     CHILD_HALTED = "child-halted"
     CHILD_STATUS = "child-status"

@@ -66,7 +66,7 @@ def loads(text: str) -> dict[str, Any]:
         raise TomlError(message, Span(start, min(start + 1, len(text)))) from None
 
 
-_DEEPEST = 8
+_MAX_DEPTH = 8
 """The maximum nesting depth of values with positions of their own."""
 
 _SPACE = re.compile(r"[ \t]*")
@@ -160,7 +160,7 @@ class _Scanner:
 
     def _value(self, path: Path, depth: int) -> None:
         start = self.at
-        if depth >= _DEEPEST:
+        if depth >= _MAX_DEPTH:
             self._skip()
         elif self._sees("["):
             self._items(path, "]", depth)

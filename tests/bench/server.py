@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import IO, Any, TypeAlias
 
 from bench.report import listed
-from patience import PATIENCE
+from timeouts import TIMEOUT_S
 
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
 
@@ -100,10 +100,10 @@ class Server:
         found: dict[Wanted, tuple[float, dict[str, Any]]] = {}
         while len(found) < len(wanted):
             try:
-                at, message = self._answers.get(timeout=PATIENCE)
+                at, message = self._answers.get(timeout=TIMEOUT_S)
             except queue.Empty:
                 raise TimeoutError(
-                    f"no such answer in {PATIENCE} s: {listed(w.__qualname__ for w in wanted)}"
+                    f"no such answer in {TIMEOUT_S} s: {listed(w.__qualname__ for w in wanted)}"
                 ) from None
             for each in wanted:
                 if each not in found and each(message):

@@ -21,7 +21,7 @@ from bench.report import Benchmark, Row, listed, megabytes, seconds
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SIZES = (10, 20, 50, 100, 200)
 CONFIDENCES = (0.8, 0.9, 0.95, 0.99, 0.999, 0.9999)
-PATIENCE = 120
+TIMEOUT_S = 120
 """Seconds that an exhaustive computation may take."""
 
 
@@ -122,7 +122,7 @@ def _exhaustively(main: str) -> float | None:
     )
     try:
         done = subprocess.run(
-            [sys.executable, "-c", script, main], capture_output=True, text=True, timeout=PATIENCE, check=True
+            [sys.executable, "-c", script, main], capture_output=True, text=True, timeout=TIMEOUT_S, check=True
         )
     except (subprocess.TimeoutExpired, subprocess.CalledProcessError):
         return None
@@ -136,7 +136,7 @@ def growth() -> list[Row]:
     how = f"grids of {listed(rows)} cells a side: 20,000 traces, one process"
     return [
         Row("verify, growth", ours, "linear", how),
-        Row("exhaustively", theirs, "", f"the same by Storm: all states, at most {PATIENCE} s"),
+        Row("exhaustively", theirs, "", f"the same by Storm: all states, at most {TIMEOUT_S} s"),
     ]
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import clock
-from patience import PATIENCE
+from timeouts import TIMEOUT_S
 
 INSTALLED = (str(Path(sys.executable).parent / "as2fm-lsp"),)
 MODULE = (sys.executable, "-m", "as2fm_lsp")
@@ -36,7 +36,7 @@ def call(
         stderr=subprocess.PIPE,
         env={**os.environ, **(environment or {})},
         check=False,
-        timeout=PATIENCE,
+        timeout=TIMEOUT_S,
     )
 
 

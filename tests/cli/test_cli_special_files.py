@@ -12,14 +12,14 @@ from command import Done
 
 import clock
 import prefork
-from patience import PATIENCE
 from roaml.project.files import MAX_CHARACTERS
+from timeouts import TIMEOUT_S
 
 
 def run(folder: Path, *arguments: str) -> Done:
     """A process of its own, which can be ended if it hangs."""
     command = [*prefork.command(), *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE, check=False)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
     return Done(done.returncode, done.stdout, done.stderr)
 
 

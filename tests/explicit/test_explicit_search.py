@@ -163,15 +163,15 @@ def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> 
     length = 10_000 if path is None else len(path.steps)
     while layers[-1] and len(layers) <= length:
         assert not any(explorer.verdict(state) == TRUE for state in layers[-1])
-        found = {
+        states = {
             branch.state
             for state in layers[-1]
             if explorer.verdict(state) not in (TRUE, FALSE)
             for _, branches in explorer.choices(state)
             for branch in branches
         }
-        layers.append(found - seen)
-        seen |= found
+        layers.append(states - seen)
+        seen |= states
     if path is not None:
         recorder = PathRecorder(space, path)
         recording = Recording(SHORTEST)

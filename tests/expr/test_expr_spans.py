@@ -55,12 +55,12 @@ def test_spans_of_operators_and_members() -> None:
 
 def test_tokens_cover_the_text() -> None:
     text = " a.b<=1.5e3 + 'x y' #`t` "
-    found = tokens(text)
-    assert [t.text for t in found] == ["a", ".", "b", "<=", "1.5e3", "+", "'x y'", "#", "`t`"]
+    expression_tokens = tokens(text)
+    assert [t.text for t in expression_tokens] == ["a", ".", "b", "<=", "1.5e3", "+", "'x y'", "#", "`t`"]
     kinds = "name punctuator name punctuator number punctuator string junk template"
-    assert " ".join(t.kind.value for t in found) == kinds
-    gaps = [*(t.start for t in found), len(text)]
-    ends = [0, *(t.end for t in found)]
+    assert " ".join(t.kind.value for t in expression_tokens) == kinds
+    gaps = [*(t.start for t in expression_tokens), len(text)]
+    ends = [0, *(t.end for t in expression_tokens)]
     assert all(not text[end:gap].strip() for end, gap in zip(ends, gaps, strict=True))
 
 
@@ -105,6 +105,6 @@ def test_the_same_expression_elsewhere(written: str, parts: list[str]) -> None:
         document = parse_xml(text)
         assert document.root is not None
         tree, _ = parse(document.decoded(document.root.attributes[-1].value_span))
-        found = [text[e.span.start : e.span.end] for e in walk(tree)]
-        assert found == parts
+        actual_texts = [text[e.span.start : e.span.end] for e in walk(tree)]
+        assert actual_texts == parts
         assert tree.span.start >= text.index('b="')

@@ -74,8 +74,8 @@ def alone(mistake: Mistake) -> Report:
 def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
     """What becomes of two mistakes in different files, and what is lost or held back, in words."""
     together = report({**base(), first.file: first.text, second.file: second.text})
-    wanted = alone(first).findings | alone(second).findings
-    missing = sorted(wanted - together.findings)
+    expected = alone(first).findings | alone(second).findings
+    missing = sorted(expected - together.findings)
     if not missing:
         return Outcome.BOTH, ""
     said = together.not_checked - alone(first).not_checked - alone(second).not_checked
@@ -95,10 +95,10 @@ def choose(seed: int) -> tuple[Mistake, Mistake]:
 def report(texts: dict[str, str]) -> Report:
     """What is said about the system of these files, each by its name."""
     files = {os.path.join(NOWHERE, name): text for name, text in texts.items()}
-    found = api.check(list(files), (), Settings(), files).diagnostics
+    diagnostics = api.check(list(files), (), Settings(), files).diagnostics
     return Report(
-        frozenset((os.path.basename(d.path), d.code) for d in found if d.severity >= Severity.WARNING),
-        frozenset((os.path.basename(d.path), d.message) for d in found if d.code == "not-checked"),
+        frozenset((os.path.basename(d.path), d.code) for d in diagnostics if d.severity >= Severity.WARNING),
+        frozenset((os.path.basename(d.path), d.message) for d in diagnostics if d.code == "not-checked"),
     )
 
 

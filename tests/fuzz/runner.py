@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs cases and says what failed: in this process, or in several that are watched.
 
-A watched process that does not come back within `PATIENCE` seconds is ended, and its case is a failure; so is the case
+A watched process that does not come back within `TIMEOUT_S` seconds is ended, and its case is a failure; so is the case
 of a process that dies.
 """
 
@@ -24,7 +24,7 @@ from typing import IO, Any
 from fuzz.limits import OutOfTime, limited
 from fuzz.strategies import strategies
 from fuzz.strategy import Failure
-from patience import PATIENCE
+from timeouts import TIMEOUT_S
 
 CASES_OF_A_PROCESS = 400
 """After so many cases a process is replaced, so that what one case leaves behind does not add up for ever."""
@@ -140,7 +140,7 @@ class _Worker:
         except (EOFError, OSError):
             self._process.join(5.0)
             return self._lost(f"the process died (exit code {self._process.exitcode})")
-        if time.monotonic() - self._since > PATIENCE:
+        if time.monotonic() - self._since > TIMEOUT_S:
             assert self._process.pid is not None
             os.kill(self._process.pid, signal.SIGUSR1)
             time.sleep(0.5)  # the stack is being written

@@ -55,7 +55,11 @@ CHARGES = '<property id="charges" pattern="response">'
         (LEVEL, '<ros_topic topic_name="/battery/level" type="|">', ["std_msgs/Int32"]),
         (LEVEL, '<ros_topic topic_name="/battery/level" type="std_msgs/Int32" event="|">', ["publish"]),
         (COUNT, '<ros_action action_name="|">', ["/count"]),
-        (COUNT, COUNT.replace('"result"', '"|"'), ["goal_request", "goal_response", "feedback", "result"]),
+        (
+            COUNT,
+            COUNT.replace('"result"', '"|"'),
+            ["goal_request", "goal_response", "feedback", "result", "cancel_request"],
+        ),
         (COUNT, COUNT.replace(">", ' target="|">'), ["pick", "pick", "right_pick", "Arm"]),
         ('node="Left/pick"', 'node="|"', ["KeepRunningUntilFailure", "Left/steps", "Left/pick"]),
         (

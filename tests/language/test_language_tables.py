@@ -79,8 +79,8 @@ def compare_attribute(place: str, ours: AttributeType, theirs: Any) -> None:
     assert ours.simple.pattern == facets.get("pattern", ""), place
     assert ours.simple.non_empty is ("minLength" in facets), place
     numbers = (ours.simple.above, ours.simple.least, ours.simple.most)
-    wanted = (facets.get("minExclusive"), facets.get("minInclusive"), facets.get("maxInclusive"))
-    assert numbers == tuple(None if limit is None else float(limit) for limit in wanted), place
+    expected = (facets.get("minExclusive"), facets.get("minInclusive"), facets.get("maxInclusive"))
+    assert numbers == tuple(None if limit is None else float(limit) for limit in expected), place
     assert facets.keys() <= {"enumeration", "pattern", "minLength", "minExclusive", "minInclusive", "maxInclusive"}
 
 
@@ -231,8 +231,8 @@ PATHS = [
 
 @pytest.mark.parametrize(("grammar", "path", "name"), PATHS)
 def test_element_at(grammar: Grammar, path: str, name: str | None) -> None:
-    found = grammar.element_at(path.split())
-    assert (found.name if found else None) == name
+    element_type = grammar.element_at(path.split())
+    assert (element_type.name if element_type else None) == name
 
 
 def test_find_and_parents() -> None:

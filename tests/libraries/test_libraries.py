@@ -47,8 +47,8 @@ def test_defaults_are_of_ports_that_are_read() -> None:
 
 
 def test_other_names_lead_to_nodes() -> None:
-    assert all(each.now in CPP.nodes for each in CPP.renamed.values())
-    assert all(not each.instead or each.instead in CPP.nodes for each in CPP.absent.values())
+    assert all(name.now in CPP.nodes for name in CPP.renamed.values())
+    assert all(not absent.instead or absent.instead in CPP.nodes for absent in CPP.absent.values())
     assert not CPP.nodes.keys() & (CPP.absent.keys() | CPP.renamed.keys())
 
 

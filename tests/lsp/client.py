@@ -18,7 +18,7 @@ from pytest_lsp import LanguageClient
 from pytest_lsp.client import DEFAULT_CLIENT_FEATURES, register_lsp_features
 
 import prefork
-from patience import PATIENCE
+from timeouts import TIMEOUT_S
 
 STARTED = (sys.executable, "-m", "as2fm_lsp")
 """The server as an editor starts it. Tests of anything but its start use `prefork.command()`, which is quick."""
@@ -113,7 +113,7 @@ class Client(LanguageClient):
         """
         while not reached():
             self.news.clear()
-            await asyncio.wait_for(self.news.wait(), PATIENCE)
+            await asyncio.wait_for(self.news.wait(), TIMEOUT_S)
 
     # ----------------------------------------------------------- diagnostics
 
@@ -249,21 +249,21 @@ class RawServer:
         assert self._process.stdout is not None
         found = b""
         while text.encode() not in found:
-            piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), PATIENCE)
+            piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), TIMEOUT_S)
             assert piece, f"it ends and has not said {text}"
             found += piece
         return found.decode()
 
     async def ended(self) -> int:
         """Wait for its end, while its input is open; its exit status."""
-        return await asyncio.wait_for(self._process.wait(), PATIENCE)
+        return await asyncio.wait_for(self._process.wait(), TIMEOUT_S)
 
     async def end(self) -> tuple[int, list[dict[str, object]], str]:
         """Close its input and wait: its exit status, what it said, and its log."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         try:
-            out, err = await asyncio.wait_for(self._process.communicate(), PATIENCE)
+            out, err = await asyncio.wait_for(self._process.communicate(), TIMEOUT_S)
         finally:
             if self._process.returncode is None:
                 self._process.kill()

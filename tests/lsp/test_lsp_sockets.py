@@ -21,7 +21,7 @@ from pygls.lsp.client import LanguageClient
 
 import clock
 import prefork
-from patience import PATIENCE
+from timeouts import TIMEOUT_S
 
 TOKEN = "a-secret-of-the-user"
 INITIALIZE = {"processId": None, "rootUri": None, "capabilities": {}}
@@ -49,7 +49,7 @@ async def listening(*arguments: str, **environment: str) -> AsyncIterator[Listen
     said = ""
     last = "initializationOptions" if "--tcp" in arguments else "listening on"
     while last not in said:
-        line = (await asyncio.wait_for(process.stderr.readline(), PATIENCE)).decode()
+        line = (await asyncio.wait_for(process.stderr.readline(), TIMEOUT_S)).decode()
         assert line, said
         said += line
     port = re.search(r"listening on \S+:(\d+)\n", said)
@@ -75,7 +75,7 @@ async def exchange(port: int, data: bytes) -> bytes:
         await writer.drain()
     answer = b""
     with suppress(ConnectionError):
-        answer = await asyncio.wait_for(reader.read(), PATIENCE)
+        answer = await asyncio.wait_for(reader.read(), TIMEOUT_S)
     writer.close()
     return answer
 
@@ -85,10 +85,10 @@ async def end_of(server: Listening, port: int, token: str) -> int:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     shutdown = frame({"jsonrpc": "2.0", "id": 2, "method": "shutdown"})
     writer.write(initialize(token) + shutdown + frame({"jsonrpc": "2.0", "method": "exit"}))
-    answer = await asyncio.wait_for(reader.read(), PATIENCE)
+    answer = await asyncio.wait_for(reader.read(), TIMEOUT_S)
     assert b'"capabilities"' in answer
     writer.close()
-    return await asyncio.wait_for(server.process.wait(), PATIENCE)
+    return await asyncio.wait_for(server.process.wait(), TIMEOUT_S)
 
 
 @pytest.mark.parametrize("given", ["", TOKEN], ids=["printed", "chosen"])
@@ -116,13 +116,13 @@ async def test_tcp(tmp_path: Path, given: str) -> None:
             )
         )
         client.initialized(types.InitializedParams())
-        await asyncio.wait_for(published.wait(), PATIENCE)
+        await asyncio.wait_for(published.wait(), TIMEOUT_S)
         assert [(Path(p.uri).name, [d.code for d in p.diagnostics]) for p in found] == [
             ("clock.ascxml", ["undeclared-variable"])
         ]
         await client.shutdown_async(None)
         client.exit(None)
-        assert await asyncio.wait_for(server.process.wait(), PATIENCE) == 0
+        assert await asyncio.wait_for(server.process.wait(), TIMEOUT_S) == 0
 
 
 def posted(target: Path) -> bytes:
@@ -176,7 +176,7 @@ async def test_it_ends_with_its_client() -> None:
         _, writer = await asyncio.open_connection("localhost", server.port)
         writer.write(initialize(TOKEN))
         writer.close()
-        assert await asyncio.wait_for(server.process.wait(), PATIENCE) == 1
+        assert await asyncio.wait_for(server.process.wait(), TIMEOUT_S) == 1
 
 
 @pytest.mark.parametrize(
@@ -231,12 +231,12 @@ async def test_a_socket_file(tmp_path: Path) -> None:
         assert (status, "another server is listening there" in log) == (2, True)
         reader, writer = await asyncio.open_unix_connection(str(path))
         writer.write(b"GET / HTTP/1.1\r\n\r\n")
-        assert await asyncio.wait_for(reader.read(), PATIENCE) == b""
+        assert await asyncio.wait_for(reader.read(), TIMEOUT_S) == b""
         writer.close()
         reader, writer = await asyncio.open_unix_connection(str(path))
         shutdown = frame({"jsonrpc": "2.0", "id": 2, "method": "shutdown"})
         writer.write(initialize() + shutdown + frame({"jsonrpc": "2.0", "method": "exit"}))
-        assert b'"capabilities"' in await asyncio.wait_for(reader.read(), PATIENCE)
-        assert await asyncio.wait_for(server.process.wait(), PATIENCE) == 0
+        assert b'"capabilities"' in await asyncio.wait_for(reader.read(), TIMEOUT_S)
+        assert await asyncio.wait_for(server.process.wait(), TIMEOUT_S) == 0
         writer.close()
     assert not path.exists()

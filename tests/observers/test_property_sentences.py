@@ -17,6 +17,7 @@ PORTS = """<ports>
 <ros_action action_name="/go" type="n/Go" event="goal_response"><event_var id="reply"/></ros_action>
 <ros_action action_name="/go" type="n/Go" event="feedback"><event_var id="news"/></ros_action>
 <ros_action action_name="/go" type="n/Go" event="result"><event_var id="done"/></ros_action>
+<ros_action action_name="/go" type="n/Go" event="cancel_request"><event_var id="stop"/></ros_action>
 <bt_node node="pick" event="tick"><event_var id="tick"/></bt_node>
 <bt_node node="pick" event="response"><event_var id="answer"/></bt_node>
 <bt_node node="pick" event="halt"><event_var id="halt"/></bt_node>
@@ -44,6 +45,7 @@ def of(pattern: str, events: str, scope: str = 'type="globally"', interval: str 
     [
         ("universality", "x &gt; 1", "", "`x > 1` always holds.", "G (x > 1)"),
         ("absence", "alarm", "", "A message is never published on `/alarm`.", "G ¬alarm"),
+        ("absence", "stop", "", "Cancelling a goal of `/go` is never requested.", "G ¬stop"),
         ("existence", "done", "", "A result of `/go` is sent at some time.", "F done"),
         (
             "existence", "done", 'within="5" time_unit="s"',

@@ -32,8 +32,8 @@ EXPECTED = {
 
 
 def test_every_example_is_here() -> None:
-    found = {path.relative_to(ROOT / "examples").as_posix() for path in (ROOT / "examples").glob("*/main*.xml")}
-    assert found == set(EXPECTED)
+    paths = {path.relative_to(ROOT / "examples").as_posix() for path in (ROOT / "examples").glob("*/main*.xml")}
+    assert paths == set(EXPECTED)
 
 
 @pytest.mark.parametrize("name", EXPECTED)

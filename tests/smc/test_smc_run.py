@@ -83,7 +83,7 @@ def test_another_seed_gives_other_traces_the_same_seed_the_same() -> None:
 def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
     options = Options(epsilon=0.02)
     alone = ask(options)
-    assert numbers(ask(options, pool=Pool(jobs, patience=0))) == numbers(alone)
+    assert numbers(ask(options, pool=Pool(jobs, start_delay_s=0))) == numbers(alone)
     with ThreadPoolExecutor(jobs) as executor:
         assert numbers(ask(options, pool=Pool(jobs, executor))) == numbers(alone)
 
@@ -125,7 +125,7 @@ def test_a_killed_worker_costs_time_only() -> None:
     options = Options(method=FIXED, max_traces=60_000)
     written = coin(extra=400)
     whole = ask(options, written)
-    pool = Pool(2, patience=0)
+    pool = Pool(2, start_delay_s=0)
     killed: list[int] = []
 
     def watch(tally: Tally) -> None:
@@ -154,7 +154,7 @@ def test_workers_that_are_always_lost_are_reported() -> None:
 
 
 def test_workers_end_with_the_run() -> None:
-    pool = Pool(2, patience=0)
+    pool = Pool(2, start_delay_s=0)
     processes: list[Any] = []
 
     def watch(tally: Tally) -> None:
@@ -202,7 +202,7 @@ def test_the_first_fault_is_reported_however_traces_are_distributed() -> None:
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
     traces = []
-    for pool in (Pool(), Pool(2, patience=0)):
+    for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pytest.raises(FaultError, match="division by zero") as caught:
             ask(Options(method=FIXED, max_traces=20_000), written, pool)
         assert caught.value.origin is not None
@@ -232,8 +232,8 @@ def tasks() -> Iterator[Task]:
 def test_leaving_in_the_middle_of_large_results() -> None:
     """Workers that were killed while they send would leave the rest of a result to be waited for."""
     for _ in range(5):
-        with Pool(2, patience=0) as pool:
-            found = pool.outcomes(Task(each.payload, 0, each.first * 1000, 10_000, 100) for each in tasks())
+        with Pool(2, start_delay_s=0) as pool:
+            found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
             next(found)
             next(found)
     assert not multiprocessing.active_children()

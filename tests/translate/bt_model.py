@@ -17,7 +17,7 @@ from typing import ClassVar, TypeAlias
 
 from bt_trees import VARIABLES, Setup, Tree, is_reference
 
-MOST_STEPS_PER_TICK = 2000
+MAX_STEPS_PER_TICK = 2000
 
 
 class Status(enum.IntEnum):
@@ -76,7 +76,7 @@ def run(tree: Tree, setup: Setup) -> list[Step]:
     world = World(setup.rate)
     root = build(tree, world, itertools.count(1000))
     for _ in range(setup.ticks):
-        world.limit = len(world.log) + MOST_STEPS_PER_TICK
+        world.limit = len(world.log) + MAX_STEPS_PER_TICK
         if root.tick() is not RUNNING and not setup.goes_on:
             break
     return world.log
@@ -342,8 +342,8 @@ class Switch(Node, names=("Switch2", "Switch3", "Switch4", "Switch5", "Switch6")
 
     def on_tick(self) -> Status:
         cases = len(self.children) - 1
-        wanted = self.port("variable")
-        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == wanted]
+        expected = self.port("variable")
+        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == expected]
         chosen = self.children[holds[0] if holds else cases]
         if self.running is not None and self.running is not chosen:
             self.running.halt()

@@ -36,6 +36,13 @@ def errors(files: Mapping[str, str], main: str = "main.xml") -> tuple[Diagnostic
     return ()
 
 
+def reported(files: Mapping[str, str], name: str, main: str = "main.xml") -> tuple[Diagnostic, ...]:
+    """The findings of a check in one file."""
+    texts = {os.path.join(FOLDER, file): text for file, text in files.items()}
+    result = api.check([os.path.join(FOLDER, main)], (), Settings(), texts)
+    return tuple(finding for finding in result.diagnostics if finding.path == os.path.join(FOLDER, name))
+
+
 def lowered(files: Mapping[str, str], main: str = "main.xml") -> Network:
     return api.to_scxml(loaded(files, main))
 

@@ -47,7 +47,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, FIXED, LEAST_EPSILON, METHODS, Options, Tally
+from roaml.smc.run import ADAPTIVE, FIXED, METHODS, MIN_EPSILON, Options, Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
@@ -562,9 +562,9 @@ def _share(text: str) -> float:
 
 def _width(text: str) -> float:
     value = _share(text)
-    if value < LEAST_EPSILON:
+    if value < MIN_EPSILON:
         raise argparse.ArgumentTypeError(
-            f"expected a number of at least {LEAST_EPSILON:g}: no run can generate more traces"
+            f"expected a number of at least {MIN_EPSILON:g}: no run can generate more traces"
         )
     return value
 

@@ -50,7 +50,7 @@ async def answer(
                 shown_at = now
                 loop.call_soon_threadsafe(show, replace(latest))
 
-        with Pool(_jobs(), patience=None) as pool:
+        with Pool(_jobs(), start_delay_s=None) as pool:
             return verifier.answer(asked, pool, latest, watch=lambda _: pulse(0, 0), pulse=pulse)
 
     return await in_thread(work, checkpoint)

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from roaml.smc.run import LEAST_EPSILON, Options
+from roaml.smc.run import MIN_EPSILON, Options
 from roaml.verification.expectations import Expectation, parse
 from roaml.verification.stuck import LEVELS, WARNING
 
@@ -57,10 +57,10 @@ def verification_settings(settings: object, options: object = None) -> Verificat
 
     default = Options()
     share, integer = "a number between 0 and 1", "a whole number"
-    width = f"a number from {LEAST_EPSILON:g} to 1"
+    width = f"a number from {MIN_EPSILON:g} to 1"
     chosen = Options(
         confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
-        epsilon=number("epsilon", default.epsilon, lambda value: LEAST_EPSILON <= value < 1, width),
+        epsilon=number("epsilon", default.epsilon, lambda value: MIN_EPSILON <= value < 1, width),
         max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{integer} from 1 on"),
         seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{integer} from 0 on"),
     )

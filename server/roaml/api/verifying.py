@@ -82,10 +82,13 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
     if isinstance(subject, Model):
         return target_of(subject)
     from roaml.api.systems import to_jani  # noqa: PLC0415 - a JANI model needs no system
+    from roaml.model.property_links import clock_step  # noqa: PLC0415
 
     conditional = [property_.name for property_ in subject.observed if property_.assumptions]
     model = to_jani(subject, has_activity=True)
-    target = target_of(model, subject.path, subject.files, subject.analysis.source, conditional)
+    system = subject.analysis.system(subject.path)
+    step = None if system is None else clock_step(system)
+    target = target_of(model, subject.path, subject.files, subject.analysis.source, conditional, step)
     return target.expecting({p.name: p.expected for p in subject.observed if p.expected is not None})
 
 

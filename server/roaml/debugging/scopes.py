@@ -12,7 +12,7 @@ from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.model.expand import PortConstant
-from roaml.scxml.names import BLACKBOARD, FIELD_PREFIX, TREE_EVENT, is_length, is_timer, received_by
+from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, TREE_EVENT, is_length, is_timer, received_by
 from roaml.simulation.session import Session
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import STATUS_NAMES
@@ -222,6 +222,8 @@ def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Valu
     name = event.partition("_client_")[0]
     if event.startswith("srv_"):
         return {"_res" if name.endswith("_response") else "_req": parameters}
+    if event.startswith(CANCEL_PREFIX):
+        return {"_action": dict(handle)}
     if event.startswith("action_"):
         action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
         if "_result" in name:

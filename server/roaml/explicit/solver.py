@@ -104,7 +104,7 @@ class Solver:
         for state in range(self.states):
             self.group[state] = state
             status = self.label[state] & STATUS
-            if status == target or self.label[state] & bits != 0:
+            if (status == target and target != UNKNOWN) or self.label[state] & bits != 0:
                 self._fix(state, 1.0)
             elif status != UNKNOWN:
                 self._fix(state, 0.0)

@@ -24,7 +24,7 @@ Watch: TypeAlias = Callable[[int, int], None]
 STRIDE = 16_384
 """The number of states between two calls of a watch."""
 MAX_STATES = 0x7FFFFFF0
-MOST_COMBINATIONS = 1 << 20
+MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state: some seconds."""
 
 
@@ -39,7 +39,7 @@ class StateLimits:
 
     states: int = MAX_STATES
     bytes: int | None = None
-    combinations: int = MOST_COMBINATIONS
+    combinations: int = MAX_COMBINATIONS
 
 
 class LimitError(Exception):

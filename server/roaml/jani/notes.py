@@ -17,7 +17,7 @@ TYPE = "jani-type"
 _MAX_GUESSES = 20
 """The maximum number of suggestions in one file; each requires a comparison with all known names."""
 
-_LONGEST_GUESSED = 200
+_MAX_SUGGESTION_LENGTH = 200
 
 
 class Notes:
@@ -68,7 +68,7 @@ class Notes:
     def _guess(self, kind: str, name: str, known: Iterable[str]) -> str | None:
         key = (kind, name)
         if key not in self._guesses:
-            if len(self._guesses) >= _MAX_GUESSES or len(name) > _LONGEST_GUESSED:
+            if len(self._guesses) >= _MAX_GUESSES or len(name) > _MAX_SUGGESTION_LENGTH:
                 return None
             self._guesses[key] = nearest_name(name, known)
         return self._guesses[key]

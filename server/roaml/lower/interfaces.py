@@ -13,7 +13,7 @@ from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, saniti
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import EventRole, ScxmlEvent
-from roaml.scxml.names import FIELD_PREFIX, named, safe_name
+from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, named, safe_name
 
 
 def topic_event(topic: str) -> ScxmlEvent:
@@ -66,6 +66,13 @@ class ActionEvents:
         return ScxmlEvent(f"{self.stem}_goal_handle", EventRole.BLOCKING)
 
     @property
+    def cancel(self) -> ScxmlEvent:
+        """A request is received only when goals have been passed on to threads (docs/spec/ros.md#cancel). Its name does
+        not begin like those of the other events of the action, so it never waits for its receivers
+        (docs/spec/jani.md#synchronising-names)."""
+        return ScxmlEvent(f"{CANCEL_PREFIX}{sanitise(self.action)}", after=self.thread_start.name)
+
+    @property
     def accepted(self) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_goal_accepted", EventRole.BLOCKING)
 
@@ -90,7 +97,9 @@ class ActionEvents:
         return ScxmlEvent(f"{self.stem}_thread_free", EventRole.BLOCKING)
 
     def goal_of(self, client: SystemAutomaton) -> ScxmlEvent:
-        return ScxmlEvent(f"{self.stem}_goal_req_client_{safe_name(client.name)}", EventRole.BLOCKING)
+        """A goal is received only when each earlier cancel request has been (docs/spec/ros.md#cancel)."""
+        name = f"{self.stem}_goal_req_client_{safe_name(client.name)}"
+        return ScxmlEvent(name, EventRole.BLOCKING, after=self.cancel.name)
 
     def accept_for(self, client: SystemAutomaton) -> ScxmlEvent:
         return ScxmlEvent(f"{self.stem}_goal_accept_client_{safe_name(client.name)}", EventRole.BLOCKING)

@@ -7,16 +7,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 
-from roaml.expr.tree import Expr
+from roaml.expr.tree import Boolean, Expr
 from roaml.expr.types import Type
 from roaml.lower.blackboard import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext, type_of, variables_of
 from roaml.lower.data import lower_data
+from roaml.lower.executed_goals import executed_goals
 from roaml.lower.expressions import LoweringScope, lower_expr
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
-from roaml.lower.program import TranslatableSystem
+from roaml.lower.program import NOWHERE, TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
 from roaml.model.expand import PortConstant
@@ -25,7 +26,7 @@ from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.model import Automaton as PlainAutomaton
-from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Target, Transition
+from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Statement, Target, Transition
 from roaml.scxml.names import STATUSES, named
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
@@ -66,17 +67,37 @@ def lower_machine(
 class _ChartLowering:
     def __init__(self, context: LoweringContext) -> None:
         self.context = context
-        self.statements = StatementLowering(context)
+        self.goals = executed_goals(context)
+        self.statements = StatementLowering(context, self.goals)
         self.state_ids = {state.id.value for state in context.chart.states if state.id}
 
     def automaton(self) -> PlainAutomaton:
         context, chart = self.context, self.context.chart
         assert chart.initial is not None
-        states = tuple(plain for state in chart.states for plain in self.state(state))
-        data = (*self.data(), *self.statements.drawn)
+        states = [plain for state in chart.states for plain in self.state(state)]
+        states[0] = replace(states[0], transitions=(*states[0].transitions, *self.discarded(states[0])))
         origin = context.origin(chart.element.name_span)
+        data = (*self.data(), *self.goals.data(origin), *self.statements.drawn)
         thread_of = "" if context.thread is None else context.automaton.name
-        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, states, origin, thread_of)
+        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, tuple(states), origin, thread_of)
+
+    def discarded(self, state: State) -> Iterator[Transition]:
+        """Transitions that are never taken: they make the machine a receiver of the cancel requests that only its
+        threads handle, so that none is delivered while it passes a goal on (docs/spec/plain-scxml.md#cancel)."""
+        if self.context.thread is not None:
+            return
+        own = set(self.cancel_events(self.context.chart))
+        of_threads = (event for thread in self.context.machine.threads for event in self.cancel_events(thread.chart))
+        for event in dict.fromkeys(of_threads):
+            if event not in own:
+                target = Target(state.id, 1.0, (), state.origin)
+                yield Transition(event, Boolean(NOWHERE, False), (target,), state.origin)
+
+    def cancel_events(self, chart: Chart) -> Iterator[ScxmlEvent]:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.trigger is ProtocolPart.CANCEL and handler.effective:
+                    yield ActionEvents(self.context.channel(handler).name).cancel
 
     # -------------------------------------------------------------------- data
 
@@ -152,8 +173,9 @@ class _ChartLowering:
         blackboard."""
         origin = self.context.origin(handler.element.span)
         ask = (Send(REQUEST, (), origin),)
+        body = (*self.started(handler), *ask)
         for event, cond in self.triggers(handler):
-            yield Transition(event, cond, (Target(waiting, 1.0, ask, origin),), origin)
+            yield Transition(event, cond, (Target(waiting, 1.0, body, origin),), origin)
 
     # ------------------------------------------------------------- transitions
 
@@ -179,8 +201,15 @@ class _ChartLowering:
         for target, probability in zip(handler.targets, probabilities(handler), strict=True):
             assert target.state is not None
             origin = self.context.origin((target.element or handler.element).span)
-            targets.append(Target(target.state.value, probability, self.statements.body(target.body, scope), origin))
+            body = (*self.started(handler), *self.statements.body(target.body, scope))
+            targets.append(Target(target.state.value, probability, body, origin))
         return tuple(targets)
+
+    def started(self, handler: Handler) -> Iterator[Statement]:
+        """The statements that are executed before the body of a handler."""
+        if handler.trigger is ProtocolPart.THREAD_START:
+            origin = self.context.origin(handler.element.span)
+            yield from self.goals.start(self.context.channel(handler), origin)
 
     def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         """The events that the handler waits for, each with its condition; usually one."""
@@ -191,6 +220,9 @@ class _ChartLowering:
             case ProtocolPart.THREAD_START:
                 assert self.context.thread is not None
                 yield self.event(handler), equal(event_data("thread_id"), integer(self.context.thread))
+            case ProtocolPart.CANCEL:
+                is_executed = self.goals.is_executed(self.context.channel(handler))
+                yield self.event(handler), cond if is_executed is None else both(cond, is_executed)
             case ProtocolPart.RESULT if handler.type.code:
                 yield self.event(handler), both(cond, equal(event_data("code"), integer(handler.type.code)))
             case _:
@@ -239,6 +271,8 @@ class _ChartLowering:
                 return service.response_to(automaton)
             case ProtocolPart.GOAL:
                 return action.goal
+            case ProtocolPart.CANCEL:
+                return action.cancel
             case ProtocolPart.FEEDBACK:
                 return action.feedback_for(automaton)
             case ProtocolPart.RESULT:

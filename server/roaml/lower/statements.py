@@ -15,6 +15,7 @@ from roaml.expr.zero import zero
 from roaml.lower.blackboard import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import LoweringContext
+from roaml.lower.executed_goals import ExecutedGoals
 from roaml.lower.expressions import SEPARATOR, LoweringScope, access_of, lower_expr, lower_leaves
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, parameter, topic_event, tree_event
 from roaml.model import machine as hl
@@ -51,6 +52,7 @@ class StatementLowering:
     """Lowers the bodies of one automaton. `drawn` are variables for random numbers, created on the way."""
 
     context: LoweringContext
+    goals: ExecutedGoals
     drawn: list[Data] = field(default_factory=list)
 
     def body(self, statements: Iterable[hl.Statement], scope: LoweringScope) -> Body:
@@ -192,6 +194,8 @@ class StatementLowering:
         fields = [p for sent in statement.fields for p in self.params(sent, FIELD_PREFIX, scope)]
         for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
+        goal_id = lower_expr(statement.goal_id.tree, scope) if statement.goal_id else None
+        yield from self.goals.sent(self.context.channel(statement), statement.part, goal_id, origin)
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))
         yield from self.send(self.event(statement), (*fields, *extra), origin)
 
@@ -202,9 +206,16 @@ class StatementLowering:
                 yield Param(argument, lower_expr(value.tree, scope), origin)
         if statement.type.code:
             yield Param("code", integer(statement.type.code), origin)
+        if statement.part is ProtocolPart.CANCEL:
+            yield Param("goal_id", integer(self.goal_id_of_client(statement)), origin)
         if statement.part is ProtocolPart.THREAD_FREE:
             assert self.context.thread is not None
             yield Param("thread_id", integer(self.context.thread), origin)
+
+    def goal_id_of_client(self, statement: RosSend) -> int:
+        """The id of all goals of this client (docs/spec/ros.md#goal-ids)."""
+        users = self.context.channel(statement).users
+        return next(number for number, user in enumerate(users) if user.automaton is self.context.automaton)
 
     def event(self, statement: RosSend) -> ScxmlEvent:
         channel, part = self.context.channel(statement), statement.part
@@ -218,6 +229,8 @@ class StatementLowering:
                 return service.response
             case ProtocolPart.GOAL:
                 return action.goal_of(self.context.automaton)
+            case ProtocolPart.CANCEL:
+                return action.cancel
             case ProtocolPart.GOAL_ACCEPTED:
                 return action.accepted
             case ProtocolPart.GOAL_REJECTED:

@@ -17,7 +17,14 @@ from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX, FIELD_PREFIX, safe_name
+from roaml.scxml.names import (
+    BLACKBOARD_ANSWER,
+    BLACKBOARD_REQUEST,
+    BLACKBOARD_WRITE_PREFIX,
+    CANCEL_PREFIX,
+    FIELD_PREFIX,
+    safe_name,
+)
 
 FindInterface = Callable[[str, str], InterfaceType | None]
 """(kind, name as written) -> the ROS type."""
@@ -138,6 +145,8 @@ _THREAD_ID = ("thread_id", BASE_TYPES["int32"])
 def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
     name = f"action_{sanitise(action.name)}"
     for client in action.users:
+        if ProtocolPart.CANCEL in client.use.sends:
+            yield f"{CANCEL_PREFIX}{sanitise(action.name)}", client.symbol, [_GOAL_ID]
         yield from _action_client(name, client, interface)
     for server in action.sources:
         sent: dict[ProtocolPart, list[tuple[str, Type]]] = {

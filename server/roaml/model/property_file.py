@@ -42,6 +42,7 @@ class ObservedPart(Vocabulary):
     RESPONSE = "response"
     GOAL_REQUEST = "goal_request"
     GOAL_RESPONSE = "goal_response"
+    CANCEL_REQUEST = "cancel_request"
     FEEDBACK = "feedback"
     RESULT = "result"
     TICK = "tick"

@@ -22,7 +22,7 @@ from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
-from roaml.scxml.names import FIELD_PREFIX, safe_name
+from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, safe_name
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -47,10 +47,19 @@ EVENTS = {
         ObservedPart.GOAL_RESPONSE,
         ObservedPart.FEEDBACK,
         ObservedPart.RESULT,
+        ObservedPart.CANCEL_REQUEST,
     ),
     PortKind.NODE: (ObservedPart.TICK, ObservedPart.RESPONSE, ObservedPart.HALT),
 }
 """Kind of port -> the values of its attribute `event`."""
+_OF_CLIENTS = (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST, ObservedPart.CANCEL_REQUEST)
+"""The events of services and actions that clients send."""
+_SENDING = {
+    ObservedPart.PUBLISH: "publishes on",
+    ObservedPart.REQUEST: "calls",
+    ObservedPart.GOAL_REQUEST: "sends goals to",
+    ObservedPart.CANCEL_REQUEST: "cancels goals of",
+}
 _PARTS = {
     ObservedPart.PUBLISH: "message",
     ObservedPart.REQUEST: "request",
@@ -59,6 +68,11 @@ _PARTS = {
     ObservedPart.FEEDBACK: "feedback",
     ObservedPart.RESULT: "result",
 }
+_WITHOUT_FIELDS = {
+    ObservedPart.GOAL_RESPONSE: "answer to a goal",
+    ObservedPart.CANCEL_REQUEST: "request to cancel a goal",
+}
+"""The events of an action that have no fields, in words."""
 _GIVEN_BY = {
     PortVariableKind.GOAL_ID: EVENTS[PortKind.ACTION],
     PortVariableKind.RESULT_CODE: (ObservedPart.RESULT,),
@@ -135,17 +149,12 @@ class PortLinker:
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
         type_ = self._type(port, channel)
         part = type_.part(_PARTS[event]) if type_ is not None and event in _PARTS else None
-        if part is None and event is ObservedPart.GOAL_RESPONSE:
-            part = Struct("", (), "answer to a goal")
+        if part is None and event in _WITHOUT_FIELDS:
+            part = Struct("", (), _WITHOUT_FIELDS[event])
         problems = len(self.problems)
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete() and len(self.problems) == problems:
-            what = {
-                ObservedPart.PUBLISH: "publishes on",
-                ObservedPart.REQUEST: "calls",
-                ObservedPart.GOAL_REQUEST: "sends goals to",
-            }
-            who = what.get(event, "answers")
+            who = _SENDING.get(event, "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
@@ -218,7 +227,7 @@ class PortLinker:
                 for sender in senders:
                     yield PortEvent(name, sender.automaton.name)
             return
-        chooser = port.origin if event in (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST) else port.target
+        chooser = port.origin if event in _OF_CLIENTS else port.target
         clients = self._chosen(chooser, channel.users, "is a client of", channel)
         if port.target is None and port.origin is None and len(channel.users) > 1:
             self._warn_of_clients(port, channel, event)
@@ -233,6 +242,9 @@ class PortLinker:
                     yield PortEvent(f"{stem}_response_client_{who}")
                 case ObservedPart.GOAL_REQUEST if ProtocolPart.GOAL in client.use.sends:
                     yield PortEvent(f"{stem}_goal_req_client_{who}", constants=(goal,))
+                case ObservedPart.CANCEL_REQUEST if ProtocolPart.CANCEL in client.use.sends:
+                    name = f"{CANCEL_PREFIX}{sanitise(channel.name)}"
+                    yield PortEvent(name, client.automaton.name, constants=(goal,))
                 case ObservedPart.GOAL_RESPONSE if channel.sources:
                     yield PortEvent(
                         f"{stem}_goal_accept_client_{who}", constants=(goal, (PortVariableKind.ACCEPTED.value, True))
@@ -262,7 +274,7 @@ class PortLinker:
     def _warn_of_clients(self, port: Port, channel: Channel, event: ObservedPart) -> None:
         assert port.name is not None
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
-        attribute = "origin" if event in (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST) else "target"
+        attribute = "origin" if event in _OF_CLIENTS else "target"
         number = len(channel.users)
         message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to choose"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)

@@ -118,6 +118,8 @@ def event_clause(port: Port) -> SentenceClause:
         match part:
             case ObservedPart.GOAL_RESPONSE:
                 return _is(f"a goal{by} for {name}", "accepted or rejected")
+            case ObservedPart.CANCEL_REQUEST:
+                return _is(f"cancelling a goal of {name}", f"requested{by}")
             case ObservedPart.FEEDBACK | ObservedPart.RESULT:
                 return _is(f"{'feedback' if part is ObservedPart.FEEDBACK else 'a result'} of {name}", f"sent{to}")
         return _is("a goal", f"sent to {name}{by}")

@@ -32,6 +32,7 @@ from roaml.model.outline import (
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import SymbolKind
+from roaml.scxml.names import CANCEL_PREFIX
 from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
@@ -479,7 +480,7 @@ _PREFIXES = {
     SymbolKind.ACTION_CLIENT: "action",
     SymbolKind.ACTION_SERVER: "action",
 }
-_OF_INTERFACES = re.compile(r"(?:topic|srv|action|bt)_")
+_OF_INTERFACES = re.compile(r"(?:topic|srv|action|cancel_action|bt)_")
 
 
 def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
@@ -488,6 +489,9 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         prefix = _PREFIXES.get(act.kind)
         if prefix is None:
             return False
+        request = f"{CANCEL_PREFIX}{sanitise(name or '')}"
+        if prefix == "action" and variable.startswith(request if name is None else (f"{request}.", f"{request}__")):
+            return True
         return variable.startswith(f"{prefix}_" if name is None else f"{prefix}_{sanitise(name)}_")
     match act:
         case GapAct.ANYTHING:
@@ -499,7 +503,7 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         case GapAct.TREE | GapAct.VARIABLE:
             return variable.startswith("bt_")
         case GapAct.NAME:
-            return variable.startswith(("srv_", "action_"))
+            return variable.startswith(("srv_", "action_", CANCEL_PREFIX))
         case GapAct.RECEIVES | GapAct.PORT | GapAct.REMAP | GapAct.NODE | GapAct.PLUGIN:
             return False
         case _:

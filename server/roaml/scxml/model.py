@@ -57,10 +57,15 @@ class EventRole(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class ScxmlEvent:
-    """An event by name. Events of the same name have the same role."""
+    """An event by name. Events of the same name have the same role.
+
+    Attributes:
+        after: the event that must not wait for its receivers when this one is received; "" for none.
+    """
 
     name: str
     role: EventRole = EventRole.PLAIN
+    after: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,6 +65,8 @@ OBSERVER_SUFFIX = "__observer"
 """Ends the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
 """The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+CANCEL_PREFIX = "cancel_action_"
+"""Begins the name of a request to cancel a goal of an action."""
 FIELD_PREFIX = "ros_fields__"
 """Begins the parameters of an event that are fields of its message."""
 

@@ -36,7 +36,7 @@ from roaml.smc.cells import CellAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Meaning, Storage, StorageNames, unsupported
 from roaml.smc.opcodes import FaultCode, Op
-from roaml.smc.operations import ARITHMETIC, COMPARISONS, MOST, OperatorAssembler
+from roaml.smc.operations import ARITHMETIC, COMPARISONS, MAX_INT64, OperatorAssembler
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
 from roaml.smc.shapes import kind_of
 
@@ -82,7 +82,7 @@ class ExpressionAssembler:
         """Compute a scalar; with `into`, in that register."""
         match node:
             case Integer():
-                if abs(node.value) > MOST:
+                if abs(node.value) > MAX_INT64:
                     raise FaultError("this number does not fit into 64 bits", node.origin)
                 return self.cells.moved(self.tape.constant(INT, node.value), into)
             case Boolean():

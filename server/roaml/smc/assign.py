@@ -15,7 +15,7 @@ from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Storage, StorageNames, unsupported
 from roaml.smc.opcodes import Op
-from roaml.smc.operations import MOST
+from roaml.smc.operations import MAX_INT64
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
@@ -120,7 +120,7 @@ class AssignmentAssembler:
         if low is None and high is None:
             return
         is_real = storage.kind == REAL
-        low = (-float("inf") if is_real else -MOST - 1) if low is None else low
-        high = (float("inf") if is_real else MOST) if high is None else high
+        low = (-float("inf") if is_real else -MAX_INT64 - 1) if low is None else low
+        high = (float("inf") if is_real else MAX_INT64) if high is None else high
         ends = [self.tape.constant(storage.kind, end).register for end in (low, high)]
         self.tape.emit(Op.RANGE_REAL if is_real else Op.RANGE, 0, operand.register, *ends)

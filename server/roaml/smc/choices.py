@@ -29,7 +29,7 @@ EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform ch
 
 _SHARE = 5
 """The effort for the result, divided by the effort for schedulers."""
-_LEAST_STEPS, _MOST_STEPS = 50_000, 400_000
+_MIN_STEPS, _MAX_STEPS = 50_000, 400_000
 _USUAL_SIZE = 200
 """The number of registers and automata up to which a step has the normal cost; with more, a step costs more."""
 
@@ -115,8 +115,8 @@ def look_at_choices(
     if question.is_reward or not tally.traces:
         return Choices()
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
-    most = _MOST_STEPS * _USUAL_SIZE // (_USUAL_SIZE + size)
-    budget = max(_LEAST_STEPS, min(most, tally.steps // _SHARE))
+    most = _MAX_STEPS * _USUAL_SIZE // (_USUAL_SIZE + size)
+    budget = max(_MIN_STEPS, min(most, tally.steps // _SHARE))
     length = tally.steps / tally.traces
     some = candidates(len(automata), each=1, memoryless=16, memory=16)
     extremes = probe(payload, question, answer.options, pool, some, budget, length, pulse)

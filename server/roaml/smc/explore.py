@@ -13,7 +13,7 @@ from roaml.smc.batch import TraceProblem
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
 
-MOST_CHOICES = 1 << 20
+MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state: some seconds."""
 
 
@@ -67,7 +67,7 @@ class Explorer:
         ignored: registers that neither the goal nor a choice depends on; states that differ only there are the same.
     """
 
-    def __init__(self, compiled: Compiled, limit: int = MOST_CHOICES, ignored: Registers = NO_REGISTERS) -> None:
+    def __init__(self, compiled: Compiled, limit: int = MAX_COMBINATIONS, ignored: Registers = NO_REGISTERS) -> None:
         self._limit = limit
         self._ignored = ignored
         self._kernel = Kernel(compiled.program, compiled.goal)

@@ -27,10 +27,11 @@ from roaml.jani.properties import (
     StatePredicate,
     UnaryFormula,
     UnaryPath,
-    UnaryPathOperator,
     walk,
 )
 from roaml.smc.fault import FaultError
+from roaml.smc.nested import is_nested, without_nesting
+from roaml.smc.normal_form import NestingError, lasting_condition
 
 UNSUPPORTED = "unsupported-property"
 """The code under which `--check` and `verify` report an unsupported property."""
@@ -39,7 +40,12 @@ BOUNDS = "ignored-bounds"
 
 ANSWERED = (
     "supported are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds, of `F G` and `G F`, "
-    "all joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+    "of the nested forms `G (p ⇒ F q)`, `G (p ⇒ G q)`, `G (p ⇒ (q U r))`, `G (p ⇒ (q W r))`, `G (p ∧ F r ⇒ (q U r))` "
+    "and `¬p W (p ∧ …)`, all joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+)
+NOT_OBSERVABLE = (
+    "a formula about paths inside another one is supported only if its variables have initial values and are not "
+    "transient"
 )
 COMPARISONS = frozenset(
     (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
@@ -53,15 +59,19 @@ REWARD_BOUNDS = "bounds on rewards are not supported"
 _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
 
 
-def faults_in(property_: Property) -> Iterator[FaultError]:
-    """Why sampling cannot decide a property of this form, with the positions of the unsupported parts."""
-    for fault, node in _faults(property_.expression):
+def faults_in(property_: Property, step: int | None = None) -> Iterator[FaultError]:
+    """Why sampling cannot decide a property of this form, with the positions of the unsupported parts.
+
+    Args:
+        step: the step of the clock in ns; `None` if there is no clock.
+    """
+    for fault, node in _faults(property_.expression, step):
         code = BOUNDS if fault in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
         yield FaultError(f"{fault}; {ANSWERED}", node.origin or property_.origin, code=code)
 
 
 def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:
-    """The bounds on time and rewards, anywhere in a property, and why translated models do not support them."""
+    """The bounds on time and rewards, anywhere in a property, and why JANI models do not support them."""
     for formula in walk(property_.expression):
         if isinstance(formula, (UnaryPath, BinaryPath)):
             yield from _in_bounds(formula)
@@ -86,20 +96,16 @@ class Lasting:
 
 def lasting_part(formula: Formula) -> Lasting | None:
     """The condition of `formula` on the state in which a path stays; `None` if it has another form."""
-    if not isinstance(formula, UnaryPath) or not isinstance(formula.operand, UnaryPath):
+    lasting = lasting_condition(formula)
+    if lasting is None:
         return None
-    outer, inner = formula, formula.operand
-    if any(part.step_bounds or part.time_bounds or part.reward_bounds for part in (outer, inner)):
-        return None
-    match outer.operator, inner.operator:
-        case UnaryPathOperator.FINALLY, UnaryPathOperator.GLOBALLY:
-            return Lasting(inner.operand, False)
-        case UnaryPathOperator.GLOBALLY, UnaryPathOperator.FINALLY:
-            return Lasting(UnaryFormula(UnaryOperator.NOT, inner.operand, origin=inner.origin), True)
-    return None
+    condition, is_lasting = lasting
+    if is_lasting:
+        return Lasting(condition, False)
+    return Lasting(UnaryFormula(UnaryOperator.NOT, condition, origin=condition.origin), True)
 
 
-def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
+def _faults(formula: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
     is_compared = False
     while True:
         match formula:
@@ -118,7 +124,7 @@ def _faults(formula: Formula) -> Iterator[tuple[str, Node]]:
                     yield "a probability must be compared with a number", right
                 formula = left if isinstance(left, ProperFormula) else right
             case Probability(_, path):
-                yield from _in_path(path)
+                yield from _in_path(path, step)
                 return
             case Expectation():
                 yield from _in_reward(formula)
@@ -135,7 +141,7 @@ def _about(states: Formula) -> str:
     return "`states` of the filter is a condition"
 
 
-def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
+def _in_path(path: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
     """The errors in a formula over paths."""
     waiting = [path]
     while waiting:
@@ -145,6 +151,8 @@ def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
             yield from _in_state(lasting.condition)
             continue
         match formula:
+            case UnaryPath() | BinaryPath() if is_nested(formula):
+                yield from _in_nested(formula, step)
             case UnaryPath():
                 yield from _in_bounds(formula)
                 yield from _in_state(formula.operand)
@@ -160,6 +168,25 @@ def _in_path(path: Formula) -> Iterator[tuple[str, Node]]:
                 yield from _in_state(formula)
 
 
+def _in_nested(path: UnaryPath | BinaryPath, step: int | None) -> Iterator[tuple[str, Node]]:
+    """The errors in a formula over paths that contains others."""
+    try:
+        without_nesting(path, step, lambda _: path)
+    except NestingError as error:
+        bounds = [
+            (why, bound)
+            for part in walk(path)
+            if isinstance(part, (UnaryPath, BinaryPath))
+            for why, bound in _in_bounds(part)
+        ]
+        if error.is_time and bounds:
+            yield from bounds
+            return
+        operands = (path.operand,) if isinstance(path, UnaryPath) else (path.left, path.right)
+        for operand in operands:
+            yield from _in_state(operand)
+
+
 def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
     """The errors in a formula about states."""
     while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
@@ -168,7 +195,7 @@ def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
         if formula.predicate is not StatePredicate.DEADLOCK:
             yield f"the predicate `{formula.predicate.value}` is not supported here", formula
     elif isinstance(formula, ProperFormula):
-        yield "a formula about paths inside another one is not supported", formula
+        yield "a formula about paths inside another one is not supported in this form", formula
 
 
 def _in_bounds(formula: PathBounds) -> Iterator[tuple[str, Node]]:

@@ -40,7 +40,7 @@ from roaml.jani.properties import (
 from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.smc.compile import Compilation
 from roaml.smc.fault import FaultError
-from roaml.smc.forms import Lasting, check_form, lasting_part
+from roaml.smc.forms import NOT_OBSERVABLE, UNSUPPORTED, Lasting, check_form, lasting_part
 from roaml.smc.program import AT_END, Goal
 from roaml.smc.registers import Operand
 
@@ -381,8 +381,9 @@ class _Writer:
             case Predicate(StatePredicate.DEADLOCK):
                 self.is_bounded = 2
                 return NO_DEADLOCK if negated else DEADLOCK
+            case _ if isinstance(formula, ProperFormula):
+                raise FaultError(NOT_OBSERVABLE, formula.origin or self.property.origin, code=UNSUPPORTED)
             case _:
-                assert not isinstance(formula, ProperFormula)
                 self.conditions.append(formula)
                 self.unread.update(name for name, _ in identifiers(formula))
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula

@@ -16,7 +16,7 @@ from roaml.smc.cells import CellAssembler
 from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
 
-MOST = (1 << 63) - 1
+MAX_INT64 = (1 << 63) - 1
 
 COMPARISONS = {
     # operator: for ints: (jump if it holds, jump if not, whether operands are exchanged for either)
@@ -137,6 +137,6 @@ class OperatorAssembler:
         except EvaluationError:
             return self.cells.failing(node, FaultCode.DOMAIN, kind)
         assert isinstance(result, (bool, int, float))
-        if kind == INT and abs(result) > MOST:
+        if kind == INT and abs(result) > MAX_INT64:
             return self.cells.failing(node, FaultCode.OVERFLOW, kind)
         return self.tape.constant(kind, float(result) if kind == REAL else result)

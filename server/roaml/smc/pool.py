@@ -20,7 +20,7 @@ from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, star
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
-PATIENCE = 0.4
+WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started: most questions are answered by then."""
 ATTEMPTS = 5
 """The maximum number of consecutive losses of workers without progress."""
@@ -54,16 +54,18 @@ class Runner(Protocol):
 class Pool:
     """Runs batches: in this process at first, then on `jobs` processes; or on a given executor.
 
-    Without `patience`, no batch is run in this process, so that it stays responsive.
+    If `start_delay_s` is `None`, no batch is run in this process, so that it stays responsive.
 
     Use it in a `with` statement; leaving it ends the workers.
     """
 
-    def __init__(self, jobs: int = 1, executor: Executor | None = None, patience: float | None = PATIENCE) -> None:
+    def __init__(
+        self, jobs: int = 1, executor: Executor | None = None, start_delay_s: float | None = WORKER_START_DELAY_S
+    ) -> None:
         self.jobs = jobs
         self.executor = executor
         self.is_own = executor is None
-        self.patience = patience
+        self.start_delay_s = start_delay_s
         self._stopping: Event | None = None
 
     def __enter__(self) -> Pool:
@@ -79,11 +81,11 @@ class Pool:
             WorkersLostError: the tasks cannot be run.
         """
         waiting = iter(tasks)
-        if self.executor is None and self.patience is not None:
+        if self.executor is None and self.start_delay_s is not None:
             started = time.monotonic()
             for task in waiting:
                 yield task, run(task, pulse)
-                if self.jobs > 1 and time.monotonic() - started > self.patience:
+                if self.jobs > 1 and time.monotonic() - started > self.start_delay_s:
                     break
             else:
                 return

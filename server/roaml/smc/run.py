@@ -29,14 +29,14 @@ GROWTH = 0.1
 PEEKING = 0.75
 """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this part of
 the allowed error. A test computes that the total error stays within the confidence."""
-LEAST_EPSILON = 1e-9
+MIN_EPSILON = 1e-9
 """The minimum half-width of an interval; a narrower one needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
 MAX_REJECTED = 100_000
 """The number of traces after which no more are made if the assumptions have rejected all of them."""
 REJECTED = 4
 """The verdict on a trace that violates the assumptions of a question."""
-KEPT = 1000
+MAX_KEPT_TRACES = 1000
 """The maximum number of stored trace numbers for each verdict."""
 
 
@@ -64,8 +64,8 @@ class Options:
     def __post_init__(self) -> None:
         if not 0 < self.confidence < 1:
             raise ValueError("the confidence must be a number between 0 and 1")
-        if not LEAST_EPSILON <= self.epsilon < 1:
-            raise ValueError(f"epsilon must be a number of at least {LEAST_EPSILON:g} and less than 1")
+        if not MIN_EPSILON <= self.epsilon < 1:
+            raise ValueError(f"epsilon must be a number of at least {MIN_EPSILON:g} and less than 1")
         if self.method not in METHODS:
             raise ValueError(f"there is no method `{self.method}`; the methods are {', '.join(METHODS)}")
         if self.method == FIXED and self.max_traces is None:
@@ -443,7 +443,7 @@ def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Option
         elif activity == Activity.IDLE:
             tally.idle += 1
         examples = tally.examples[verdict]
-        if len(examples) < KEPT:
+        if len(examples) < MAX_KEPT_TRACES:
             examples.append(Seen(trace, steps))
         if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
             tally.shortest[verdict] = Seen(trace, steps)

@@ -29,7 +29,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.names import Meaning, StorageNames, unsupported
 from roaml.smc.registers import BOOL, INT, REAL, Number, Operand, Region
 
-MOST_ELEMENTS = 1_000_000
+MAX_ELEMENTS = 1_000_000
 _ARITHMETIC = (
     BinaryOperator.ADD,
     BinaryOperator.SUBTRACT,
@@ -133,7 +133,7 @@ def length(node: ArrayConstructor, names: StorageNames) -> int:
         size = evaluate(node.length, names.constants(), names.functions)
     except EvaluationError as error:
         raise FaultError("the length of an array must not depend on the state", error.origin or node.origin) from None
-    if not isinstance(size, int) or not 0 <= size <= MOST_ELEMENTS:
+    if not isinstance(size, int) or not 0 <= size <= MAX_ELEMENTS:
         raise FaultError(f"an array cannot have {size} elements", node.length.origin)
     return size
 

@@ -19,7 +19,7 @@ from roaml.smc.goal import NOT, STUCK
 from roaml.smc.program import AT_END, FALSE, TRUE, Compiled
 from roaml.smc.statistics import Bounds
 
-LIMIT = 4000
+MAX_EXPLORED_STATES = 4000
 """The maximum number of explored states."""
 WORK = 400_000
 """The maximum number of values, counted over all states and choices."""
@@ -56,7 +56,7 @@ class Solution:
 
 
 def solve(
-    compiled: Compiled, limit: int = LIMIT, work: int = WORK, ignored: Registers = NO_REGISTERS
+    compiled: Compiled, limit: int = MAX_EXPLORED_STATES, work: int = WORK, ignored: Registers = NO_REGISTERS
 ) -> Solution | None:
     """Explore all states.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 _TINY = 1e-300
 _CLOSE = 1e-15
-_MOST_TERMS = 100_000
+_MAX_TERMS = 100_000
 _NARROWEST = 1000
 
 
@@ -43,7 +43,7 @@ def incomplete_beta(x: float, a: float, b: float) -> float:
     c, d = 1.0, 1 - (a + b) * x / (a + 1)
     d = 1 / (d if abs(d) > _TINY else _TINY)
     result = d
-    for m in range(1, _MOST_TERMS):
+    for m in range(1, _MAX_TERMS):
         even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
         odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
         change = 1.0

@@ -8,9 +8,9 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import KEPT, SPRT, Options, Seen, Tally
+from roaml.smc.run import MAX_KEPT_TRACES, SPRT, Options, Seen, Tally
 
-_MOST = 1 << 62
+_MAX_COUNT = 1 << 62
 """A limit that no counter reaches."""
 
 
@@ -42,7 +42,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     _expect(set(examples) == {str(verdict) for verdict in _VERDICTS}, "examples")
     _expect(set(shortest) <= set(examples), "shortest")
     for seen in examples.values():
-        _expect(isinstance(seen, list) and len(seen) <= KEPT, "examples")
+        _expect(isinstance(seen, list) and len(seen) <= MAX_KEPT_TRACES, "examples")
         for example in seen:
             _pair(example, "examples")
     for example in shortest.values():
@@ -74,7 +74,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     total = 0
     for verdict, count in counts.items():
         seen = tally.examples[verdict]
-        _expect(len(seen) == min(count, KEPT), "examples")
+        _expect(len(seen) == min(count, MAX_KEPT_TRACES), "examples")
         _expect([example.trace for example in seen] == sorted({example.trace for example in seen}), "examples")
         numbers.update(example.trace for example in seen)
         total += sum(example.steps for example in seen)
@@ -82,7 +82,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
         if count:
             least: Seen = tally.shortest[verdict]
             first = min(seen, key=lambda example: (example.steps, example.trace))
-            _expect(least == first if count <= KEPT else least.steps <= first.steps, "shortest")
+            _expect(least == first if count <= MAX_KEPT_TRACES else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.simulated, "shortest")
         _expect(all(each.trace < tally.simulated and each.steps <= options.max_steps for each in seen), "examples")
     _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
@@ -104,7 +104,7 @@ def _row(value: Any, key: str) -> dict[str, Any]:
 
 
 def _whole(value: Any, key: str) -> None:
-    _expect(isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MOST, key)
+    _expect(isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _MAX_COUNT, key)
 
 
 def _pair(value: Any, key: str) -> None:

@@ -2,7 +2,8 @@
 """Event automata, and the synchronisation of all automata (docs/spec/jani.md#event-automata).
 
 - Each event has one buffer: a sent event waits in its automaton until all receivers take it at once.
-- The clock steps, and timers fire, only while no event waits; the blackboard is read only while no write to it waits.
+- The clock steps, and timers fire, only while no event waits; the blackboard is read only while no write to it waits;
+  a goal is received only while no cancel request waits (`ScxmlEvent.after`).
 """
 
 from __future__ import annotations
@@ -22,14 +23,19 @@ from roaml.to_jani.events import EventUsage
 
 CLOCK_ENABLE = "__as2fm__global_timer_enable"
 BLACKBOARD_ENABLE = "__as2fm__blackboard_requests_enable"
+ORDER_ENABLE = "__as2fm__later_events_enable"
 
 
 def has_automaton(event: EventUsage) -> bool:
     return bool(event.senders) and not event.role.is_internal
 
 
-def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
-    """The buffer of an event; if the event has no receiver, the buffer accepts everything."""
+def event_automaton(event: EventUsage, has_clock: bool, others_wait: bool) -> Automaton:
+    """The buffer of an event; if the event has no receiver, the buffer accepts everything.
+
+    Args:
+        others_wait: whether other events are received only while this one does not wait.
+    """
     origin = event.origin
 
     def edge(source: str, action: str, target: str) -> Edge:
@@ -43,6 +49,8 @@ def event_automaton(event: EventUsage, has_clock: bool) -> Automaton:
             edges.append(edge(WAITING, CLOCK_ENABLE, WAITING))
         if event.role is EventRole.BLACKBOARD_WRITE:
             edges.append(edge(WAITING, BLACKBOARD_ENABLE, WAITING))
+        if others_wait:
+            edges.append(edge(WAITING, ORDER_ENABLE, WAITING))
     else:
         edges = [edge(WAITING, on_send(event.event), WAITING)]
     locations = tuple(Location(name, origin=origin) for name in names)
@@ -88,7 +96,10 @@ def _communication(event: EventUsage, buffers: Mapping[str, int], table: Mapping
     for sender in event.senders:
         yield _sync(send, [(sender, send), (buffer, send), *settled])
     if event.receivers:
-        yield _sync(receive, [(buffer, receive), *((receiver, receive) for receiver in event.receivers)])
+        before = event.event.after
+        is_waited_for = before in buffers and bool(table[before].receivers)
+        delivered = [(buffers[before], ORDER_ENABLE)] if is_waited_for else []
+        yield _sync(receive, [(buffer, receive), *((receiver, receive) for receiver in event.receivers), *delivered])
 
 
 def _sync(result: str, participants: Iterable[tuple[int, str]]) -> Sync:

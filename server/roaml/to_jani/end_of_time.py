@@ -16,7 +16,7 @@ TIME_OVER_ACTION = "__as2fm__time_is_over"
 def with_end_of_time(model: Model) -> Model:
     """The model with the action `TIME_OVER_ACTION` for the last step of the clock."""
     index = next((i for i, automaton in enumerate(model.automata) if automaton.name == CLOCK), None)
-    if index is None:
+    if index is None or any(action.name == TIME_OVER_ACTION for action in model.actions):
         return model
     clock = model.automata[index]
 

@@ -45,7 +45,8 @@ def translate(
     # The read request of the blackboard is last, as in the reference translator.
     events.sort(key=lambda event: event.role is EventRole.BLACKBOARD_READ)
     buffers = {event.name: len(automata) + i for i, event in enumerate(events)}
-    automata += [event_automaton(event, has_clock) for event in events]
+    earlier = {event.event.after for event in events}
+    automata += [event_automaton(event, has_clock, event.name in earlier) for event in events]
     globals_ = {v: shape for event in events for v, shape in _global_shapes(event, network.max_array_size)}
     shapes = {name: shape for name, (shape, _) in globals_.items()}
     actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})

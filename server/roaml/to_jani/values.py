@@ -70,13 +70,13 @@ def both(left: Expression | None, right: Expression) -> Expression:
     return right if left is None else jani.Binary(BinaryOperator.AND, left, right)
 
 
-_MOST_IN_A_ROW = 100
+_MAX_OPERANDS_IN_A_ROW = 100
 
 
 def all_of(terms: Sequence[Expression]) -> Expression | None:
     """The conjunction of the terms; `None` if there are none. Many terms are combined as a balanced tree: readers of
     JANI, including that of this library, limit the nesting of brackets."""
-    if len(terms) > _MOST_IN_A_ROW:
+    if len(terms) > _MAX_OPERANDS_IN_A_ROW:
         middle = len(terms) // 2
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
         assert second is not None

@@ -10,8 +10,9 @@ from typing import NamedTuple
 from roaml.comparison import Comparison
 from roaml.jani.model import Model
 from roaml.jani.node import Origin
-from roaml.jani.properties import Property
+from roaml.jani.properties import Property, walk
 from roaml.scxml.names import assumptions_of
+from roaml.smc.nested import is_nested
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 
@@ -75,12 +76,18 @@ def target_of(
     files: tuple[str, ...] = (),
     source_of: Callable[[str], SourceFile | None] = lambda _: None,
     conditional: Iterable[str] = (),
+    clock_step: int | None = None,
 ) -> VerificationTarget:
-    """A model as a target, with its clock if it has one.
+    """A model as a target, with its clock if it has one, and with observers for nested formulas.
 
     Args:
         conditional: the properties with assumptions.
+        clock_step: the step of the clock in ns, if it is known.
     """
+    if any(is_nested(formula) for property_ in model.properties for formula in walk(property_.expression)):
+        from roaml.to_jani.state_observers import with_state_observers  # noqa: PLC0415 - most properties need none
+
+        model = with_state_observers(model, clock_step)
     by_name = {property_.name: property_ for property_ in model.properties}
     assumptions = {name: by_name[assumptions_of(name)] for name in conditional if name in by_name}
     names = {variable.name for variable in model.variables}

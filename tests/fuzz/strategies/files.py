@@ -12,7 +12,7 @@ from fuzz.corpus import Model, interfaces, snippets, systems
 from fuzz.damage import ANY, ways
 from fuzz.strategy import Failure, Strategy
 
-LONGEST = 300_000
+MAX_LENGTH = 300_000
 """Characters of one file. That greater ones take their time is no failure."""
 
 
@@ -53,7 +53,7 @@ def make(seed: int) -> Damaged:
             path = random.choice(list(interfaces()))
             case.texts.setdefault(path, interfaces()[path])
         way = random.choice(ways(path) if random.random() < 0.95 else ANY)
-        case.texts[path] = way(random, case.texts[path], others)[:LONGEST]
+        case.texts[path] = way(random, case.texts[path], others)[:MAX_LENGTH]
         case.damage.append(f"{way.__name__} in {path}")
     if random.random() < 0.15:
         case.main = random.choice(list(model.texts))

@@ -28,7 +28,7 @@ from fuzz.strategy import Failure, Strategy
 FOLDER = "file:///nowhere/robot"
 LAST = "the last request"
 INTERNAL_ERROR = -32603
-LONGEST_TEXT = 5000
+MAX_TEXT_LENGTH = 5000
 """Characters of a document: what is looked for is in the protocol."""
 
 Json = Any
@@ -156,7 +156,7 @@ def _session(random: Random, model: Model) -> Iterator[Message]:
     """What a client could send, from its first message on."""
     yield _initialize(random)
     yield {"method": "initialized", "params": {}}
-    texts = {f"{FOLDER}/{path.rpartition('/')[2]}": text[:LONGEST_TEXT] for path, text in model.texts.items()}
+    texts = {f"{FOLDER}/{path.rpartition('/')[2]}": text[:MAX_TEXT_LENGTH] for path, text in model.texts.items()}
     for uri, text in texts.items():
         document = {"uri": uri, "languageId": "ascxml", "version": 1, "text": text}
         yield {"method": "textDocument/didOpen", "params": {"textDocument": document}}

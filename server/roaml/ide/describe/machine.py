@@ -33,6 +33,7 @@ _OCCASIONS = {
     ProtocolPart.REQUEST: "a request to",
     ProtocolPart.RESPONSE: "the response of",
     ProtocolPart.GOAL: "a goal for",
+    ProtocolPart.CANCEL: "a request to cancel a goal of",
     ProtocolPart.GOAL_RESPONSE: "the answer to a goal of",
     ProtocolPart.FEEDBACK: "feedback of",
     ProtocolPart.RESULT: "the result of",

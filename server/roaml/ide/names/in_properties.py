@@ -20,7 +20,7 @@ from roaml.model.globals import FindInterface, GlobalVariable
 from roaml.model.system import Channel, System, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, FIELD_PREFIX, safe_name
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, CANCEL_PREFIX, FIELD_PREFIX, safe_name
 from roaml.text import Span
 
 # The events of a service or action -> the part of the interface that they carry.
@@ -100,6 +100,7 @@ def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[
         symbol = interface_symbol(system.path, SymbolKind.ACTION_SERVER, action.name)
         head = (_plain("action_"), (sanitise(action.name), symbol, Form.SANITISED))
         yield from _protocol(head, action, _ACTION, _ACTION_CLIENT, trees, interface)
+        yield (_plain(CANCEL_PREFIX), (sanitise(action.name), symbol, Form.SANITISED)), UNKNOWN
     for pieces in trees.full_names.values():
         yield (_plain(BLACKBOARD_WRITE_PREFIX), *pieces), UNKNOWN
 

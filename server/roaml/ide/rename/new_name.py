@@ -29,7 +29,7 @@ from roaml.scxml.names import STATUSES, is_synchronising
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
 _PROPERTY = re.compile(r"[\w.-]+\Z")
-_MADE = re.compile(r"(topic_|srv_|action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
+_MADE = re.compile(r"(topic_|srv_|action_|cancel_action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
 """The beginnings of names that the translation generates."""
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)

@@ -62,8 +62,8 @@ from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
-MOST_CONFIGURATIONS = 4000
-MOST_KNOWN = 12
+MAX_CONFIGURATIONS = 4000
+MAX_KNOWLEDGE_VARIANTS = 12
 """The maximum number of configurations that differ only in the knowledge about values."""
 
 NOWHERE = "?"
@@ -87,6 +87,8 @@ class FaultKind(Vocabulary):
     """A result for a goal that was rejected."""
     UNDECIDED = "undecided"
     """A result for a goal that has not been accepted."""
+    NO_GOAL = "no-goal"
+    """A request to cancel a goal while no goal of the client is accepted."""
     THREAD = "thread"
     """A thread that does not exist."""
 
@@ -320,7 +322,11 @@ _ANSWERED = {
     ProtocolPart.GOAL_RESPONSE: Subject.DECISION,
 }
 """The answers that a client waits for, by the event that it receives."""
-_ARRIVED = {ProtocolPart.GOAL: GoalStatus.ASKED, ProtocolPart.THREAD_START: GoalStatus.ACCEPTED}
+_ARRIVED = {
+    ProtocolPart.GOAL: GoalStatus.ASKED,
+    ProtocolPart.THREAD_START: GoalStatus.ACCEPTED,
+    ProtocolPart.CANCEL: GoalStatus.ACCEPTED,
+}
 """The status of the goal whose id an event brings."""
 _DECIDED = (GoalStatus.ACCEPTED, GoalStatus.EARLIER, GoalStatus.REJECTED, GoalStatus.FINISHED)
 _WRONG_GOAL = {
@@ -535,11 +541,11 @@ class _Explorer:
             return known
         place = (configuration.state, configuration.phases, configuration.ids)
         here = self.known_here.setdefault(place, set())
-        if len(here) >= MOST_KNOWN and configuration.knowledge != NOTHING:
+        if len(here) >= MAX_KNOWLEDGE_VARIANTS and configuration.knowledge != NOTHING:
             self.approximate = True
             return self._number(replace(configuration, knowledge=NOTHING))
         here.add(configuration.knowledge)
-        if len(self.numbers) >= MOST_CONFIGURATIONS:
+        if len(self.numbers) >= MAX_CONFIGURATIONS:
             raise _TooLargeError
         self.numbers[configuration] = len(self.numbers)
         return self.numbers[configuration]
@@ -581,7 +587,8 @@ class _Explorer:
             if isinstance(statement, RosSend):
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
-                found |= {(subject, handle) for subject in _OF_INTERFACES if subject is not Subject.OUTCOME}
+                cancels = statement.part is ProtocolPart.CANCEL
+                found |= {(subject, handle) for subject in _OF_INTERFACES if cancels or subject is not Subject.OUTCOME}
         return frozenset(found)
 
     def event(self, handler: Handler) -> ProtocolEvent | None:
@@ -611,6 +618,9 @@ class _Explorer:
                 return configuration.phase(Subject.REQUEST, event.name) is None
             case ProtocolPart.GOAL:
                 return configuration.phase(Subject.GOAL, event.name) is None
+            case ProtocolPart.CANCEL:
+                is_followed = self.thread or event.name not in self.threaded
+                return not is_followed or configuration.phase(Subject.RESULT, event.name) is not None
             case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
                 return configuration.phase(_ANSWERED[event.part], event.name) is not None
         return True
@@ -725,7 +735,7 @@ class _Explorer:
         for body in bodies:
             for statement in self._effective(body):
                 paths = list(dict.fromkeys(after for path in paths for after in self._run(statement, path)))
-                if len(paths) > MOST_CONFIGURATIONS:
+                if len(paths) > MAX_CONFIGURATIONS:
                     raise _TooLargeError
         return paths
 
@@ -869,6 +879,9 @@ class _Explorer:
                 return self._awaiting(path, Subject.RESPONSE, handle)
             case ProtocolPart.GOAL:
                 return self._awaiting(path, Subject.DECISION, handle)
+            case ProtocolPart.CANCEL:
+                is_accepted = path.phase(Subject.OUTCOME, handle) is not None
+                return path if is_accepted else path.wrong(FaultKind.NO_GOAL, Duty(DutyKind.RESULT, handle), statement)
             case ProtocolPart.RESPONSE:
                 if path.phase(Subject.REQUEST, handle):
                     return path.at(Subject.REQUEST, handle, None)

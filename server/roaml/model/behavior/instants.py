@@ -32,6 +32,7 @@ _KINDS = {
     ProtocolPart.REQUEST: (SymbolKind.SERVICE_SERVER,),
     ProtocolPart.RESPONSE: (SymbolKind.SERVICE_CLIENT,),
     ProtocolPart.GOAL: (SymbolKind.ACTION_SERVER,),
+    ProtocolPart.CANCEL: (SymbolKind.ACTION_SERVER,),
     ProtocolPart.GOAL_RESPONSE: (SymbolKind.ACTION_CLIENT,),
     ProtocolPart.FEEDBACK: (SymbolKind.ACTION_CLIENT,),
     ProtocolPart.RESULT: (SymbolKind.ACTION_CLIENT,),
@@ -40,6 +41,7 @@ _SENDERS = {
     ProtocolPart.MESSAGE: SymbolKind.PUBLISHER,
     ProtocolPart.REQUEST: SymbolKind.SERVICE_CLIENT,
     ProtocolPart.GOAL: SymbolKind.ACTION_CLIENT,
+    ProtocolPart.CANCEL: SymbolKind.ACTION_CLIENT,
     ProtocolPart.FEEDBACK: SymbolKind.ACTION_SERVER,
 }
 

@@ -34,7 +34,7 @@ from roaml.expr.tree import (
 
 Constant: TypeAlias = bool | int | float | str
 
-MOST_WAYS = 16
+MAX_CONJUNCTIONS = 16
 """The maximum number of conjunctions into which a condition is split; a larger condition adds no knowledge."""
 
 
@@ -189,7 +189,7 @@ class ConditionFacts:
         """The knowledge where `condition` holds, or does not: one of several conjunctions; empty if it is
         impossible."""
         ways = tuple(dict.fromkeys(self._assume(knowledge, condition, holds)))
-        return ways if len(ways) <= MOST_WAYS else (knowledge,)
+        return ways if len(ways) <= MAX_CONJUNCTIONS else (knowledge,)
 
     def _assume(self, knowledge: Knowledge, condition: Expr, holds: bool) -> Iterator[Knowledge]:
         match condition:

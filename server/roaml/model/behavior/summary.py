@@ -24,11 +24,12 @@ AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
 """The time before the first event of a machine."""
 
-MOST_ALTERNATIVES = 6
-MOST_EVENTS = 4
+MAX_ALTERNATIVES = 6
+MAX_EVENTS = 4
 REPEATED = (
     ProtocolPart.MESSAGE,
     ProtocolPart.EVENT,
+    ProtocolPart.CANCEL,
     ProtocolPart.FEEDBACK,
     ProtocolPart.THREAD_START,
     ProtocolPart.THREAD_FREE,
@@ -230,8 +231,8 @@ def _least(masks: Iterable[int]) -> tuple[int, ...]:
     """The sets without those that contain another one; if there are many, only the smallest."""
     smallest: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
-        if mask.bit_count() > MOST_EVENTS:
+        if mask.bit_count() > MAX_EVENTS:
             break
         if not any(known & mask == known for known in smallest):
             smallest.append(mask)
-    return tuple(smallest[:MOST_ALTERNATIVES])
+    return tuple(smallest[:MAX_ALTERNATIVES])

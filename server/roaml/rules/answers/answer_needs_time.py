@@ -135,6 +135,7 @@ _WHAT = {
     ProtocolPart.MESSAGE: "a message on",
     ProtocolPart.REQUEST: "a request for",
     ProtocolPart.GOAL: "a goal for",
+    ProtocolPart.CANCEL: "a request to cancel a goal of",
 }
 
 

@@ -22,7 +22,7 @@ from roaml.text import Span
 _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
 """The facts about a file that may be the plugin of a node."""
 _ANY_FACT: set[Fact] = {(GapAct.ANYTHING, None)}
-_MOST = 3
+_MAX_NAMED_QUESTIONS = 3
 """The maximum number of questions that a message names."""
 
 
@@ -127,8 +127,8 @@ def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:
 
 
 def _listing(questions: list[str]) -> str:
-    more = len(questions) - _MOST
-    parts = [*questions[:_MOST], *([f"{more} more questions of this kind"] if more > 0 else [])]
+    more = len(questions) - _MAX_NAMED_QUESTIONS
+    parts = [*questions[:_MAX_NAMED_QUESTIONS], *([f"{more} more questions of this kind"] if more > 0 else [])]
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.jani.node import Node
 from roaml.jani.properties import BinaryPath, UnaryPath, walk
+from roaml.model.property_links import clock_step
 from roaml.rules.rule import PropertiesContext, Rule
-from roaml.smc.forms import BOUNDS
+from roaml.smc.forms import BOUNDS, faults_in
 
 TIME = "`verify` cannot decide this: the model counts only steps; for times, compare the clock's `sec` in the formula"
 REWARD = "`verify` cannot decide this: the model has no rewards"
@@ -18,7 +19,10 @@ REWARD = "`verify` cannot decide this: the model has no rewards"
 def check(context: PropertiesContext) -> Iterator[Finding]:
     if context.system is None:
         return
+    step = clock_step(context.system)
     for property_ in context.properties:
+        if not any(faults_in(property_, step)):
+            continue  # observers measure the time
         for formula in walk(property_.expression):
             if isinstance(formula, (UnaryPath, BinaryPath)):
                 if formula.time_bounds is not None:

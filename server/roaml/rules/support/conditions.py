@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.expr.tree import Expr, is_draw, walk
-from roaml.model.behavior.knowledge import MOST_WAYS, NOTHING, ConditionFacts, Knowledge
+from roaml.model.behavior.knowledge import MAX_CONJUNCTIONS, NOTHING, ConditionFacts, Knowledge
 from roaml.model.syntax import Expression
 
 
@@ -44,7 +44,7 @@ def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> I
                 yield Covered(number, tuple(n for n, _ in by), same)
             continue
         left = tuple(rest for known in left for rest in facts.assume(known, tree, False))
-        if len(left) > MOST_WAYS:
+        if len(left) > MAX_CONJUNCTIONS:
             return
 
 

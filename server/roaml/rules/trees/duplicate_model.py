@@ -43,13 +43,11 @@ def _generated(system: System) -> dict[str, str]:
             servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
             for name in filter(None, map(automaton.interface_name, servers)):
                 words = f"a thread of the action `{name}`"
-                generated.update(
-                    {f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MOST_THREADS))}
-                )
+                generated.update({f"{sanitise(name)}_thread_{k}": words for k in range(min(thread.count, MAX_THREADS))})
     return generated
 
 
-MOST_THREADS = 1000
+MAX_THREADS = 1000
 """The maximum number of threads whose names are checked; `model-too-large` reports systems with more."""
 
 

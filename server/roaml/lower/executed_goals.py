@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The goals that an automaton of an action server executes, for the actions whose cancel requests it handles
+(docs/spec/plain-scxml.md#cancel).
+
+For each client that cancels goals, a boolean variable says whether the automaton executes its goal: the server from the
+acceptance on, a thread from its start on, until the automaton ends the goal or passes it on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Boolean, Expr
+from roaml.expr.types import BASE_TYPES
+from roaml.expr.zero import zero
+from roaml.lower.build import binary, both, equal, event_data, integer, name
+from roaml.lower.context import LoweringContext
+from roaml.lower.program import NOWHERE
+from roaml.model.system import Channel, sanitise
+from roaml.roles import ProtocolPart
+from roaml.scxml.model import Assign, Data
+from roaml.text import Location
+
+GOAL_ID = "goal_id"
+_BOOL = BASE_TYPES["bool"]
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutedGoals:
+    """`variables`: for the name of each action, the variables by the goal ids of the clients that cancel."""
+
+    variables: Mapping[str, Mapping[int, str]]
+
+    def data(self, origin: Location) -> Iterator[Data]:
+        for variables in self.variables.values():
+            for variable in variables.values():
+                yield Data(variable, _BOOL, zero(_BOOL), origin)
+
+    def is_executed(self, action: Channel) -> Expr | None:
+        """The condition that the automaton executes the goal of a cancel request."""
+        condition: Expr | None = None
+        for number, variable in self._of(action).items():
+            own = both(equal(event_data(GOAL_ID), integer(number)), name(variable))
+            condition = own if condition is None else binary(condition, Operator.OR, own)
+        return condition
+
+    def start(self, action: Channel, origin: Location) -> Iterator[Assign]:
+        """The changes when a thread receives its goal."""
+        return self._assign(action, lambda _, number: equal(event_data(GOAL_ID), integer(number)), origin)
+
+    def sent(self, action: Channel, part: ProtocolPart, goal_id: Expr | None, origin: Location) -> Iterator[Assign]:
+        """The changes when a server or thread sends something."""
+        match part:
+            case ProtocolPart.GOAL_ACCEPTED if goal_id is not None:
+                accepted = goal_id
+                yield from self._assign(
+                    action,
+                    lambda variable, number: binary(name(variable), Operator.OR, equal(accepted, integer(number))),
+                    origin,
+                )
+            case ProtocolPart.RESULT | ProtocolPart.THREAD_START if goal_id is not None:
+                given_up = goal_id
+                yield from self._assign(
+                    action,
+                    lambda variable, number: both(
+                        name(variable), binary(given_up, Operator.NOT_EQUAL, integer(number))
+                    ),
+                    origin,
+                )
+            case ProtocolPart.THREAD_FREE:
+                yield from self._assign(action, lambda _, __: Boolean(NOWHERE, False), origin)
+
+    def _of(self, action: Channel) -> Mapping[int, str]:
+        return self.variables.get(action.name, {})
+
+    def _assign(self, action: Channel, value: Callable[[str, int], Expr], origin: Location) -> Iterator[Assign]:
+        for number, variable in self._of(action).items():
+            yield Assign(name(variable), value(variable, number), origin)
+
+
+def executed_goals(context: LoweringContext) -> ExecutedGoals:
+    variables: dict[str, dict[int, str]] = {}
+    for state in context.chart.states:
+        for handler in state.handlers:
+            if handler.trigger is not ProtocolPart.CANCEL or not handler.effective:
+                continue
+            action = context.channel(handler)
+            if action.name not in variables:
+                variables[action.name] = {
+                    number: _unused(f"executes_{sanitise(action.name)}_{number}", context)
+                    for number, client in enumerate(action.users)
+                    if ProtocolPart.CANCEL in client.use.sends
+                }
+    return ExecutedGoals(variables)
+
+
+def _unused(variable: str, context: LoweringContext) -> str:
+    while variable in context.variables:
+        variable += "_"
+    return variable

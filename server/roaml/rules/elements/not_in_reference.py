@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""not-in-reference: see not_in_reference.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.rules.rule import MachineContext, Rule
+from roaml.xml_syntax import Element
+
+NEW_ELEMENTS = ("ros_action_cancel_goal", "ros_action_handle_cancel_goal")
+"""The elements that the main line of the reference translator does not read yet
+(docs/spec/differences.md#accepted-machines)."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Report each of these elements once in a file."""
+    places: dict[str, list[Element]] = {}
+    for element in context.machine.element.walk():
+        if element.name in NEW_ELEMENTS:
+            places.setdefault(element.name, []).append(element)
+    for name, (first, *others) in places.items():
+        message = (
+            f"AS2FM does not read `<{name}>` yet: it is not in its main line; "
+            "check, verify and translate the model with this tool"
+        )
+        yield RULE.at(first.name_span, message, related=[Related(other.name_span, "here, too") for other in others])
+
+
+RULE = Rule("not-in-reference", Severity.INFORMATION, "An element that AS2FM does not read yet is used.", machine=check)

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An observer in JANI: its variables, its assignments at a letter, and the formula that says that its property holds
+(docs/spec/jani.md#observers)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from roaml.jani import expressions as jani
+from roaml.jani.expressions import Expression, Integer
+from roaml.jani.model import (
+    Action,
+    Assignment,
+    Automaton,
+    Destination,
+    Edge,
+    Element,
+    Location,
+    Model,
+    Sync,
+    Variable,
+)
+from roaml.jani.node import Origin
+from roaml.jani.operators import BinaryOperator as JaniBinary
+from roaml.jani.operators import UnaryOperator as JaniUnary
+from roaml.jani.properties import BinaryFormula, Formula, UnaryFormula, UnaryPath, UnaryPathOperator
+from roaml.jani.types import BOOL, INT, BoundedType, Type
+from roaml.observers import program
+from roaml.observers.build import begin, observer_of
+from roaml.observers.program import Observer, simplified
+from roaml.observers.properties import Pattern, PatternProperty, Property, ScopeKind
+from roaml.scxml.names import ASKED, OBSERVER_SUFFIX, OPEN, OPENED, PENDING, observer_variable
+
+_OBSERVING = "observing"
+"""The only location of an observer."""
+_OVER = "over"
+"""A variable of the observer: the clock has ended."""
+
+
+def next_index(model: Model) -> int:
+    """An index of assignments above all others."""
+    return 1 + max((assignment.index for assignment in _assignments(model)), default=-1)
+
+
+def _assignments(model: Model) -> Iterator[Assignment]:
+    return (
+        assignment
+        for automaton in model.automata
+        for edge in automaton.edges
+        for destination in edge.destinations
+        for assignment in destination.assignments
+    )
+
+
+def free_prefix(property_: str, model: Model) -> str:
+    """A prefix of names, derived from the name of a property, that no automaton and no variable of the model has."""
+    names = [*(automaton.name for automaton in model.automata), *(variable.name for variable in model.variables)]
+    prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", property_)
+    while any(name == prefix or name.startswith((f"{prefix}__", f"{prefix}.")) for name in names):
+        prefix += "_"
+    return prefix
+
+
+def with_observer(
+    model: Model,
+    prefix: str,
+    edges: Mapping[str, Iterable[Assignment]],
+    variables: Iterable[Variable],
+    syncs: Iterable[Sync],
+    origin: Origin | None,
+) -> Model:
+    """The model with an observer as its last element: an automaton with one location.
+
+    Args:
+        prefix: begins its name.
+        edges: action -> the assignments of its edge.
+        syncs: all synchronisations, including those of the observer.
+    """
+    automaton = Automaton(
+        f"{prefix}{OBSERVER_SUFFIX}",
+        (Location(_OBSERVING, origin=origin),),
+        (_OBSERVING,),
+        tuple(_edge(action, assignments, origin) for action, assignments in edges.items()),
+        origin=origin,
+    )
+    known_actions = {action.name for action in model.actions}
+    return replace(
+        model,
+        automata=(*model.automata, automaton),
+        system=replace(model.system, elements=(*model.system.elements, Element(automaton.name)), syncs=tuple(syncs)),
+        variables=(*model.variables, *variables),
+        actions=(*model.actions, *(Action(action) for action in edges if action not in known_actions)),
+    )
+
+
+def _edge(action: str, assignments: Iterable[Assignment], origin: Origin | None) -> Edge:
+    destination = Destination(_OBSERVING, assignments=tuple(assignments), origin=origin)
+    return Edge(_OBSERVING, (destination,), action, origin=origin)
+
+
+class ObserverParts:
+    """
+    Args:
+        prefix: begins the names of the observer's variables.
+        has_clock: whether the model has a clock.
+        has_activity: whether the observer also says whether the property was triggered.
+    """
+
+    def __init__(
+        self, property_: Property, prefix: str, origin: Origin | None, *, has_clock: bool, has_activity: bool
+    ) -> None:
+        self.property = property_
+        self.prefix = prefix
+        self.origin = origin
+        self.has_activity = has_activity
+        self.observer: Observer = observer_of(property_)
+        self.outputs = self.observer.outputs
+        self.is_timed = self.outputs.pending != self.outputs.due and has_clock
+        self.is_reachability = not self.is_timed and _is_existence(property_)
+        self.is_pending = self.outputs.pending != program.FALSE and not self.is_reachability
+        self.needed = self._needed()
+
+    def _named(self, register: str) -> str:
+        outputs = self.outputs
+        if outputs.exercised is not None and register == outputs.exercised.name:
+            # Without requests, all that can be missing is the scope.
+            register = ASKED if self._has_requests() else OPENED
+        return observer_variable(self.prefix, register)
+
+    def _has_requests(self) -> bool:
+        return isinstance(self.property, PatternProperty) and self.property.pattern.is_binary
+
+    # ----------------------------------------------------------- variables
+
+    def _needed(self) -> set[str]:
+        """The registers on which the property depends."""
+        if self.is_reachability:
+            assert self.outputs.satisfied is not None
+            needed = {self.outputs.satisfied.name}
+        else:
+            due = self.outputs.due if self.is_timed else program.FALSE
+            needed = {self.outputs.violated.name} | _registers(self.outputs.pending) | _registers(due)
+        if self.has_activity:
+            needed |= {each.name for each in (self.outputs.exercised, self.outputs.opened) if each is not None}
+        while True:
+            read = {
+                name
+                for assignment in self.observer.assignments
+                if assignment.register.name in needed
+                for name in _registers(assignment.value)
+            }
+            if read <= needed:
+                return needed
+            needed |= read
+
+    def variables(self, at_start: Mapping[str, bool]) -> Iterator[Variable]:
+        """
+        Args:
+            at_start: the inputs of the observer at the start of a trace.
+        """
+        state = begin(self.observer, at_start)
+        for register in self.observer.registers:
+            if register.name in self.needed:
+                type_ = BOOL if register.limit is None else BoundedType(INT, Integer(0), Integer(register.limit))
+                yield self._variable(self._named(register.name), type_, state[register.name])
+        if self.is_pending:
+            pending = program.evaluate(self.outputs.pending, state, {}, False)
+            yield self._variable(observer_variable(self.prefix, PENDING), BOOL, pending)
+            if self.is_timed:
+                yield self._variable(self._named(_OVER), BOOL, False)
+                yield self._variable(observer_variable(self.prefix, OPEN), BOOL, False)
+
+    def _variable(self, name: str, type_: Type, value: bool | int) -> Variable:
+        return Variable(name, type_, _literal(value), origin=self.origin)
+
+    # --------------------------------------------------------- assignments
+
+    def letter(self, conditions: Mapping[str, Expression], index: int, *, is_tick: bool) -> Iterator[Assignment]:
+        """The assignments at a letter, from an index on.
+
+        Args:
+            conditions: what the inputs of the observer are.
+            is_tick: whether the letter is a step of the clock.
+        """
+        letter: dict[program.Expression, Expression] = {program.Tick(): _literal(is_tick)}
+        for name, condition in conditions.items():
+            letter[program.Input(name)] = condition
+        known: dict[program.Expression, program.Expression] = {
+            source: program.Literal(value.value) for source, value in letter.items() if isinstance(value, jani.Boolean)
+        }
+        for assignment in self.observer.assignments:
+            simpler = simplified(assignment.value, known)
+            if assignment.register.name in self.needed and simpler != assignment.register:
+                yield self._assign(assignment.register.name, self._translated(simpler, letter), index)
+                index += 1
+        yield from self._ends(index)
+
+    def end_of_time(self, index: int) -> Iterator[Assignment]:
+        """The assignments when the clock ends."""
+        yield self._assign(_OVER, _literal(True), index)
+        yield from self._ends(index + 1)
+
+    def _ends(self, index: int) -> list[Assignment]:
+        """The verdict of the property if the trace ends now."""
+        if not self.is_pending:
+            return []
+        pending = self._translated(self.outputs.pending, {})
+        if not self.is_timed:
+            return [self._assign(PENDING, pending, index)]
+        due, over = self._translated(self.outputs.due, {}), jani.Name(self._named(_OVER))
+        is_due = _or(_not(over), due)
+        is_open = _and(over, _and(pending, _not(due)))
+        return [
+            self._assign(PENDING, _and(pending, is_due), index),
+            self._assign(OPEN, is_open, index),
+        ]
+
+    def _assign(self, register: str, value: Expression, index: int) -> Assignment:
+        return Assignment(jani.Name(self._named(register)), value, index, origin=self.origin)
+
+    def _translated(
+        self, expression: program.Expression, letter: Mapping[program.Expression, Expression]
+    ) -> Expression:
+        """
+        Args:
+            letter: the inputs and the tick.
+        """
+        match expression:
+            case program.Literal():
+                return _literal(expression.value)
+            case program.Register():
+                return jani.Name(self._named(expression.name))
+            case program.Input() | program.Tick():
+                return letter[expression]
+            case program.Negation():
+                return _not(self._translated(expression.operand, letter))
+            case program.Choice():
+                parts = (expression.test, expression.then, expression.otherwise)
+                return jani.Conditional(*(self._translated(part, letter) for part in parts))
+            case program.Binary():
+                left, right = (self._translated(part, letter) for part in (expression.left, expression.right))
+                return jani.Binary(_OPERATORS[expression.operator], left, right)
+
+    # ---------------------------------------------------------- the property
+
+    def path(self) -> Formula:
+        """The formula over paths that says that the property holds."""
+        path: Formula
+        if self.is_reachability:
+            assert self.outputs.satisfied is not None
+            path = UnaryPath(UnaryPathOperator.FINALLY, jani.Name(self._named(self.outputs.satisfied.name)))
+        else:
+            sound = _not(jani.Name(self._named(self.outputs.violated.name)))
+            path = UnaryPath(UnaryPathOperator.GLOBALLY, sound)
+            if self.is_pending:
+                stays = UnaryPath(UnaryPathOperator.GLOBALLY, jani.Name(observer_variable(self.prefix, PENDING)))
+                lasting = UnaryPath(UnaryPathOperator.FINALLY, stays)
+                path = BinaryFormula(JaniBinary.AND, path, UnaryFormula(JaniUnary.NOT, lasting))
+        return path
+
+
+def _is_existence(property_: Property) -> bool:
+    """Whether the property requires an event or condition at some time."""
+    return (
+        isinstance(property_, PatternProperty)
+        and property_.pattern is Pattern.EXISTENCE
+        and property_.scope is ScopeKind.GLOBALLY
+    )
+
+
+_OPERATORS = {
+    program.BinaryOperator.AND: JaniBinary.AND,
+    program.BinaryOperator.OR: JaniBinary.OR,
+    program.BinaryOperator.EQUAL: JaniBinary.EQUAL,
+    program.BinaryOperator.LESS_EQUAL: JaniBinary.LESS_EQUAL,
+    program.BinaryOperator.ADD: JaniBinary.ADD,
+    program.BinaryOperator.SUBTRACT: JaniBinary.SUBTRACT,
+}
+
+
+def _registers(expression: program.Expression) -> set[str]:
+    match expression:
+        case program.Register():
+            return {expression.name}
+        case program.Negation():
+            return _registers(expression.operand)
+        case program.Choice():
+            return _registers(expression.test) | _registers(expression.then) | _registers(expression.otherwise)
+        case program.Binary():
+            return _registers(expression.left) | _registers(expression.right)
+        case program.Literal() | program.Input() | program.Tick():
+            return set()
+
+
+def _literal(value: bool | int) -> Expression:
+    return jani.Boolean(value) if isinstance(value, bool) else Integer(value)
+
+
+def _not(operand: Expression) -> Expression:
+    return jani.Unary(JaniUnary.NOT, operand)
+
+
+def _and(left: Expression, right: Expression) -> Expression:
+    return jani.Binary(JaniBinary.AND, left, right)
+
+
+def _or(left: Expression, right: Expression) -> Expression:
+    return jani.Binary(JaniBinary.OR, left, right)

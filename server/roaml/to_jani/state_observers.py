@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Formulas about paths inside others -> automata that observe the variables of the formulas
+(docs/spec/properties.md#nested).
+
+- An observer takes part in every step that can change a variable of its formula and, if the formula has bounds on the
+  time, in the steps of the clock. It removes no step of the model and adds none.
+- Its assignments are executed after all others of a step, so they read the state after the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import replace
+from typing import TypeAlias
+
+from roaml.jani.expressions import ArrayAccess, Boolean, Expression, Name
+from roaml.jani.model import Action, Assignment, Edge, Function, Model, Sync
+from roaml.jani.node import Node
+from roaml.jani.properties import BinaryFormula, Formula, Probability, Property, UnaryFormula, walk
+from roaml.jani.rewrite import rewrite
+from roaml.jani.semantics import EvaluationError, Value, evaluate
+from roaml.observers.properties import PatternProperty, Since
+from roaml.observers.properties import walk as parts_of
+from roaml.scxml.names import CLOCK, CLOCK_ACTION
+from roaml.smc.names import variables_in
+from roaml.smc.nested import ObservedFormula, is_nested, without_nesting, without_nesting_before
+from roaml.smc.normal_form import NestingError, lasting_condition
+from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
+from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer
+
+_LETTER, _TICK, _END = "__as2fm__letter", "__as2fm__tick", "__as2fm__end"
+"""The actions of an observer: some variable may have changed; the clock makes a step; the time ends."""
+_SILENT = "__as2fm__step_"
+"""Begins the action of an edge that had none, so that observers can join it."""
+_Step: TypeAlias = tuple[str, str]
+"""An automaton and its action."""
+
+
+def with_state_observers(model: Model, step: int | None = None) -> Model:
+    """The model with observers for the nested formulas of its properties, which then are not nested.
+
+    Properties whose nested formulas have other forms than those of the patterns are kept, and so are those whose
+    variables are transient or have no initial value.
+
+    Args:
+        step: the step of the clock in ns; `None` if there is no clock.
+    """
+    properties: list[Property] = []
+    for property_ in model.properties:
+        model, changed = _without_nesting(model, property_, step)
+        properties.append(changed)
+    return replace(model, properties=tuple(properties)) if properties else model
+
+
+def _without_nesting(model: Model, property_: Property, step: int | None) -> tuple[Model, Property]:
+    formulas: list[ObservedFormula] = []
+    placeholder = Boolean(True)
+
+    def collect(formula: ObservedFormula) -> Formula:
+        formulas.append(formula)
+        return placeholder
+
+    try:
+        collected = _replaced(property_, step, collect)
+        if not formulas:
+            return model, collected
+        # If there is more than the observer's property, it is not vacuous where that is.
+        is_whole = any(
+            isinstance(part, Probability) and part.path is placeholder for part in walk(collected.expression)
+        )
+        writer = _Writer(model, property_, has_activity=is_whole)
+        changed = _replaced(property_, step, writer.observe)
+    except (NestingError, EvaluationError):
+        return model, property_
+    return writer.model, changed
+
+
+def _replaced(property_: Property, step: int | None, observe: Callable[[ObservedFormula], Formula]) -> Property:
+    """The property with formulas over the variables of observers instead of nested ones."""
+
+    def change(node: Node) -> Node:
+        return replace(node, path=_path(node.path, step, observe)) if isinstance(node, Probability) else node
+
+    return rewrite(property_, change)
+
+
+def _path(path: Formula, step: int | None, observe: Callable[[ObservedFormula], Formula]) -> Formula:
+    match path:
+        case UnaryFormula(operator=operator, operand=operand):
+            return UnaryFormula(operator, _path(operand, step, observe), origin=path.origin)
+        case BinaryFormula(operator, left, right):
+            before = without_nesting_before(path, observe)
+            if before is not None:
+                return before
+            return BinaryFormula(operator, _path(left, step, observe), _path(right, step, observe), origin=path.origin)
+    if lasting_condition(path) is None and is_nested(path):
+        return without_nesting(path, step, observe)
+    return path
+
+
+class _Writer:
+    """Adds observers of one property to a model.
+
+    Raises:
+        EvaluationError: a variable or constant of a formula has no initial value.
+        NestingError: a formula reads a transient variable.
+    """
+
+    def __init__(self, model: Model, property_: Property, *, has_activity: bool) -> None:
+        self.model = model
+        self.property = property_
+        self.has_activity = has_activity
+        self.functions = {function.name: function for function in model.functions}
+        self.initial = _initial_values(model, self.functions)
+
+    def observe(self, formula: ObservedFormula) -> Formula:
+        """Add an observer, and return the formula over paths that says that its property holds."""
+        is_timed = _reads_time(formula)
+        if is_timed:
+            self.model = with_end_of_time(self.model)
+        model, origin, conditions = self.model, self.property.origin, dict(formula.conditions)
+        prefix = free_prefix(self.property.name, model)
+        has_clock = any(automaton.name == CLOCK for automaton in model.automata)
+        parts = ObserverParts(formula.property, prefix, origin, has_clock=has_clock, has_activity=self.has_activity)
+        names = {name for condition in conditions.values() for name in variables_in(condition, self.functions)}
+        if any(variable.transient and variable.name in names for variable in model.variables):
+            raise NestingError
+        at_start = {
+            name: bool(evaluate(condition, self.initial, self.functions)) for name, condition in conditions.items()
+        }
+        model = _with_named_steps(model, names)
+        index = next_index(model)
+        elements = [element.automaton for element in model.system.elements]
+        writing = _writing_steps(model, names)
+        edges: dict[str, tuple[Assignment, ...]] = {}
+        syncs: list[Sync] = []
+        for sync in model.system.syncs:
+            action = _action_of(sync, elements, writing, is_timed=is_timed, has_end=parts.is_timed)
+            if action and action not in edges:
+                is_end, is_tick = action == _END, action == _TICK
+                letter = parts.end_of_time(index) if is_end else parts.letter(conditions, index, is_tick=is_tick)
+                edges[action] = tuple(letter)
+            observer = ((len(model.system.elements), action),) if action else ()
+            syncs.append(replace(sync, participants=(*sync.participants, *observer)))
+        self.model = with_observer(model, prefix, edges, parts.variables(at_start), syncs, origin)
+        return parts.path()
+
+
+def _reads_time(formula: ObservedFormula) -> bool:
+    property_ = formula.property
+    if isinstance(property_, PatternProperty):
+        return not property_.window.is_unbounded
+    return any(isinstance(part, Since) and not part.window.is_unbounded for part in parts_of(property_.formula))
+
+
+def _initial_values(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
+    """The initial values of the constants and variables that have one."""
+    values: dict[str, Value] = {}
+    declared = [(constant.name, constant.value) for constant in model.constants]
+    declared += [(variable.name, variable.initial_value) for variable in model.variables]
+    for name, expression in declared:
+        if expression is not None:
+            try:
+                values[name] = evaluate(expression, values, functions)
+            except EvaluationError:
+                continue  # A formula that reads it has no initial value, either.
+    return values
+
+
+def _action_of(
+    sync: Sync, elements: Sequence[str], writing: AbstractSet[_Step], *, is_timed: bool, has_end: bool
+) -> str:
+    """The action of an observer in a synchronisation; "" if it does not take part.
+
+    Args:
+        elements: the automata of the elements of the system.
+        writing: the steps that can change a variable of the observer.
+    """
+    steps = {(elements[i], action) for i, action in sync.participants}
+    if is_timed and (CLOCK, CLOCK_ACTION) in steps:
+        return _TICK
+    if has_end and (CLOCK, TIME_OVER_ACTION) in steps:
+        return _END
+    return "" if writing.isdisjoint(steps) else _LETTER
+
+
+def _writing_steps(model: Model, names: AbstractSet[str]) -> set[_Step]:
+    """The steps that assign some variables."""
+    return {
+        (automaton.name, edge.action)
+        for automaton in model.automata
+        for edge in automaton.edges
+        if edge.action is not None and _writes(edge, names)
+    }
+
+
+def _writes(edge: Edge, names: AbstractSet[str]) -> bool:
+    return any(_root(a.target) in names for destination in edge.destinations for a in destination.assignments)
+
+
+def _root(target: Expression) -> str:
+    while isinstance(target, ArrayAccess):
+        target = target.array
+    return target.identifier if isinstance(target, Name) else ""
+
+
+def _with_named_steps(model: Model, names: AbstractSet[str]) -> Model:
+    """The model with actions for the silent edges that write some variables."""
+    automata, syncs, actions = [], list(model.system.syncs), list(model.actions)
+    for automaton in model.automata:
+        if not any(edge.action is None and _writes(edge, names) for edge in automaton.edges):
+            automata.append(automaton)
+            continue
+        action = f"{_SILENT}{len(actions)}"
+        actions.append(Action(action))
+        edges = tuple(
+            replace(edge, action=action) if edge.action is None and _writes(edge, names) else edge
+            for edge in automaton.edges
+        )
+        automata.append(replace(automaton, edges=edges))
+        for i, element in enumerate(model.system.elements):
+            if element.automaton == automaton.name:
+                syncs.append(Sync(((i, action),)))
+    system = replace(model.system, syncs=tuple(syncs))
+    return replace(model, automata=tuple(automata), system=system, actions=tuple(actions))
