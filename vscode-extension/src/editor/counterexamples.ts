@@ -37,13 +37,10 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         ];
     }
 
-    /** Show the trace that contradicts a property, or a witness: one that speaks for it. */
-    async show(system: string, property: string, witness = false): Promise<void> {
-        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
+    async show(system: string, property: string): Promise<void> {
+        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property });
         if (!found) {
-            const text = witness
-                ? vscode.l10n.t("There is no trace that speaks for {0}, or it has not been verified.", property)
-                : vscode.l10n.t("There is no trace that contradicts {0}, or it has not been verified.", property);
+            const text = vscode.l10n.t("There is no counterexample for {0} yet. Verify it first.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }
