@@ -88,7 +88,7 @@ async def answer_together(
                 shown_at = now
                 loop.call_soon_threadsafe(show, [replace(tally) for tally in tallies])
 
-        with Pool(_jobs(), patience=None) as pool:
+        with Pool(_jobs(), start_delay_s=None) as pool:
             results.extend(verifier.answer_together(asked, pool, tallies, lambda *_: pulse(0, 0), pulse))
 
     results: list[Result] = []
