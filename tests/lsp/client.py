@@ -247,12 +247,12 @@ class RawServer:
     async def said(self, text: str) -> str:
         """Wait until it has said something with this text; all that it has said since it was last listened to."""
         assert self._process.stdout is not None
-        found = b""
-        while text.encode() not in found:
+        data = b""
+        while text.encode() not in data:
             piece = await asyncio.wait_for(self._process.stdout.read(1 << 16), TIMEOUT_S)
             assert piece, f"it ends and has not said {text}"
-            found += piece
-        return found.decode()
+            data += piece
+        return data.decode()
 
     async def ended(self) -> int:
         """Wait for its end, while its input is open; its exit status."""
