@@ -46,8 +46,10 @@ class Client(LanguageClient):
         self.refreshed: list[str] = []
         self.news = asyncio.Event()
         self.answers = asyncio.Event()
+        self.parts: dict[str | int, list[object]] = {}
         features = DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published}
         features |= {method: _with_news(features[method]) for method in (types.PROGRESS, types.WINDOW_SHOW_MESSAGE)}
+        features[types.PROGRESS] = _parts(features[types.PROGRESS])
         features |= {method: _refresh(method) for method in REFRESHES}
         register_lsp_features(self, features | ({types.WORKSPACE_CONFIGURATION: _late} if is_slow else {}))
 
@@ -161,6 +163,18 @@ def _with_news(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any]
     def take(client: Client, params: Any) -> None:
         feature(client, params)
         client.news.set()
+
+    return take
+
+
+def _parts(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any], None]:
+    """Keep the partial results of a request; leave the progress of work to the feature."""
+
+    def take(client: Client, params: types.ProgressParams) -> None:
+        if params.token in client.progress_reports:
+            feature(client, params)
+        else:
+            client.parts.setdefault(params.token, []).append(params.value)
 
     return take
 

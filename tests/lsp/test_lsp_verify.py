@@ -17,7 +17,8 @@ from pygls.exceptions import JsonRpcRequestCancelled
 
 import clock
 from as2fm_lsp.cli.main import run
-from as2fm_lsp.handlers.verify import COMMAND, COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import VERIFY as COMMAND
 from stuck_models import hospital
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "assembly_robot"
