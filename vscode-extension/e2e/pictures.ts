@@ -102,7 +102,7 @@ export function pictures(stage: Stage): void {
             assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
             assert.match(svg, />\/hand_over</);
             const theme = svg.replace(/^.*<style>/s, "").replace(/<\/style>.*$/s, "");
-            assert.match(theme, /\.card \{ fill: #/);
+            assert.match(theme, /-card \{ fill: #/);
             assert.doesNotMatch(svg, /var\(--/);
             const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
             assert.equal(png.subarray(1, 4).toString(), "PNG");
