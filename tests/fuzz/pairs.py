@@ -76,11 +76,20 @@ def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
     together = report({**base(), first.file: first.text, second.file: second.text})
     expected = alone(first).findings | alone(second).findings
     missing = sorted(expected - together.findings)
-    if not missing:
+    if not missing or _are_consequences(missing, first, second):
         return Outcome.BOTH, ""
     said = together.not_checked - alone(first).not_checked - alone(second).not_checked
     details = "; ".join(f"{code} in {file}" for file, code in missing)
     return (Outcome.HELD_BACK if said else Outcome.LOST), details
+
+
+def _are_consequences(missing: list[tuple[str, str]], first: Mistake, second: Mistake) -> bool:
+    """Whether both mistakes are reported where they are, and what is missing is reported of other files only. Two ports
+    without a type are not in conflict, for example, though each is with the type of the other."""
+    files = {first.file, second.file}
+    return not any(file in files for file, _ in missing) and all(
+        any(file == mistake.file for file, _ in alone(mistake).findings) for mistake in (first, second)
+    )
 
 
 def choose(seed: int) -> tuple[Mistake, Mistake]:

@@ -41,7 +41,7 @@ def live(text: str) -> list[str]:
 
 
 def test_the_reader_finds_them() -> None:
-    assert {each.partition(":")[0] for each in live(EVIL)} == {"html_inline", "image", "link_open"}
+    assert {token.partition(":")[0] for token in live(EVIL)} == {"html_inline", "image", "link_open"}
     assert live("<div>\n\ntext")
 
 
@@ -117,9 +117,9 @@ def shown(texts: dict[str, str]) -> Iterator[str]:
 def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
     analysis = snapshot.analysis
     for offset in range(0, len(text), 3):
-        found = hover(analysis, path, offset)
-        if found:
-            yield found.text
+        actual_hover = hover(analysis, path, offset)
+        if actual_hover:
+            yield actual_hover.text
         signature = signature_help(analysis, path, offset)
         if signature:
             yield signature.documentation
