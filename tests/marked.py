@@ -34,7 +34,7 @@ class Case:
             if line.startswith(_RESULT):
                 self.result = line.removeprefix(_RESULT)
             elif lines and (mark := _MARK.fullmatch(line)):
-                start = sum(len(each) + 1 for each in lines[:-1]) + len(mark[1])
+                start = sum(len(line) + 1 for line in lines[:-1]) + len(mark[1])
                 marks.append((start, start + (0 if mark[2] == "." else len(mark[2])), mark[3]))
             else:
                 lines.append(line)

@@ -60,17 +60,17 @@ def test_templates_make_a_system(tmp_path: Path) -> None:
     files = {"node.ascxml": texts["node"].replace("NAME", "MyNode"), "main.xml": MAIN, "tree.xml": TREE}
     files["properties.jani"] = '{"properties": []}'
     files["plugin.ascxml"] = texts["plugin"].replace("NAME", "MyAction")
-    found = check(tmp_path, files, "main.xml")
+    diagnostics = check(tmp_path, files, "main.xml")
     # The node talks to others that are still to be written.
-    assert {d.code for d in found} <= {"topic-without-publisher", "topic-without-subscriber"}
-    assert not [d for d in found if d.path.endswith(("plugin.ascxml", "tree.xml"))]
+    assert {d.code for d in diagnostics} <= {"topic-without-publisher", "topic-without-subscriber"}
+    assert not [d for d in diagnostics if d.path.endswith(("plugin.ascxml", "tree.xml"))]
 
 
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_snippets_are_of_the_language(name: str, tmp_path: Path) -> None:
     around = AROUND.get(name) or PARTS.get(name) or IN_STATE
     text = around.replace("{}", expanded(SNIPPETS[name]["body"]))
-    found = check(tmp_path, {"a.ascxml": text}, "a.ascxml")
+    diagnostics = check(tmp_path, {"a.ascxml": text}, "a.ascxml")
     # Names are the user's to fill in; the form is ours.
     form = (
         "xml-",
@@ -82,6 +82,6 @@ def test_snippets_are_of_the_language(name: str, tmp_path: Path) -> None:
         "attribute-",
         "child-",
     )
-    wrong = [f"{d.code}: {d.message}" for d in found if d.severity is Severity.ERROR and d.code.startswith(form)]
+    wrong = [f"{d.code}: {d.message}" for d in diagnostics if d.severity is Severity.ERROR and d.code.startswith(form)]
     assert not wrong
     assert "${" not in text

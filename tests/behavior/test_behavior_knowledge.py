@@ -19,9 +19,9 @@ NUMBERS, TRUTHS = range(-1, 4), (False, True)
 
 
 def tree(text: str) -> Expr:
-    found, findings = parse(Decoded(text, 0))
+    node, findings = parse(Decoded(text, 0))
     assert not findings, text
-    return found
+    return node
 
 
 def value(expr: Expr, values: dict[str, int | bool]) -> int | bool:
@@ -93,12 +93,12 @@ def test_nothing_that_is_possible_is_excluded(seed: int) -> None:
         known = [after for before in known for after in FACTS.assume(before, cond, holds)]
         possible = [values for values in possible if bool(value(cond, values)) == holds]
         for values in possible:
-            assert any(admits(each, values) for each in known), (seed, values)
+            assert any(admits(knowledge, values) for knowledge in known), (seed, values)
         name, given = rng.choice([("n", "2"), ("n", "m"), ("b", "n < m"), ("c", "true"), ("m", "n + m")])
         known = [after for before in known for after in FACTS.assign(before, tree(name), tree(given))]
         possible = [{**values, name: value(tree(given), values)} for values in possible]
         for values in possible:
-            assert any(admits(each, values) for each in known), (seed, values, name, given)
+            assert any(admits(knowledge, values) for knowledge in known), (seed, values, name, given)
 
 
 @pytest.mark.parametrize(

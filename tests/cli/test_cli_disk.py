@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Disks and pipes that are full, and processes that are killed: what is told, and what is left behind."""
+"""Disks and pipes that are full, and processes that are killed: messages, and files that remain."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ NO_SPACE = (2, "as2fm-lsp: standard output: No space left on device\n")
 @pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
 def test_standard_output_that_is_full(tmp_path: Path, arguments: tuple[str, ...], unbuffered: str) -> None:
     clock.write(tmp_path)
-    found = call(tmp_path, *arguments, program=prefork.command(), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
-    assert found == NO_SPACE
+    outcome = call(tmp_path, *arguments, program=prefork.command(), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
+    assert outcome == NO_SPACE
 
 
 @pytest.mark.parametrize("arguments", [PRINTING[0], ("--help",)], ids=" ".join)
@@ -80,8 +80,8 @@ def test_standard_output_that_is_full_at_the_end_of_the_interpreter(
 ) -> None:
     """The same with a process that Python itself starts and ends."""
     clock.write(tmp_path)
-    found = call(tmp_path, *arguments, program=(INSTALLED,), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
-    assert found == NO_SPACE
+    outcome = call(tmp_path, *arguments, program=(INSTALLED,), out="/dev/full", PYTHONUNBUFFERED=unbuffered)
+    assert outcome == NO_SPACE
 
 
 @pytest.mark.parametrize(("arguments", "status"), [(("--check", "main.xml"), 1), (("verfy", "x"), 2)], ids=["1", "2"])

@@ -43,10 +43,10 @@ def diagnostics(file: str = f"{FOLDER}/näme, a:b.ascxml") -> list[Diagnostic]:
     ]
 
 
-def render(name: str, found: list[Diagnostic] | None = None, limit: Severity = Severity.ERROR) -> str:
-    found = diagnostics() if found is None else found
+def render(name: str, reported: list[Diagnostic] | None = None, limit: Severity = Severity.ERROR) -> str:
+    reported = diagnostics() if reported is None else reported
     entries = [
-        entry(d, lambda path: SourceFile(path, TEXT), lambda path: path.removeprefix(f"{FOLDER}/")) for d in found
+        entry(d, lambda path: SourceFile(path, TEXT), lambda path: path.removeprefix(f"{FOLDER}/")) for d in reported
     ]
     return render_report(CheckReport(entries, 2, limit), name)
 
@@ -300,8 +300,8 @@ def test_sarif() -> None:
 
 
 def test_sarif_carries_the_documents_of_rules() -> None:
-    found = [Diagnostic("/a", rule.code, rule.severity, Span(0, 1), "m") for rule in RULES]
-    log = json.loads(render("sarif", found))
+    of_all_rules = [Diagnostic("/a", rule.code, rule.severity, Span(0, 1), "m") for rule in RULES]
+    log = json.loads(render("sarif", of_all_rules))
     jsonschema.validate(log, SARIF)
     rules = log["runs"][0]["tool"]["driver"]["rules"]
     assert [rule["id"] for rule in rules] == sorted(BY_CODE)

@@ -291,17 +291,17 @@ def test_a_machine_of_a_further_system_is_not_taken_away_from_it(
 
 
 def test_systems_that_share_files_with_each_other_come_along(command: Command, check: Command, tmp_path: Path) -> None:
-    """A shares a machine with B, and B another one with C; D stands alone."""
+    """A shares a machine with B, and B another one with C; D shares none."""
     (tmp_path / ".git").mkdir()
     for name, machines in {"a": "x", "b": "xy", "c": "y", "d": "z"}.items():
-        inputs = "".join(f'<input type="ros-scxml" src="{each}.scxml" />' for each in machines)
+        inputs = "".join(f'<input type="ros-scxml" src="{machine}.scxml" />' for machine in machines)
         (tmp_path / f"{name}.xml").write_text(
             '<convince_mc_tc><mc_parameters><max_time value="1" unit="s" /></mc_parameters>'
             f'<node_models>{inputs}</node_models><properties><input type="jani" src="p.jani" /></properties>'
             "</convince_mc_tc>"
         )
-        for each in machines:
-            (tmp_path / f"{each}.scxml").write_text(OLD["nodes/base.scxml"].replace("Base", f"M{each}"))
+        for machine in machines:
+            (tmp_path / f"{machine}.scxml").write_text(OLD["nodes/base.scxml"].replace("Base", f"M{machine}"))
     (tmp_path / "p.jani").write_text(OLD["p.jani"])
     before = read(tmp_path)
     done = command("migrate", "a.xml")

@@ -132,8 +132,8 @@ def test_related_places_are_shown_with_their_lines() -> None:
 def test_the_summary_counts_in_words() -> None:
     source = SourceFile("/a", "x")
     severities = [Severity.HINT, Severity.ERROR, Severity.INFORMATION, Severity.WARNING, Severity.WARNING]
-    found = [Diagnostic("/a", "c", severity, Span(0, 1), "m") for severity in severities]
-    report = CheckReport([entry(d, lambda _: source, str) for d in found], 7)
+    diagnostics = [Diagnostic("/a", "c", severity, Span(0, 1), "m") for severity in severities]
+    report = CheckReport([entry(d, lambda _: source, str) for d in diagnostics], 7)
     assert render_report(report, "text").endswith("\n7 files checked: 1 error, 2 warnings, 1 information, 1 hint\n")
     assert render_report(CheckReport([], 1), "text") == "1 file checked: no diagnostics\n"
 

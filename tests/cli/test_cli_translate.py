@@ -125,7 +125,9 @@ def test_parts_of_properties_without_effect(command: Command, robot: Path) -> No
         each["expression"]["values"]["exp"]
         for each in json.loads(command("translate", "main.xml", "-o", "-").out)["properties"][:2]
     ]
-    assert [(each["comment"], each["step-bounds"]) for each in path_formulas] == [("a remark", {"upper": 3})] * 2
+    assert [(formula["comment"], formula["step-bounds"]) for formula in path_formulas] == [
+        ("a remark", {"upper": 3})
+    ] * 2
 
 
 @pytest.mark.parametrize("kind", ["time-bounds", "reward-bounds"])
@@ -146,7 +148,7 @@ def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
     path.write_text(json.dumps(written, indent=1))
     done = command("translate", "main.xml", "-o", "-")
     assert done.status == 0
-    translated = [each["name"] for each in json.loads(done.out)["properties"]]
+    translated = [property_["name"] for property_ in json.loads(done.out)["properties"]]
     assert bounded not in translated
     assert translated[0] == other
     assert f"warning: the property `{bounded}` is left out of the JANI file: bounds on " in done.err
@@ -323,7 +325,7 @@ def test_same_bytes_whatever_the_hashes(robot: Path) -> None:
 
 
 def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stages are told once the delay is over, and wiped away at the end; a pipe is told nothing."""
+    """The stages are shown after the delay and removed at the end; a pipe does not receive them."""
     leader, follower = pty.openpty()
     monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
     with os.fdopen(follower, "w") as terminal:

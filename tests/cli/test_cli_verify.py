@@ -323,8 +323,8 @@ def test_resume(command: Command, tmp_path: Path) -> None:
         "verify", name, "--method", "fixed", "--max-traces", 5000, "--resume", "state.json", "--format", "json"
     )
     keys = ("probability", "traces", "steps")
-    for each in ("heads", "never"):
-        one, other = rows(again.out)[each], whole[each]
+    for name in ("heads", "never"):
+        one, other = rows(again.out)[name], whole[name]
         assert [one[key] for key in keys] == [other[key] for key in keys]
         # Who goes on with other options has seen results: the interval must hold whenever one stops.
         assert (one["interval"], other["interval"]) == ("confidence sequence", "Clopper-Pearson")
@@ -526,7 +526,7 @@ def errors(text: str) -> list[dict[str, Any]]:
 
 
 def place(folder: Path, text: str, name: str = "model.jani") -> int:
-    """The line on which a text stands first."""
+    """The line of the first occurrence of a text."""
     lines = (folder / name).read_text(encoding="utf-8").splitlines()
     return next(number for number, line in enumerate(lines, 1) if text in line)
 
@@ -578,7 +578,7 @@ def test_faults_of_a_model(command: Command, tmp_path: Path, change: Json, messa
     assert text.status == 1
     # A mistake in the model itself is found before any property is looked at.
     if row["code"] == "model-fault" and json.loads(done.out)["results"]:
-        assert [each["error"]["code"] for each in json.loads(done.out)["results"]] == ["model-fault"] * 2
+        assert [result["error"]["code"] for result in json.loads(done.out)["results"]] == ["model-fault"] * 2
         assert "heads: not answered: " in text.out
     else:
         assert text.out == ""
@@ -675,19 +675,19 @@ def test_wrong_use(command: Command, tmp_path: Path, options: tuple[str, ...], m
 
 def test_expectations_are_read_as_people_write_them() -> None:
     for text, symbol in (("p>=0.5", "≥"), ("p ≤ 0.5", "≤"), ("a b == 0.5", "="), ("p.q < 0.5", "<")):
-        found = parse(text)
-        assert (found.threshold.relation.symbol, found.threshold.number) == (symbol, 0.5)
+        expectation = parse(text)
+        assert (expectation.threshold.relation.symbol, expectation.threshold.number) == (symbol, 0.5)
     assert parse("a b == 0.5").name == "a b"
 
 
 def test_from_python(robot: Path) -> None:
-    found = api.to_jani(api.load("main.xml"))
-    [result] = api.verify(found, ["never_empty"], Options(epsilon=0.05))
+    model = api.to_jani(api.load("main.xml"))
+    [result] = api.verify(model, ["never_empty"], Options(epsilon=0.05))
     assert result.name == "never_empty"
     assert result.answer is not None
     assert result.answer.value == 1
     with pytest.raises(api.PropertyError, match="has no property `x`"):
-        list(api.verify(found, ["x"]))
+        list(api.verify(model, ["x"]))
     (robot / "bad.jani").write_text("{")
     with pytest.raises(api.JaniError):
         api.read_jani("bad.jani")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Traces of `verify` in the debugger: the same verdict forwards, and the same states backwards.
 
-As a program: `python tests/debug/replay.py [TRACES]` replays so many traces (20) of each property of each conformance
-system.
+As a program: `python tests/debug/replay.py [TRACES [NAME]]` replays so many traces (20) of each property of each
+conformance system, or only of those whose path contains NAME.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter
 from roaml.debugging.debugger import Debugger, Stop, StopReason, Unit
 from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, start
+from roaml.smc.end import End
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import VERDICTS, Recorder, Recording
@@ -53,11 +54,11 @@ def replay(sources: Sources, checker: ModelChecker, asked: CompiledProperty, tra
     verdict_filters = (ExceptionFilter.VIOLATED, ExceptionFilter.SATISFIED)
     debugger.breakpoints.filters = {filter_: Breakpoint() for filter_ in verdict_filters}
     debugger.breakpoints_changed()
-    while not session.is_decided and session.position < MAX_STEPS:
+    while recording.end is not End.CUT and not session.is_decided:
         if _move(debugger, Unit.END).reason is not StopReason.EXCEPTION:
             break
     expected = VERDICTS[recording.verdict]
-    if not debugger.verdicts[name] == session.verdict == expected:
+    if recording.end is not End.CUT and not debugger.verdicts[name] == session.verdict == expected:
         yield f"the verdict is {session.verdict} and {debugger.verdicts[name]}, not {expected}"
     if session.position > single:
         debugger.go_to(single)
@@ -75,9 +76,11 @@ def _move(debugger: Debugger, unit: Unit, *, forwards: bool = True) -> Stop:
     return stop
 
 
-def main(traces: int) -> int:
+def main(traces: int, name: str) -> int:
     replayed, differences = 0, 0
     for path in conformance.systems():
+        if name not in str(path):
+            continue
         started = time.perf_counter()
         sources = sources_of(path)
         checker = api.checker(sources.target.model)
@@ -94,4 +97,4 @@ def main(traces: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 20))
+    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 20, sys.argv[2] if len(sys.argv) > 2 else ""))

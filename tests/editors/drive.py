@@ -28,8 +28,8 @@ def setup(section: str, language: str) -> str:
     """The last piece of configuration in a section of the notes: that for the versions that Debian has."""
     text = NOTES.read_text(encoding="utf-8")
     part = re.split(r"^## ", text.partition(f"\n## {section}\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
-    found: list[str] = re.findall(rf"^```{language}\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
-    return found[-1]
+    texts: list[str] = re.findall(rf"^```{language}\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
+    return texts[-1]
 
 
 def shown(command: list[str], file: Path) -> list[str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -66,6 +67,52 @@ def test_both_searches_and_solvers_do_the_same(written: Json) -> None:
     assert keys(ours) == keys(plain)
     assert choices(ours) == choices(plain)
     assert values_of(ours, solver) == values_of(plain, plain_solver())
+
+
+class _Direct(plain_solver().Solver):  # type: ignore[misc, name-defined]
+    """A solver that solves each component directly, at once."""
+
+    solved = 0
+
+    def _direct_work(self, first: int, last: int) -> int:
+        return -(10**12)
+
+    def _solve_directly(self, first: int, last: int, gap: float) -> int:
+        solved = super()._solve_directly(first, last, gap)
+        type(self).solved += solved
+        return int(solved)
+
+
+@given(networks())
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_direct_solutions_are_those_of_value_iteration(written: Json) -> None:
+    space = space_of(written)
+    if space.problem is not None:
+        return
+    iterated, direct = values_of(space, solver), values_of(space, SimpleNamespace(Solver=_Direct))
+    for name in ("minimum", "maximum", "uniform"):
+        one, other = getattr(iterated, name), getattr(direct, name)
+        assert one.lower <= other.upper, name
+        assert other.lower <= one.upper, name
+        assert other.upper - other.lower <= 1e-7 * max(1.0, other.upper) or other.upper == other.lower, name
+
+
+def test_some_components_are_solved_directly() -> None:
+    """Steps up a ladder with probability 1/2, else back to the ground: rewards need about 2¹⁶ steps."""
+    rungs = 15
+    up = [way("l", 0.5, x=op("+", "x", 1)), way("l", 0.5, x=0)]
+    written = document(
+        automaton("a", "l", [edge("l", *up, guard=op("<", "x", rungs))]),
+        variables=[variable("x")],
+        properties={"p": {"op": "Emax", "exp": 1, "accumulate": ["steps"], "reach": op("=", "x", rungs)}},
+    )
+    before = _Direct.solved
+    for module in (SimpleNamespace(Solver=_Direct), solver):
+        values = values_of(space_of(written), module)
+        assert values.is_precise
+        for bounds in (values.minimum, values.maximum, values.uniform):
+            assert bounds.lower <= 2 ** (rungs + 1) - 2 <= bounds.upper
+    assert _Direct.solved > before
 
 
 def test_numbers_that_callers_know_are_those_of_the_compiled_modules() -> None:
@@ -163,15 +210,15 @@ def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> 
     length = 10_000 if path is None else len(path.steps)
     while layers[-1] and len(layers) <= length:
         assert not any(explorer.verdict(state) == TRUE for state in layers[-1])
-        found = {
+        states = {
             branch.state
             for state in layers[-1]
             if explorer.verdict(state) not in (TRUE, FALSE)
             for _, branches in explorer.choices(state)
             for branch in branches
         }
-        layers.append(found - seen)
-        seen |= found
+        layers.append(states - seen)
+        seen |= states
     if path is not None:
         recorder = PathRecorder(space, path)
         recording = Recording(SHORTEST)

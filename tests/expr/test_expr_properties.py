@@ -144,12 +144,12 @@ def assert_nested(expr: Expr) -> None:
     level, depth = [expr], 0
     while level:
         depth += 1
-        for each in level:
-            at = each.span.start
-            for child in children(each):
-                assert at <= child.span.start <= child.span.end <= each.span.end
+        for node in level:
+            at = node.span.start
+            for child in children(node):
+                assert at <= child.span.start <= child.span.end <= node.span.end
                 at = child.span.end
-        level = [child for each in level for child in children(each)]
+        level = [child for inner_node in level for child in children(inner_node)]
     assert depth <= MAX_DEPTH + 2
 
 

@@ -55,12 +55,12 @@ def test_spans_of_operators_and_members() -> None:
 
 def test_tokens_cover_the_text() -> None:
     text = " a.b<=1.5e3 + 'x y' #`t` "
-    found = tokens(text)
-    assert [t.text for t in found] == ["a", ".", "b", "<=", "1.5e3", "+", "'x y'", "#", "`t`"]
+    expression_tokens = tokens(text)
+    assert [t.text for t in expression_tokens] == ["a", ".", "b", "<=", "1.5e3", "+", "'x y'", "#", "`t`"]
     kinds = "name punctuator name punctuator number punctuator string junk template"
-    assert " ".join(t.kind.value for t in found) == kinds
-    gaps = [*(t.start for t in found), len(text)]
-    ends = [0, *(t.end for t in found)]
+    assert " ".join(t.kind.value for t in expression_tokens) == kinds
+    gaps = [*(t.start for t in expression_tokens), len(text)]
+    ends = [0, *(t.end for t in expression_tokens)]
     assert all(not text[end:gap].strip() for end, gap in zip(ends, gaps, strict=True))
 
 
@@ -99,12 +99,12 @@ def test_fixes_are_valid(written: str, quote: str, fixed: str) -> None:
 
 @pytest.mark.parametrize(("written", "parts"), SPANS)
 def test_the_same_expression_elsewhere(written: str, parts: list[str]) -> None:
-    """What was read once is taken over; its places are those where it stands now."""
+    """A cached expression is reused with the positions of its new place."""
     texts = [f'<a b="{written}"/>', f'<a  c="&gt;" b="{written}"/>', f'<a b="{" " * 1000}{written}"/>']
     for text in texts:
         document = parse_xml(text)
         assert document.root is not None
         tree, _ = parse(document.decoded(document.root.attributes[-1].value_span))
-        found = [text[e.span.start : e.span.end] for e in walk(tree)]
-        assert found == parts
+        actual_texts = [text[e.span.start : e.span.end] for e in walk(tree)]
+        assert actual_texts == parts
         assert tree.span.start >= text.index('b="')

@@ -16,7 +16,7 @@ def said(folder: Path, file: str, title: str, code: str) -> list[tuple[str, list
     case = next(case for case in read_cases(FOLDER / f"{file}.txt") if case.title == title)
     diagnostics, _ = check_text(folder, case.text)
     return [
-        (diagnostic.message, [(each.location.span.start, each.message) for each in diagnostic.related])
+        (diagnostic.message, [(place.location.span.start, place.message) for place in diagnostic.related])
         for diagnostic in diagnostics
         if diagnostic.code == code
     ]

@@ -16,8 +16,12 @@ def test_bytes_that_are_no_text(tmp_path: Path) -> None:
     (tmp_path / "declared.ascxml").write_bytes(f'<?xml version="1.0" encoding="latin-1"?>{machine}'.encode("latin-1"))
     (tmp_path / "utf16.ascxml").write_bytes(machine.encode("utf-16"))
     (tmp_path / "bom.ascxml").write_bytes(b"\xef\xbb\xbf" + machine.encode("utf-8"))
-    found = [d for d in api.check([str(tmp_path)], settings=Settings()).diagnostics if d.code == "undecodable-text"]
-    assert [(Path(d.path).name, d.span, d.severity) for d in found] == [("latin.ascxml", (16, 17), Severity.ERROR)]
+    diagnostics = [
+        d for d in api.check([str(tmp_path)], settings=Settings()).diagnostics if d.code == "undecodable-text"
+    ]
+    assert [(Path(d.path).name, d.span, d.severity) for d in diagnostics] == [
+        ("latin.ascxml", (16, 17), Severity.ERROR)
+    ]
 
 
 def test_encodings_that_are_not_obeyed(tmp_path: Path) -> None:
@@ -32,13 +36,15 @@ def test_encodings_that_are_not_obeyed(tmp_path: Path) -> None:
     write("utf16", "UTF-16", "utf-16")
     write("utf8", "utf8", "utf-8", note="é")
     write("latin", "latin-1", "latin-1", note="é")
-    found = [d for d in api.check([str(tmp_path)], settings=Settings()).diagnostics if d.code == "ignored-encoding"]
-    assert {(Path(d.path).stem, d.severity, d.message.rpartition(" ")[2]) for d in found} == {
+    diagnostics = [
+        d for d in api.check([str(tmp_path)], settings=Settings()).diagnostics if d.code == "ignored-encoding"
+    ]
+    assert {(Path(d.path).stem, d.severity, d.message.rpartition(" ")[2]) for d in diagnostics} == {
         ("utf16_without_mark", Severity.WARNING, "UTF-8"),
         ("latin_with_mark", Severity.WARNING, "UTF-8"),
         ("shifted", Severity.WARNING, "UTF-8"),
     }
-    assert {Path(d.path).read_bytes().decode("utf-8-sig")[d.span.start : d.span.end] for d in found} == {
+    assert {Path(d.path).read_bytes().decode("utf-8-sig")[d.span.start : d.span.end] for d in diagnostics} == {
         "UTF-16",
         "ISO-8859-1",
         "UTF-7",

@@ -37,12 +37,12 @@ def report(numbers: range) -> set[tuple[str, str, str]]:
         assert match is not None, pattern
         texts[path] = text[: match.start(1)] + new + text[match.end(1) :]
     main = str(FOLDER / "Main" / "main.xml")
-    found = api.check([main], (str(conformance.INTERFACES),), Settings(), texts).diagnostics
-    return {(Path(d.path).name, d.code, d.message) for d in found if d.severity >= Severity.WARNING}
+    diagnostics = api.check([main], (str(conformance.INTERFACES),), Settings(), texts).diagnostics
+    return {(Path(d.path).name, d.code, d.message) for d in diagnostics if d.severity >= Severity.WARNING}
 
 
 def test_together_as_alone() -> None:
     alone = [report(range(number, number + 1)) for number in range(len(MISTAKES))]
     sound = report(range(0))
-    assert all(found - sound for found in alone)
+    assert all(rows - sound for rows in alone)
     assert set().union(*alone) <= report(range(len(MISTAKES)))

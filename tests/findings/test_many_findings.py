@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file with very many mistakes: the first of each kind are told, and that there are more."""
+"""A file with very many mistakes: the first ones of each kind are reported, with the number of the others."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ def messages(name: str, size: int) -> list[tuple[str, str]]:
 
 
 def test_as_many_as_are_shown() -> None:
-    found = messages("unknown-attributes", MAX_FINDINGS)
-    assert len(found) == MAX_FINDINGS
-    assert not any("there are more" in message for _, message in found)
+    rows = messages("unknown-attributes", MAX_FINDINGS)
+    assert len(rows) == MAX_FINDINGS
+    assert not any("there are more" in message for _, message in rows)
 
 
 def test_more_than_are_shown() -> None:
-    found = messages("unknown-attributes", MAX_FINDINGS + 500)
-    assert len(found) == MAX_FINDINGS + 1
-    assert found[-1] == ("unknown-attribute", "the first 1,000 findings of this kind are shown; there are more")
+    rows = messages("unknown-attributes", MAX_FINDINGS + 500)
+    assert len(rows) == MAX_FINDINGS + 1
+    assert rows[-1] == ("unknown-attribute", "the first 1,000 findings of this kind are shown; there are more")
 
 
 def test_comments_that_suppress_nothing() -> None:
-    found = messages("comments", MAX_FINDINGS + 500)
-    assert [code for code, _ in found] == ["unused-suppression"] * MAX_FINDINGS
+    rows = messages("comments", MAX_FINDINGS + 500)
+    assert [code for code, _ in rows] == ["unused-suppression"] * MAX_FINDINGS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules whose severity depends on the model; what is no error is translated."""
+"""Rules whose severity depends on the model; models without errors are translated."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ def check(folder: Path, topic: str, target: str) -> list[tuple[str, Severity]]:
     ],
 )
 def test_topic_without_publisher(topic: str, target: str, severity: Severity, tmp_path: Path) -> None:
-    found = check(tmp_path, topic, target)
-    assert found == [("topic-without-publisher", severity), ("ignored-element", Severity.HINT)]
+    rows = check(tmp_path, topic, target)
+    assert rows == [("topic-without-publisher", severity), ("ignored-element", Severity.HINT)]
 
 
 def test_what_is_a_warning_is_translated(tmp_path: Path) -> None:

@@ -37,8 +37,8 @@ class Model:
 @cache
 def systems() -> tuple[Model, ...]:
     """The conformance models and the examples, always in one order."""
-    found = [_on_disk(path, (str(conformance.INTERFACES),)) for path in sorted(conformance.systems())]
-    return (*found, *(_on_disk(path, ()) for path in sorted((ROOT / "examples").glob("*/main.xml"))))
+    systems = [_on_disk(path, (str(conformance.INTERFACES),)) for path in sorted(conformance.systems())]
+    return (*systems, *(_on_disk(path, ()) for path in sorted((ROOT / "examples").glob("*/main.xml"))))
 
 
 @cache

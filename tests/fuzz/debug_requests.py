@@ -8,16 +8,25 @@ from pathlib import Path
 from typing import Any
 
 MOVING = ("continue", "next", "stepIn", "stepOut", "stepBack", "reverseContinue")
-STOPPING = ("goToStep", "choose", "restartFrame")
+STOPPING = ("goToStep", "choose", "restartFrame", "publish", "setVariable")
 OTHERS = (
     *("initialize", "launch", "configurationDone", "threads", "stackTrace", "scopes", "variables", "evaluate", "pause"),
     *("setBreakpoints", "setFunctionBreakpoints", "setExceptionBreakpoints", "setDataBreakpoints", "choices", "cancel"),
     *("dataBreakpointInfo", "breakpointLocations", "loadedSources", "exceptionInfo", "saveSession", "restart"),
-    *("source", "attach", "nothing", "modules", "setVariable", "completions"),
+    *("source", "attach", "nothing", "modules", "events", "completions"),
 )
 NAMES = ("threadId", "frameId", "variablesReference", "step", "choice", "outcome", "line", "name", "dataId", "seed")
 LISTS = ("breakpoints", "filters", "filterOptions", "lines")
-EXPRESSIONS = ("Arm.way", "holding", "way + 1", "_msg.data", "1 / 0", "(", "", "time > 3", "[1, 2][5]", "{", "'x' < 3")
+EXPRESSIONS = (
+    *("Arm.way", "holding", "way + 1", "_msg.data", "1 / 0", "(", "", "time > 3", "[1, 2][5]", "{", "'x' < 3"),
+    *("publish /arm/command {data: 2}", "publish /arm/command", "call /x {", "publish /arm/command {data: [1]}"),
+)
+EVENTS = ("/arm/command", "/arm/gripper", "topic_arm__command_msg", "/nothing", "/level", "/block/placed")
+FIELDS = (
+    *({}, {"data": 1}, {"data": True}, {"data": 300}, {"data": "x"}, {"x": 1}, {"data": [1]}),
+    *("{data: 2}", "{", 5, [1]),
+)
+COMMANDS = ("publish ", "publish /arm", "pub", "call /", "", "x", "publish /arm/command {data: 2}")
 
 
 class Requests:
@@ -39,6 +48,12 @@ class Requests:
         if draw.random() < 0.8:
             arguments["program"] = self._program
             arguments.pop("seed", None)
+        if draw.random() < 0.8:
+            arguments["event"] = draw.choice(EVENTS)
+            arguments["fields"] = draw.choice(FIELDS)
+            arguments["value"] = draw.choice(EXPRESSIONS)
+            arguments["text"] = draw.choice(COMMANDS)
+            arguments["context"] = draw.choice(("repl", "watch"))
         if draw.random() < 0.8:
             arguments["expression"] = draw.choice(EXPRESSIONS)
         if draw.random() < 0.05:

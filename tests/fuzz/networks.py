@@ -132,7 +132,7 @@ def _written(name: str, locations: list[str], edges: list[Json], variables: list
         "locations": [{"name": location} for location in locations],
         "initial-locations": [locations[0]],
         "edges": edges,
-        "variables": [{"name": each, "type": "int", "initial-value": 0} for each in variables],
+        "variables": [{"name": variable, "type": "int", "initial-value": 0} for variable in variables],
     }
 
 
@@ -158,7 +158,7 @@ def _document(random: Random, automata: list[Json], syncs: list[list[str | None]
         "variables": [*({"name": name, "type": "int", "initial-value": 0} for name in SHARED), array],
         "automata": automata,
         "system": {
-            "elements": [{"automaton": each["name"]} for each in automata],
+            "elements": [{"automaton": automaton["name"]} for automaton in automata],
             "syncs": [{"synchronise": vector} for vector in syncs],
         },
         "properties": [{"name": "p", "expression": expression}],

@@ -74,13 +74,22 @@ def alone(mistake: Mistake) -> Report:
 def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
     """What becomes of two mistakes in different files, and what is lost or held back, in words."""
     together = report({**base(), first.file: first.text, second.file: second.text})
-    wanted = alone(first).findings | alone(second).findings
-    missing = sorted(wanted - together.findings)
-    if not missing:
+    expected = alone(first).findings | alone(second).findings
+    missing = sorted(expected - together.findings)
+    if not missing or _are_consequences(missing, first, second):
         return Outcome.BOTH, ""
     said = together.not_checked - alone(first).not_checked - alone(second).not_checked
     details = "; ".join(f"{code} in {file}" for file, code in missing)
     return (Outcome.HELD_BACK if said else Outcome.LOST), details
+
+
+def _are_consequences(missing: list[tuple[str, str]], first: Mistake, second: Mistake) -> bool:
+    """Whether both mistakes are reported where they are, and what is missing is reported of other files only. Two ports
+    without a type are not in conflict, for example, though each is with the type of the other."""
+    files = {first.file, second.file}
+    return not any(file in files for file, _ in missing) and all(
+        any(file == mistake.file for file, _ in alone(mistake).findings) for mistake in (first, second)
+    )
 
 
 def choose(seed: int) -> tuple[Mistake, Mistake]:
@@ -95,10 +104,10 @@ def choose(seed: int) -> tuple[Mistake, Mistake]:
 def report(texts: dict[str, str]) -> Report:
     """What is said about the system of these files, each by its name."""
     files = {os.path.join(NOWHERE, name): text for name, text in texts.items()}
-    found = api.check(list(files), (), Settings(), files).diagnostics
+    diagnostics = api.check(list(files), (), Settings(), files).diagnostics
     return Report(
-        frozenset((os.path.basename(d.path), d.code) for d in found if d.severity >= Severity.WARNING),
-        frozenset((os.path.basename(d.path), d.message) for d in found if d.code == "not-checked"),
+        frozenset((os.path.basename(d.path), d.code) for d in diagnostics if d.severity >= Severity.WARNING),
+        frozenset((os.path.basename(d.path), d.message) for d in diagnostics if d.code == "not-checked"),
     )
 
 

@@ -21,7 +21,7 @@ def system_file(*inputs: str) -> str:
     sections: dict[str, list[str]] = {}
     for section, type_, src in map(str.split, inputs):
         sections.setdefault(section, []).append(f'<input type="{type_}" src="{src}"/>')
-    body = "".join(f"<{name}>{''.join(found)}</{name}>" for name, found in sections.items())
+    body = "".join(f"<{name}>{''.join(texts)}</{name}>" for name, texts in sections.items())
     return f'<roaml><parameters><max_time value="1" unit="s"/></parameters>{body}</roaml>'
 
 
@@ -42,13 +42,13 @@ def load_marked(folder: Path, written: str) -> tuple[Analysis, dict[str, Case]]:
 
 def found(occurrences: Iterable[Occurrence]) -> list[tuple[int, int, str]]:
     """Occurrences in the form of `Case.found`."""
-    return sorted((each.span.start, each.span.end, _words(each)) for each in occurrences)
+    return sorted((occurrence.span.start, occurrence.span.end, _words(occurrence)) for occurrence in occurrences)
 
 
-def _words(each: Occurrence) -> str:
-    verb = "defines" if each.defines else WORDS[each.access]
-    scope = f" in {each.symbol.scope}" if each.symbol.scope else ""
-    return f"{verb} {each.symbol.kind.value} {each.symbol.name}{scope}"
+def _words(occurrence: Occurrence) -> str:
+    verb = "defines" if occurrence.defines else WORDS[occurrence.access]
+    scope = f" in {occurrence.symbol.scope}" if occurrence.symbol.scope else ""
+    return f"{verb} {occurrence.symbol.kind.value} {occurrence.symbol.name}{scope}"
 
 
 ROBOT = (

@@ -68,13 +68,13 @@ class System:
         analysis, done = self.snapshot.analysis, set()
         for path in self.files:
             for system in analysis.systems_of(path):
-                for each in uses(analysis, path, system).all:
-                    if each.symbol in done:
+                for occurrence in uses(analysis, path, system).all:
+                    if occurrence.symbol in done:
                         continue
-                    found = thing(analysis, (each.symbol,))
-                    done.update(found.symbols)
-                    if not isinstance(prepare(analysis, path, each.span.start), RenameRefusal):
-                        yield Case(found, path, each.span.start)
+                    group = thing(analysis, (occurrence.symbol,))
+                    done.update(group.symbols)
+                    if not isinstance(prepare(analysis, path, occurrence.span.start), RenameRefusal):
+                        yield Case(group, path, occurrence.span.start)
 
     def failures(self, case: Case) -> Iterator[str]:
         """What a rename, and renaming back, do not keep."""
@@ -117,10 +117,10 @@ class System:
         self, result: api.CheckResult, new: str, old: str, edits: Mapping[str, tuple[TextEdit, ...]] | None = None
     ) -> list[tuple[str, ...]]:
         found = []
-        for each in result.diagnostics:
-            line = result.source(each.path).lines.position(each.span.start).line
-            message = each.message.replace(new, old) if new else each.message
-            found.append((each.path, str(line), each.code, each.severity.label, message))
+        for diagnostic in result.diagnostics:
+            line = result.source(diagnostic.path).lines.position(diagnostic.span.start).line
+            message = diagnostic.message.replace(new, old) if new else diagnostic.message
+            found.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
         return sorted(found)
 
     def _jani(self, result: api.CheckResult) -> str | None:
@@ -131,8 +131,8 @@ class System:
 
 
 def _differences(before: list[tuple[str, ...]], after: list[tuple[str, ...]]) -> tuple[list[str], list[str]]:
-    gone = [" ".join(each[1:]) for each in before if each not in after]
-    return gone, [" ".join(each[1:]) for each in after if each not in before]
+    gone = [" ".join(row[1:]) for row in before if row not in after]
+    return gone, [" ".join(row[1:]) for row in after if row not in before]
 
 
 def _same(before: object, after: str | None, old: str) -> bool:

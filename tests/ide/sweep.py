@@ -25,13 +25,13 @@ def main(named: list[str]) -> int:
         *map(str, conformance.systems()),
     ]
     count, failed, started = 0, 0, time.perf_counter()
-    for each in mains:
-        system = System(each, (str(conformance.INTERFACES),) if conformance.PRESENT else ())
+    for path in mains:
+        system = System(path, (str(conformance.INTERFACES),) if conformance.PRESENT else ())
         for case in system.cases():
             count += 1
             for failure in system.failures(case):
                 failed += 1
-                print(f"{each}: {case.name}: {failure}", flush=True)
+                print(f"{path}: {case.name}: {failure}", flush=True)
     print(f"{count} things in {len(mains)} systems, {failed} failures, {time.perf_counter() - started:.0f} s")
     return 1 if failed else 0
 

@@ -36,14 +36,14 @@ def opened(written: str) -> tuple[Snapshot, str, Span]:
 
 def offered(written: str, kind: str = "") -> list[CodeAction]:
     snapshot, path, place = opened(written)
-    return list(actions(snapshot, path, place, lambda each: each.startswith(kind)))
+    return list(actions(snapshot, path, place, lambda text: text.startswith(kind)))
 
 
 def done(written: str, title: str) -> dict[str, str]:
     """The files that an action changes, as they are afterwards."""
     snapshot, path, place = opened(written)
-    chosen = [each for each in actions(snapshot, path, place, lambda _: True) if each.title == title]
-    assert len(chosen) == 1, [each.title for each in actions(snapshot, path, place, lambda _: True)]
+    chosen = [action for action in actions(snapshot, path, place, lambda _: True) if action.title == title]
+    assert len(chosen) == 1, [action.title for action in actions(snapshot, path, place, lambda _: True)]
     texts = applied(snapshot, chosen[0].make())
     before, after = (
         Counter(d.code for d in found(each) if d.severity is Severity.ERROR)
@@ -64,7 +64,7 @@ def new_warnings(snapshot: Snapshot, texts: dict[str, str]) -> set[str]:
 
 
 def titles(written: str, kind: str = "refactor") -> list[str]:
-    return [each.title for each in offered(written, kind)]
+    return [action.title for action in offered(written, kind)]
 
 
 # ------------------------------------------------------------------ machines
@@ -222,12 +222,12 @@ SYSTEM = (
 
 
 def test_a_new_plugin() -> None:
-    """It takes the ports that the node sets, stands beside the other plugins, and is listed."""
+    """It has the ports that the node sets, is in the folder of the other plugins, and is listed."""
     snapshot, path, place = opened(SYSTEM)
     title = "Create the plugin `GoHome` in `go_home.ascxml`"
-    kinds = [each.kind for each in actions(snapshot, path, place, lambda _: True) if each.title == title]
+    kinds = [action.kind for action in actions(snapshot, path, place, lambda _: True) if action.title == title]
     assert sorted(kinds) == ["quickfix", "refactor.extract"]
-    chosen = next(each for each in offered(SYSTEM, "refactor.extract") if each.title == title)
+    chosen = next(action for action in offered(SYSTEM, "refactor.extract") if action.title == title)
     texts = applied(snapshot, chosen.make())
     plugin, system = texts[path_of("plugins/go_home.ascxml")], texts[path_of("main.xml")]
     for port in (
@@ -246,7 +246,7 @@ def test_a_new_decorator_does_as_its_child_does() -> None:
         'GoHome from="{sum}" speed="0.5" loud="true" to="kitchen" />', 'Guard sum="{sum}"><AlwaysSuccess/></Guard>'
     )
     snapshot, path, place = opened(written)
-    chosen = next(each for each in actions(snapshot, path, place, lambda _: True) if "`Guard`" in each.title)
+    chosen = next(action for action in actions(snapshot, path, place, lambda _: True) if "`Guard`" in action.title)
     assert not new_warnings(snapshot, applied(snapshot, chosen.make()))
 
 
@@ -286,7 +286,7 @@ def test_the_older_dialect() -> None:
     assert 'src="a.ascxml"' in after["main.xml"]
     assert after["a.ascxml"].startswith('<ascxml name="A"')
     assert '<field name="data" expr="0" />' in after["a.ascxml"]
-    chosen = next(each for each in offered(OLDER) if each.title == "Convert the system to the current dialect")
+    chosen = next(action for action in offered(OLDER) if action.title == "Convert the system to the current dialect")
     assert chosen.resources == ("rename",)
     assert chosen.make().renamed == {path_of("a.scxml"): path_of("a.ascxml")}
 
@@ -320,18 +320,18 @@ def test_all_safe_fixes() -> None:
 
 
 def test_only_the_requested_kinds() -> None:
-    assert {each.kind for each in offered(LOGS, QUICK_FIX)} == {QUICK_FIX}
-    assert {each.kind for each in offered(LOGS, FIX_ALL)} == {FIX_ALL}
+    assert {action.kind for action in offered(LOGS, QUICK_FIX)} == {QUICK_FIX}
+    assert {action.kind for action in offered(LOGS, FIX_ALL)} == {FIX_ALL}
     assert offered(LOGS, "refactor") == []
 
 
 def test_quick_fixes_are_tied_to_their_diagnostics() -> None:
     fixes = offered(LOGS, QUICK_FIX)
-    assert [(each.title, each.preferred) for each in fixes] == [
+    assert [(fix.title, fix.preferred) for fix in fixes] == [
         ("Remove `<log>`", True),
         ("Fix all `ignored-element` in this file", False),
     ]
-    assert all(each.mends is not None and each.mends.code == "ignored-element" for each in fixes)
+    assert all(fix.mends is not None and fix.mends.code == "ignored-element" for fix in fixes)
 
 
 def test_files_that_are_missing() -> None:
@@ -366,5 +366,5 @@ def test_half_typed() -> None:
     for text in (PLUGIN, CLIENT, split_files(OLDER)["main.xml"], split_files(SYSTEM)["tree.xml"], LOGS):
         clean = text.replace("‸", "")
         for end in range(0, len(clean), 5):
-            for each in offered(f"-- a.ascxml --\n{clean[:end]}‸"):
-                each.make()
+            for action in offered(f"-- a.ascxml --\n{clean[:end]}‸"):
+                action.make()

@@ -510,19 +510,19 @@ def test_no_element_is_offered_that_is_reported_at_once(name: str, mark: str) ->
             workspace.open(path_of(each), content)
         return workspace.snapshot()
 
-    found = complete(moment(f"{before}<{after}"), path_of(name), len(before) + 1)
-    assert found is not None
-    assert found.items
-    for item in found.items:
+    completions = complete(moment(f"{before}<{after}"), path_of(name), len(before) + 1)
+    assert completions is not None
+    assert completions.items
+    for item in completions.items:
         snapshot = moment(f"{before}<{plain(item.snippet)}{after}")
-        codes = {each.code for each in snapshot.checker.diagnostics(path_of(name))}
+        codes = {diagnostic.code for diagnostic in snapshot.checker.diagnostics(path_of(name))}
         assert not codes.intersection(REPORTED), item.label
 
 
 def test_elements_of_plugins_are_offered_to_plugins() -> None:
-    labels = {item.label for found in offered("<!--walk-->", "<‸") for item in found.items}
+    labels = {item.label for completions in offered("<!--walk-->", "<‸") for item in completions.items}
     assert {"bt_declare_port_in", "bt_declare_port_out"} <= labels
-    labels = {item.label for found in offered("<!--top-->", "<‸") for item in found.items}
+    labels = {item.label for completions in offered("<!--top-->", "<‸") for item in completions.items}
     assert "ros_topic_publisher" in labels
     assert not any(label.startswith("bt_") for label in labels)
 
@@ -534,8 +534,8 @@ def case_list(written: str) -> list[str]:
 @pytest.mark.parametrize("case", case_list(ELEMENTS) + case_list(VALUES) + case_list(EXPRESSIONS))
 def test_in_xml(case: str) -> None:
     mark, text, expected = parts(case)
-    for found in offered(f"<!--{mark}-->", text)[:1]:
-        compare(found, expected)
+    for completions in offered(f"<!--{mark}-->", text)[:1]:
+        compare(completions, expected)
 
 
 @pytest.mark.parametrize("case", case_list(PROPERTIES))
@@ -573,8 +573,8 @@ def test_in_properties(case: str) -> None:
 )
 def test_in_files(name: str, text: str, expected: list[str] | None) -> None:
     text, (caret,), _ = marked(text)
-    found = complete(snapshot({**FILES, name: text}), path_of(name), caret)
-    labels = [item.label for item in found.items] if found else None
+    completions = complete(snapshot({**FILES, name: text}), path_of(name), caret)
+    labels = [item.label for item in completions.items] if completions else None
     assert (labels is None) == (expected is None)
     assert [label for label in labels or () if label in (expected or ())] == (expected or []), labels
 
@@ -583,51 +583,51 @@ def test_an_unknown_plugin_is_a_name_for_a_machine() -> None:
     tree = FILES["tree.xml"].replace("<!--tree-->", "<Fly/>")
     walk = FILES["walk.ascxml"].replace('name="Walk"', 'name=""')
     at = walk.index('name=""') + len('name="')
-    found = complete(snapshot({**FILES, "tree.xml": tree, "walk.ascxml": walk}), path_of("walk.ascxml"), at)
-    assert found is not None
-    assert [item.label for item in found.items] == ["Walk", "Fly", "walk"]
+    completions = complete(snapshot({**FILES, "tree.xml": tree, "walk.ascxml": walk}), path_of("walk.ascxml"), at)
+    assert completions is not None
+    assert [item.label for item in completions.items] == ["Walk", "Fly", "walk"]
 
 
 def test_names_that_are_used_and_not_defined() -> None:
     text = FILES["node.ascxml"].replace("<!--callback-->", '<assign location="extra" expr="other + 1"/>')
     text = text.replace('target="stop"', 'target="pause"')
-    for mark, wanted in (('<data id="‸"/>', ["extra", "other"]), ('<state id="‸">', ["pause"])):
+    for mark, expected in (('<data id="‸"/>', ["extra", "other"]), ('<state id="‸">', ["pause"])):
         slot = "<!--data-->" if "data" in mark else '<state id="stop">'
         new, (caret,), _ = marked(text.replace(slot, mark))
-        found = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret)
-        assert found is not None
-        assert sorted(item.label for item in found.items) == wanted
+        completions = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret)
+        assert completions is not None
+        assert sorted(item.label for item in completions.items) == expected
 
 
 def test_a_blank_asks_for_attributes_only() -> None:
     for text, expected in (("<transition ‸/>", True), ('<transition event="‸"/>', False), ("‸", False)):
         new, (caret,), _ = marked(FILES["node.ascxml"].replace("<!--state-->", text))
-        found = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret, " ")
-        assert (found is not None) is expected, text
+        completions = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret, " ")
+        assert (completions is not None) is expected, text
 
 
 def test_what_is_replaced_lies_in_one_line() -> None:
     new, (caret,), _ = marked(FILES["node.ascxml"].replace("<!--state-->", '<transition event="a\nb‸c\nd"/>'))
-    found = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret)
-    assert found is not None
-    assert new[found.span.start : found.span.end] == "bc"
+    completions = complete(snapshot({**FILES, "node.ascxml": new}), path_of("node.ascxml"), caret)
+    assert completions is not None
+    assert new[completions.span.start : completions.span.end] == "bc"
 
 
 def test_types_that_are_used_go_first() -> None:
-    found = offered("<!--top-->", '<ros_topic_publisher name="a" topic="a" type="‸"/>')[0]
-    assert found is not None
-    labels = [item.label for item in found.items]
+    completions = offered("<!--top-->", '<ros_topic_publisher name="a" topic="a" type="‸"/>')[0]
+    assert completions is not None
+    labels = [item.label for item in completions.items]
     assert {"nav_msgs/Path", "std_msgs/Int32", "geometry_msgs/Twist"} == set(labels[:3])
     assert len(labels) > 100
 
 
 def test_a_long_list_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roaml.ide.completion.MAX_ITEMS", 20)
-    found = offered("<!--top-->", '<ros_topic_publisher name="a" topic="a" type="gmpo‸"/>')[0]
-    assert found is not None
-    assert found.incomplete
-    assert "geometry_msgs/Point" in [item.label for item in found.items]
-    assert "std_msgs/Int32" not in [item.label for item in found.items]
+    completions = offered("<!--top-->", '<ros_topic_publisher name="a" topic="a" type="gmpo‸"/>')[0]
+    assert completions is not None
+    assert completions.incomplete
+    assert "geometry_msgs/Point" in [item.label for item in completions.items]
+    assert "std_msgs/Int32" not in [item.label for item in completions.items]
 
 
 def test_every_item_is_documented_or_simple() -> None:
@@ -645,9 +645,9 @@ def test_every_item_is_documented_or_simple() -> None:
         ("<!--data-->", '<data id="a" type="‸"/>'),
         ("<!--go-->", '<send event="‸"/>'),
     ):
-        found = offered(slot, text)[0]
-        assert found is not None
-        for item in found.items:
+        completions = offered(slot, text)[0]
+        assert completions is not None
+        for item in completions.items:
             if item.about is not None:
                 told = document(texts.analysis, item.about)
                 assert told, item
@@ -678,8 +678,10 @@ def test_every_item_is_documented_or_simple() -> None:
 )
 def test_beginning(text: str, expected: tuple[str, str | None] | None) -> None:
     text, (caret,), _ = marked(text)
-    found = beginning(text, 0, caret)
-    assert (found and (text[found.span.start : found.span.end], found.object)) == expected
+    actual_beginning = beginning(text, 0, caret)
+    assert (
+        actual_beginning and (text[actual_beginning.span.start : actual_beginning.span.end], actual_beginning.object)
+    ) == expected
 
 
 def test_plain() -> None:
@@ -705,18 +707,18 @@ def snapshot(texts: dict[str, str]) -> Snapshot:
 
 
 def offered(slot: str, text: str) -> list[Completions | None]:
-    """What is offered at each caret of a text that stands in place of a mark."""
+    """The completions at each caret of a text that replaces a mark."""
     name = next(name for name, each in FILES.items() if slot in each)
     new, carets, _ = marked(FILES[name].replace(slot, text))
     moment = snapshot({**FILES, name: new})
-    found = [complete(moment, path_of(name), caret) for caret in carets]
-    for caret, each in zip(carets, found, strict=True):
-        assert each is None or each.span.start <= caret <= each.span.end
-    return found
+    completion_lists = [complete(moment, path_of(name), caret) for caret in carets]
+    for caret, completions in zip(carets, completion_lists, strict=True):
+        assert completions is None or completions.span.start <= caret <= completions.span.end
+    return completion_lists
 
 
-def compare(found: Completions | None, expected: list[str]) -> None:
-    items = {item.label: item for item in found.items} if found else {}
+def compare(completions: Completions | None, expected: list[str]) -> None:
+    items = {item.label: item for item in completions.items} if completions else {}
     if expected == ["nothing"]:
         assert not items
         return

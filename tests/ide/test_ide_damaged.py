@@ -37,9 +37,9 @@ def ask(analysis: Analysis, path: str, offset: int) -> None:
     prepare(analysis, path, offset)
     renaming = rename(analysis, path, offset, "zqfresh")
     if isinstance(renaming, Renaming):
-        for each, edits in renaming.edits.items():
+        for text, edits in renaming.edits.items():
             for edit in edits:
-                within(analysis, Location(each, edit.span))
+                within(analysis, Location(text, edit.span))
 
 
 def within(analysis: Analysis, place: Location) -> None:

@@ -107,13 +107,13 @@ main.xml plugin Nobody
 
 
 def cases() -> list[tuple[str, list[str]]]:
-    found: list[tuple[str, list[str]]] = []
+    rows: list[tuple[str, list[str]]] = []
     for line in CASES.strip().splitlines():
         if line.startswith("  "):
-            found[-1][1].append(line[2:])
+            rows[-1][1].append(line[2:])
         else:
-            found.append((line, []))
-    return found
+            rows.append((line, []))
+    return rows
 
 
 @pytest.mark.parametrize(("asked", "expected"), cases())
@@ -169,9 +169,9 @@ REMARKS = """<a><!-- of b --><b/>
 def test_remarks() -> None:
     document = parse(REMARKS)
     assert document.root is not None
-    found = {element.name: remark(document, element) for element in document.root.elements}
+    texts = {element.name: remark(document, element) for element in document.root.elements}
     expected = {"b": "of b", "c": "behind c", "d": "", "e": "the level", "f": "behind f", "g": ""}
-    assert found == expected
+    assert texts == expected
 
 
 def test_pieces() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of machines, trees and systems, with the places that their parts stand for."""
+"""Pictures of machines, trees and systems, with the places of their parts in the text."""
 
 from __future__ import annotations
 
@@ -183,9 +183,9 @@ def test_half_typed(tmp_path: Path) -> None:
     for name, text in files.items():
         for end in sorted(chance.sample(range(len(text)), 6)):
             analysis = load(tmp_path, {**files, name: text[:end]})
-            for each in files:
+            for file in files:
                 for make in (machine_picture, tree_picture, ros_picture):
-                    picture = make(analysis, str(tmp_path / each))
+                    picture = make(analysis, str(tmp_path / file))
                     assert picture is None or _is_sound(analysis, picture)
 
 
@@ -200,6 +200,6 @@ def _is_sound(analysis: Analysis, picture: Picture) -> bool:
 @pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind)])
 def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind]) -> None:
     """Who draws knows the same words."""
-    found = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
-    assert found is not None
-    assert re.findall(r'"([^"]+)"', found[1]) == [kind.value for kind in kinds]
+    match = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
+    assert match is not None
+    assert re.findall(r'"([^"]+)"', match[1]) == [kind.value for kind in kinds]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formatting: what is written stands above `----`, what becomes of it below."""
+"""Formatting: the input is above `----`, the result below."""
 
 from __future__ import annotations
 
@@ -294,8 +294,8 @@ def test_files_of_others_are_left_alone() -> None:
 def test_edits_are_small() -> None:
     text = '<ascxml>\r\n  <state id="a"/>\r\n\r\n\r\n    <state  id="b" />\r\n</ascxml>\r\n'
     analysis, path = one_file(text)
-    found = [(text[edit.span.start : edit.span.end], edit.new_text) for edit in format_edits(analysis, path)]
-    assert found == [("", "  "), ("", " "), ("\r\n", ""), (" ", "")]
+    rows = [(text[edit.span.start : edit.span.end], edit.new_text) for edit in format_edits(analysis, path)]
+    assert rows == [("", "  "), ("", " "), ("\r\n", ""), (" ", "")]
 
 
 def test_layouts() -> None:

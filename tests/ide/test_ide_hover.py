@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is told about the thing under the mouse."""
+"""Hover texts."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ COMPARISON = '{"op": "OP", "left": "bt_1001_response__status", "right": NUMBER}'
 
 def hover_in(text: str, at: str, name: str = "properties.jani") -> str | None:
     analysis = analysis_of({name: text})
-    found = hover(analysis, path_of(name), text.index(at))
-    return plain(found.text) if found else None
+    actual_hover = hover(analysis, path_of(name), text.index(at))
+    return plain(actual_hover.text) if actual_hover else None
 
 
 @pytest.mark.parametrize(("number", "name"), [("1", "SUCCESS"), ("2", "FAILURE"), ("3", "RUNNING")])
@@ -112,10 +112,10 @@ def test_text(tmp_path: Path, case: str) -> None:
     source = analysis.source(path)
     assert source is not None
     at = source.text.index(before + after) + len(before)
-    found = hover(analysis, path, at)
-    assert found is not None
-    assert found.span.start <= at <= found.span.end
-    text = plain(found.text).replace("\u202f", " ")
+    actual_hover = hover(analysis, path, at)
+    assert actual_hover is not None
+    assert actual_hover.span.start <= at <= actual_hover.span.end
+    text = plain(actual_hover.text).replace("\u202f", " ")
     for part in expected.split(" | "):
         assert part.lower() in text.lower(), text
 
@@ -161,9 +161,9 @@ def test_a_machine_alone(case: str) -> None:
     marked, expected = case.split("  ", 1)
     analysis, path = one_file(MACHINE)
     before, _, after = marked.partition("|")
-    found = hover(analysis, path, MACHINE.index(before + after) + len(before))
-    assert found is not None
-    shown = [line for line in plain(found.text).replace("\u202f", " ").splitlines() if line]
+    actual_hover = hover(analysis, path, MACHINE.index(before + after) + len(before))
+    assert actual_hover is not None
+    shown = [line for line in plain(actual_hover.text).replace("\u202f", " ").splitlines() if line]
     assert shown == expected.split("|")
 
 
@@ -191,9 +191,9 @@ def test_every_place_of_some_systems() -> None:
         analysis = api.check([model.main], model.ros_paths, Settings(), model.texts).snapshot.analysis
         for path, text in model.texts.items():
             for offset in range(0, len(text) + 1, 7):
-                found = hover(analysis, path, offset)
-                if found is not None:
-                    assert 0 <= found.span.start <= offset <= found.span.end <= len(text)
+                actual_hover = hover(analysis, path, offset)
+                if actual_hover is not None:
+                    assert 0 <= actual_hover.span.start <= offset <= actual_hover.span.end <= len(text)
                     told += 1
     assert told > 100
 
@@ -208,5 +208,5 @@ def test_half_typed(tmp_path: Path) -> None:
             files = {**MODELS["corners"], name: broken}
             analysis = load(tmp_path, files)
             for offset in {cut, *(choose.randrange(len(broken) + 1) for _ in range(10))}:
-                found = hover(analysis, str(tmp_path / name), min(offset, len(broken)))
-                assert found is None or (found.span.end <= len(broken) and plain(found.text))
+                actual_hover = hover(analysis, str(tmp_path / name), min(offset, len(broken)))
+                assert actual_hover is None or (actual_hover.span.end <= len(broken) and plain(actual_hover.text))

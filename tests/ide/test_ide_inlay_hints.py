@@ -98,9 +98,9 @@ def test_what_hints_name(tmp_path: Path) -> None:
         for hint in inlay_hints(analysis, str(tmp_path / name), Span(0, 10**6)):
             for part in hint.parts:
                 if part.symbol is not None:
-                    found = explain(analysis, part.symbol)
-                    place = Path(found.location.path).name if found.location else ""
-                    told.append(f"{part.text}: {plain(found.text).splitlines()[0]} ({place})")
+                    explanation = explain(analysis, part.symbol)
+                    place = Path(explanation.location.path).name if explanation.location else ""
+                    told.append(f"{part.text}: {plain(explanation.text).splitlines()[0]} ({place})")
     assert "Pose: struct Pose (types.xml)" in told
     assert "/a/b: topic a__b : std_msgs/Int32 (a.ascxml)" in told
     assert "bt_1000: In JANI automaton BT_plugin_1000_Sequence (Sequence.ascxml)" in told
@@ -133,14 +133,14 @@ corners ask.ascxml
 
 
 def lens_cases() -> list[tuple[str, str, list[str]]]:
-    found: list[tuple[str, str, list[str]]] = []
+    rows: list[tuple[str, str, list[str]]] = []
     for line in LENSES.strip().splitlines():
         if line.startswith("  "):
-            found[-1][2].append(line[2:])
+            rows[-1][2].append(line[2:])
         else:
             model, name = line.split()
-            found.append((model, name, []))
-    return found
+            rows.append((model, name, []))
+    return rows
 
 
 @pytest.mark.parametrize(("model", "name", "expected"), lens_cases())
@@ -188,17 +188,17 @@ def test_signatures(case: str, end: str) -> None:
     head = '<ascxml name="M" version="1.0" initial="s"><state id="s"><transition target="s" cond="'
     text, (caret,), _ = marked(f"{head}{expression}{end}")
     analysis, path = one_file(text)
-    found = signature_help(analysis, path, caret)
+    signature = signature_help(analysis, path, caret)
     if not expected:
-        assert found is None
+        assert signature is None
         return
-    assert found is not None
-    label = found.label
-    if found.active is not None:
-        start, stop = found.parameters[found.active]
+    assert signature is not None
+    label = signature.label
+    if signature.active is not None:
+        start, stop = signature.parameters[signature.active]
         label = f"{label[:start]}[{label[start:stop]}]{label[stop:]}"
     assert label == expected
-    assert found.documentation
+    assert signature.documentation
 
 
 STRUCTS = {
@@ -229,11 +229,11 @@ def test_what_types_are_made_of(tmp_path: Path, case: str) -> None:
     before, _, after = piece.partition("|")
     path = str(tmp_path / name)
     at = types_at(analysis, path, STRUCTS[name].index(before + after) + len(before))
-    found = [
+    texts = [
         "; ".join(f"{item.symbol.name}: {item.detail}" for item in items)
         for items in (at, *((ask(analysis, at[0].symbol) for ask in (members_of, holders_of)) if at else ()))
     ]
-    assert found == (expected or [""])
+    assert texts == (expected or [""])
 
 
 def test_holders_of_messages(tmp_path: Path) -> None:

@@ -31,10 +31,10 @@ def test_places(main: Path) -> None:
     for path in result.files:
         text = result.source(path).text
         for offset in range(0, len(text) + 1, 7):
-            found = hover(analysis, path, offset)
-            if found is not None:
-                assert 0 <= found.span.start <= offset <= found.span.end <= len(text)
-                told.add(found.text)
+            actual_hover = hover(analysis, path, offset)
+            if actual_hover is not None:
+                assert 0 <= actual_hover.span.start <= offset <= actual_hover.span.end <= len(text)
+                told.add(actual_hover.text)
             called = signature_help(analysis, path, offset)
             assert called is None or called.label.split("(")[0].removeprefix("Math.") in FUNCTIONS
         hints = inlay_hints(analysis, path, Span(0, len(text)))
@@ -63,7 +63,7 @@ def test_every_variable_event_and_handle_is_known(main: Path) -> None:
         for word in ("<data id=", "<state id=", " target=", ' location="', ' event="', " key="):
             at = text.find(word)
             while at >= 0:
-                found = hover(result.snapshot.analysis, path, at + len(word) + 1)
-                shown = plain(found.text) if found else ""
+                actual_hover = hover(result.snapshot.analysis, path, at + len(word) + 1)
+                shown = plain(actual_hover.text) if actual_hover else ""
                 assert not any(bad in shown for bad in ("unknown", "Not defined", "Not declared")), (path, shown)
                 at = text.find(word, at + 1)

@@ -62,10 +62,10 @@ properties 1
 
 
 def outline(symbols: tuple[DocumentSymbol, ...], depth: int = 0) -> list[str]:
-    found = []
-    for each in symbols:
-        found += [f"{'  ' * depth}{each.name} {each.detail}".rstrip(), *outline(each.children, depth + 1)]
-    return found
+    texts = []
+    for symbol in symbols:
+        texts += [f"{'  ' * depth}{symbol.name} {symbol.detail}".rstrip(), *outline(symbol.children, depth + 1)]
+    return texts
 
 
 def test_laid_out_with_an_outline() -> None:
@@ -76,9 +76,13 @@ def test_laid_out_with_an_outline() -> None:
     assert '      "initial-locations": ["l"],\n' in view.text
     assert '    { "name": "b", "type": { "kind": "array", "base": "bool" } }\n' in view.text
     assert outline(view.symbols) == OUTLINE.splitlines()
-    for each in everything(view.symbols):
-        assert each.span.start <= each.name_span.start < each.name_span.end <= each.span.end
-    edge = next(each for each in everything(view.symbols) if each.name == "go" and each.children == () and each.detail)
+    for symbol in everything(view.symbols):
+        assert symbol.span.start <= symbol.name_span.start < symbol.name_span.end <= symbol.span.end
+    edge = next(
+        document_symbol
+        for document_symbol in everything(view.symbols)
+        if document_symbol.name == "go" and document_symbol.children == () and document_symbol.detail
+    )
     assert view.text[edge.name_span.start : edge.name_span.end] == "go"
     assert view.text[edge.span.start : edge.span.end].startswith('{\n          "location": "l"')
 
@@ -102,8 +106,8 @@ def test_translations() -> None:
     view = jani_view(compact)
     assert json.loads(view.text) == json.loads(compact)
     assert len(view.text.splitlines()) > 50
-    assert {each.name for each in view.symbols} >= {"variables", "automata", "properties"}
+    assert {symbol.name for symbol in view.symbols} >= {"variables", "automata", "properties"}
 
 
 def everything(symbols: tuple[DocumentSymbol, ...]) -> list[DocumentSymbol]:
-    return [each for symbol in symbols for each in (symbol, *everything(symbol.children))]
+    return [document_symbol for symbol in symbols for document_symbol in (symbol, *everything(symbol.children))]

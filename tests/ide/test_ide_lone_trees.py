@@ -54,11 +54,13 @@ def offered(text: str, mark: str = "‸") -> dict[str, str]:
 
 
 def told(text: str, piece: str) -> str:
-    """What is told at a caret `|` in a piece of a text."""
+    """The hover text at a caret `|` in a piece of a text."""
     before, _, after = piece.partition("|")
     clean = text.replace("‸", "").replace('"|"', '""')
-    found = hover(snapshot_of(tree=clean).analysis, path_of("tree.xml"), clean.index(before + after) + len(before))
-    return found.text if found else ""
+    actual_hover = hover(
+        snapshot_of(tree=clean).analysis, path_of("tree.xml"), clean.index(before + after) + len(before)
+    )
+    return actual_hover.text if actual_hover else ""
 
 
 def test_nodes_of_libraries_are_offered() -> None:

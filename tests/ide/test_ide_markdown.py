@@ -41,7 +41,7 @@ def live(text: str) -> list[str]:
 
 
 def test_the_reader_finds_them() -> None:
-    assert {each.partition(":")[0] for each in live(EVIL)} == {"html_inline", "image", "link_open"}
+    assert {token.partition(":")[0] for token in live(EVIL)} == {"html_inline", "image", "link_open"}
     assert live("<div>\n\ntext")
 
 
@@ -105,7 +105,7 @@ def hostile(text: str, suffix: str, pattern: str) -> str:
 
 
 def shown(texts: dict[str, str]) -> Iterator[str]:
-    """All that is told of files, as Markdown."""
+    """All descriptions of the contents of files, as Markdown."""
     workspace = Workspace((), Settings())
     for path, text in texts.items():
         workspace.open(path_of(path), text)
@@ -117,9 +117,9 @@ def shown(texts: dict[str, str]) -> Iterator[str]:
 def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
     analysis = snapshot.analysis
     for offset in range(0, len(text), 3):
-        found = hover(analysis, path, offset)
-        if found:
-            yield found.text
+        actual_hover = hover(analysis, path, offset)
+        if actual_hover:
+            yield actual_hover.text
         signature = signature_help(analysis, path, offset)
         if signature:
             yield signature.documentation
@@ -147,7 +147,7 @@ def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: s
 
 
 def test_analysis_of_hostile_models_is_one() -> None:
-    """The suffix is in what is told: the test above looks at something."""
+    """The suffix is in the descriptions, so that the test above is not empty."""
     texts = {path: hostile(text, "<img>", "id|target") for path, text in split_files(ROBOT).items()}
     assert analysis_of(texts)
     assert any("<img>" in text or "&lt;img>" in text for text in shown(texts))

@@ -102,16 +102,16 @@ def test_highlights(tmp_path: Path) -> None:
     path, offset = caret(tmp_path, "a.ascxml", 'location="|p.x"')
     source = analysis.source(path)
     assert source is not None
-    found = navigation.highlights(analysis, path, offset)
-    lines = [(source.lines.position(each.span.start).line + 1, each.access.name) for each in found]
+    highlights = navigation.highlights(analysis, path, offset)
+    lines = [(source.lines.position(highlight.span.start).line + 1, highlight.access.name) for highlight in highlights]
     assert lines == [(2, "WRITE"), (5, "READ"), (6, "WRITE")]
 
 
 def test_search(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     paths = analysis.files_of(str(tmp_path / "main.xml"))
-    found = {(each.symbol.kind.value, each.symbol.name, each.container) for each in search(analysis, paths, "PO")}
-    assert found == {("struct", "Pose", "")}
+    entries = {(each.symbol.kind.value, each.symbol.name, each.container) for each in search(analysis, paths, "PO")}
+    assert entries == {("struct", "Pose", "")}
     assert ("state", "s", "A") in {
         (e.symbol.kind.value, e.symbol.name, e.container) for e in search(analysis, paths, "")
     }
@@ -127,8 +127,8 @@ tree.xml ID="|Sub" t tree Sub < tree Main > machine Walk
 """
 
 
-def names(found: Iterable[calls.HierarchyCall]) -> list[str]:
-    return sorted(f"{call.item.symbol.kind.value} {call.item.symbol.name}" for call in found)
+def names(hierarchy_calls: Iterable[calls.HierarchyCall]) -> list[str]:
+    return sorted(f"{call.item.symbol.kind.value} {call.item.symbol.name}" for call in hierarchy_calls)
 
 
 @pytest.mark.parametrize("row", GRAPH.strip().splitlines())

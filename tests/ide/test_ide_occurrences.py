@@ -421,7 +421,7 @@ def test_damaged_documents(tmp_path: Path) -> None:
         for end in range(0, len(case.text), 37):
             analysis = load(tmp_path, {**{n: c.text for n, c in cases.items()}, name: case.text[:end]})
             for path in analysis.files_of(str(tmp_path / "main.xml")):
-                for each in occurrences(analysis, path, str(tmp_path / "main.xml")):
+                for occurrence in occurrences(analysis, path, str(tmp_path / "main.xml")):
                     source = analysis.source(path)
                     assert source is not None
-                    assert 0 <= each.span.start <= each.span.end <= len(source.text)
+                    assert 0 <= occurrence.span.start <= occurrence.span.end <= len(source.text)

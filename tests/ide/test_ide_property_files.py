@@ -186,7 +186,7 @@ def test_outline(robot: Robot) -> None:
 
 
 def test_workspace_symbols(robot: Robot) -> None:
-    symbols = [found.symbol for found in search(robot.analysis, [robot.path], "charges")]
+    symbols = [match.symbol for match in search(robot.analysis, [robot.path], "charges")]
     assert [(symbol.kind.value, symbol.name) for symbol in symbols] == [("property", "charges")]
 
 
@@ -228,8 +228,8 @@ def test_hover_in_jani(robot: Robot) -> None:
 def test_inlay_hints(robot: Robot) -> None:
     def hints(name: str) -> set[str]:
         text = TEXTS[name]
-        found = inlay_hints(robot.analysis, robot.path_of(name), Span(0, len(text)))
-        return {text[: hint.offset].rpartition(" ")[2] + hint.text for hint in found}
+        actual_hints = inlay_hints(robot.analysis, robot.path_of(name), Span(0, len(text)))
+        return {text[: hint.offset].rpartition(" ")[2] + hint.text for hint in actual_hints}
 
     assert hints("properties.xml") >= {
         'node="Left/pick" Left/Pick "pick"',
@@ -241,8 +241,8 @@ def test_inlay_hints(robot: Robot) -> None:
 
 
 def test_lenses(robot: Robot) -> None:
-    found = [lens for lens in lenses(robot.analysis, robot.path) if lens.symbol.kind is SymbolKind.PROPERTY]
-    titles = [counted(robot.analysis, lens.symbol, robot.path).title for lens in found]
+    actual_lenses = [lens for lens in lenses(robot.analysis, robot.path) if lens.symbol.kind is SymbolKind.PROPERTY]
+    titles = [counted(robot.analysis, lens.symbol, robot.path).title for lens in actual_lenses]
     assert titles[0] == "Whenever level < 30 holds, /charge is called by Battery within 10 s."
     assert len(titles) == 4
 

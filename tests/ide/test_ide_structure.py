@@ -208,8 +208,8 @@ def test_links() -> None:
     analysis = analysis_of({name: text for name, (text, _) in read.items()})
     names = {path_of(name): name.replace("/", "-").replace(".", "-").replace("🤖", "x") for name in read}
     for name, (_, marks) in read.items():
-        found = [(link.span.start, link.span.end, names[link.target]) for link in links(analysis, path_of(name))]
-        assert found == [(mark.start, mark.end, mark.code) for mark in marks]
+        rows = [(link.span.start, link.span.end, names[link.target]) for link in links(analysis, path_of(name))]
+        assert rows == [(mark.start, mark.end, mark.code) for mark in marks]
 
 
 def test_files_that_are_not_there() -> None:

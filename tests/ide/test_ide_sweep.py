@@ -77,7 +77,8 @@ def test_safe_fixes_of_damaged_models(seed: int) -> None:
     again = api.check([case.main], case.model.ros_paths, Settings(), {**case.texts, **fixed})
     for path in fixed:
         before, after = (
-            sum(d.severity is Severity.ERROR for d in each.diagnostics if d.path == path) for each in (result, again)
+            sum(d.severity is Severity.ERROR for d in check_result.diagnostics if d.path == path)
+            for check_result in (result, again)
         )
         assert after <= before
     assert api.fix(again) == {}

@@ -102,9 +102,9 @@ CASES = {
 def test_symbols(name: str) -> None:
     text, expected = dedent(CASES[name]).strip().split("\n----\n")
     analysis, path = one_file(text)
-    found = document_symbols(analysis, path)
-    assert "\n".join(shown(found, "")) == expected
-    check_spans(found, 0, len(text))
+    symbols = document_symbols(analysis, path)
+    assert "\n".join(shown(symbols, "")) == expected
+    check_spans(symbols, 0, len(text))
 
 
 @pytest.mark.parametrize("name", CASES)

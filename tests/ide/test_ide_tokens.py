@@ -117,8 +117,8 @@ def shown(text: str, tokens: tuple[SemanticToken, ...]) -> str:
 def test_range() -> None:
     text, _, [span] = marked('<ascxml>\n<state «id="🤖»"/>\n</ascxml>')
     analysis, path = one_file(text)
-    found = [text[token.span.start : token.span.end] for token in semantic_tokens(analysis, path, span)]
-    assert found == ["id", "🤖"]
+    texts = [text[token.span.start : token.span.end] for token in semantic_tokens(analysis, path, span)]
+    assert texts == ["id", "🤖"]
 
 
 def test_other_files_have_none() -> None:

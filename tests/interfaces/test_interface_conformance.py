@@ -15,6 +15,6 @@ from roaml.interfaces import Definition
 @pytest.mark.parametrize("file", conformance.INTERFACE_FILES, ids=lambda file: "/".join(file.parts[-3:]))
 def test_conformance_file(file: Path) -> None:
     check(file)
-    found = REGISTRY.find(file.parts[-2], file.parts[-3], file.stem)  # type: ignore[arg-type]
-    assert isinstance(found, Definition)
-    assert found.path == str(file)
+    definition = REGISTRY.find(file.parts[-2], file.parts[-3], file.stem)  # type: ignore[arg-type]
+    assert isinstance(definition, Definition)
+    assert definition.path == str(file)

@@ -22,8 +22,8 @@ def read(path: str) -> SourceFile:
 
 
 def other(search: SearchPath, package: str = "parts") -> str | None:
-    found = Registry(search, read).other_definition("msg", package, "Blob")
-    return found.path if found else None
+    definition = Registry(search, read).other_definition("msg", package, "Blob")
+    return definition.path if definition else None
 
 
 def test_once(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading models: every mistake is told where it stands, and nothing stops the reader.
+"""Reading models: every mistake is reported at its position, and the reader continues.
 
 In the examples, ⟦ ⟧ enclose what a finding is about, `'` stands for `"`, and each example is put into a small sound
 model at the place that its first word names.
@@ -59,8 +59,8 @@ MODEL = (
 def model_with(place: str, text: str) -> str:
     places = {**PLACES, place: text}
     whole = MODEL
-    while found := re.search(r"\b[A-Z]{4,}\b", whole):
-        whole = whole[: found.start()] + places[found[0].lower()] + whole[found.end() :]
+    while match := re.search(r"\b[A-Z]{4,}\b", whole):
+        whole = whole[: match.start()] + places[match[0].lower()] + whole[match.end() :]
     return whole.replace("'", '"')
 
 
@@ -382,9 +382,9 @@ def test_mistakes(code: str, place: str, example: str, message: str | None) -> N
     text, expected = marked(model_with(place, example))
     _, findings = read(text)
     # A quoted name is reported with or without its quotes.
-    found = [finding.span for finding in findings]
-    assert [text[slice(*span)].strip('"') for span in found] == [text[slice(*span)].strip('"') for span in expected]
-    for span, wanted in zip(found, expected, strict=True):
+    spans = [finding.span for finding in findings]
+    assert [text[slice(*span)].strip('"') for span in spans] == [text[slice(*span)].strip('"') for span in expected]
+    for span, wanted in zip(spans, expected, strict=True):
         assert wanted.start - 1 <= span.start <= wanted.start + 1
     if message is not None:
         assert all(message in finding.message for finding in findings)

@@ -24,12 +24,12 @@ GRAMMARS = {
 
 def reached(mains: tuple[Path, ...]) -> list[Path]:
     """The system files and all documents that they name, directly or not."""
-    found = list(dict.fromkeys(mains))
-    for path in found:
+    paths = list(dict.fromkeys(mains))
+    for path in paths:
         for element in etree.parse(str(path)).iter(etree.Element):
             named = [path.parent / str(element.attrib[name]) for name in ("src", "path") if name in element.attrib]
-            found += [file for file in named if file.suffix in (".xml", ".ascxml", ".scxml") and file not in found]
-    return sorted(found)
+            paths += [file for file in named if file.suffix in (".xml", ".ascxml", ".scxml") and file not in paths]
+    return sorted(paths)
 
 
 DOCUMENTS = reached(conformance.systems())

@@ -40,7 +40,7 @@ def pairs(grammar: Grammar) -> Iterator[tuple[str, ElementType, Any]]:
 
 
 def particles(element: Any) -> list[Any]:
-    """The named children that may stand in an element."""
+    """The named children that an element may contain."""
     content = element.type.content
     return [c for c in content.iter_elements() if c.name is not None] if hasattr(content, "iter_elements") else []
 
@@ -79,8 +79,8 @@ def compare_attribute(place: str, ours: AttributeType, theirs: Any) -> None:
     assert ours.simple.pattern == facets.get("pattern", ""), place
     assert ours.simple.non_empty is ("minLength" in facets), place
     numbers = (ours.simple.above, ours.simple.least, ours.simple.most)
-    wanted = (facets.get("minExclusive"), facets.get("minInclusive"), facets.get("maxInclusive"))
-    assert numbers == tuple(None if limit is None else float(limit) for limit in wanted), place
+    expected = (facets.get("minExclusive"), facets.get("minInclusive"), facets.get("maxInclusive"))
+    assert numbers == tuple(None if limit is None else float(limit) for limit in expected), place
     assert facets.keys() <= {"enumeration", "pattern", "minLength", "minExclusive", "minInclusive", "maxInclusive"}
 
 
@@ -114,7 +114,7 @@ def test_content(grammar: Grammar) -> None:
 
 
 def occurrence(particle: Any, name: str | None) -> Multiplicity:
-    """How often `name` may stand in a particle; None stands for elements of any name."""
+    """How often `name` may occur in a particle; `None` means elements with any name."""
     least, most = particle.min_occurs, UNBOUNDED if particle.max_occurs is None else particle.max_occurs
     if is_wildcard(particle):
         return Multiplicity(least, most) if name is None else Multiplicity(0, 0)
@@ -231,8 +231,8 @@ PATHS = [
 
 @pytest.mark.parametrize(("grammar", "path", "name"), PATHS)
 def test_element_at(grammar: Grammar, path: str, name: str | None) -> None:
-    found = grammar.element_at(path.split())
-    assert (found.name if found else None) == name
+    element_type = grammar.element_at(path.split())
+    assert (element_type.name if element_type else None) == name
 
 
 def test_find_and_parents() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of the libraries: complete, consistent, and what the schema of trees has."""
+"""The nodes of the libraries are complete and consistent, and equal those of the schema."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REGISTERED = (
     *("LoopString", "SkipUnlessUpdated", "WaitValueUpdate", "AlwaysSuccess", "AlwaysFailure", "Sleep", "Script"),
     *("ScriptCondition", "SetBlackboard", "UnsetBlackboard", "WasEntryUpdated"),
 )
-"""What BehaviorTree.CPP 4.10 registers, but `SubTree`."""
+"""The nodes that BehaviorTree.CPP 4.10 registers, except `SubTree`."""
 
 
 def test_all_registered_nodes_are_known() -> None:
@@ -47,8 +47,8 @@ def test_defaults_are_of_ports_that_are_read() -> None:
 
 
 def test_other_names_lead_to_nodes() -> None:
-    assert all(each.now in CPP.nodes for each in CPP.renamed.values())
-    assert all(not each.instead or each.instead in CPP.nodes for each in CPP.absent.values())
+    assert all(name.now in CPP.nodes for name in CPP.renamed.values())
+    assert all(not absent.instead or absent.instead in CPP.nodes for absent in CPP.absent.values())
     assert not CPP.nodes.keys() & (CPP.absent.keys() | CPP.renamed.keys())
 
 

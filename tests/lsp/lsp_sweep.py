@@ -130,16 +130,18 @@ def offered(capabilities: Json) -> tuple[tuple[Method, ...], tuple[str, ...]]:
     """
     unknown = capabilities.keys() - METHODS.keys() - NO_METHODS
     assert not unknown, f"say in {Path(__file__).name} how to ask for {sorted(unknown)}"
-    found: list[Method] = []
+    actual_methods: list[Method] = []
     resolvers: list[str] = []
     for name, methods in METHODS.items():
         options = capabilities.get(name)
         if not options and options != {}:
             continue
-        found += [method for method in methods if _has(options, method.needs)]
+        actual_methods += [method for method in methods if _has(options, method.needs)]
         for method in methods:
-            resolvers += [each for each in method.follow if "/resolve" not in each or _has(options, "resolveProvider")]
-    return tuple(found), tuple(resolvers)
+            resolvers += [
+                follower for follower in method.follow if "/resolve" not in follower or _has(options, "resolveProvider")
+            ]
+    return tuple(actual_methods), tuple(resolvers)
 
 
 def _has(options: object, path: str) -> bool:
@@ -260,8 +262,8 @@ class Sweep:
         self.asked += len(sent)
         for number, (name, _, params) in enumerate(sent):
             server.tell(name, params, first + number)
-        wanted = [is_answer(first + number) for number in range(len(sent))]
-        return [message for _, message in server.wait_for_all(*wanted)] if wanted else []
+        expected = [is_answer(first + number) for number in range(len(sent))]
+        return [message for _, message in server.wait_for_all(*expected)] if expected else []
 
     def _wrong(self, name: str, path: str, answer: Json) -> Iterator[str]:
         error = answer.get("error")
@@ -312,7 +314,7 @@ class Sweep:
             position = types.Position(place["line"], place["character"])
             if self._convert.position(source, self._convert.offset(source, position)) != position:
                 yield f"{place} is not in {path}"
-        start, end = ((value[each]["line"], value[each]["character"]) for each in ("start", "end"))
+        start, end = ((value[side]["line"], value[side]["character"]) for side in ("start", "end"))
         if start > end:
             yield f"{value} ends before it begins"
 
@@ -332,8 +334,8 @@ class Sweep:
         return self._sources.get(path)
 
     def _position(self, source: SourceFile, offset: int) -> Json:
-        found = self._convert.position(source, offset)
-        return {"line": found.line, "character": found.character}
+        position = self._convert.position(source, offset)
+        return {"line": position.line, "character": position.character}
 
     # ------------------------------------------------------------- formatting
 
@@ -342,7 +344,7 @@ class Sweep:
         (answer,) = self._answers(server, [("textDocument/formatting", path, params)])
         edits = []
         for edit in answer.get("result") or ():
-            start, end = (types.Position(**edit["range"][each]) for each in ("start", "end"))
+            start, end = (types.Position(**edit["range"][side]) for side in ("start", "end"))
             edits.append(TextEdit(self._convert.span(source, types.Range(start, end)), edit["newText"]))
         return apply_edits(source.text, edits)
 

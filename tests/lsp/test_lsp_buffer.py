@@ -111,13 +111,13 @@ def test_edits(encoding: types.PositionEncodingKind, text: str, made: list[Edit]
     """Many edits in one change, or each in a change of its own."""
     client, session = ClientText(encoding, text), opened(encoding, text)
     changes: list[types.TextDocumentContentChangeEvent] = []
-    for each in made:
+    for edit in made:
         places = client.boundaries()
-        start, end = (client.position(places[at % len(places)]) for at in (each.start, each.end))
-        end = types.Position(end.line, end.character + each.beyond)
+        start, end = (client.position(places[at % len(places)]) for at in (edit.start, edit.end))
+        end = types.Position(end.line, end.character + edit.beyond)
         range_ = types.Range(start, end)
-        client.edit(range_, each.text)
-        changes.append(types.TextDocumentContentChangePartial(range_, each.text))
+        client.edit(range_, edit.text)
+        changes.append(types.TextDocumentContentChangePartial(range_, edit.text))
     for change in [changes] if together else [[each] for each in changes]:
         session.change("untitled:1", change, 2)
     assert session.text("untitled:1") == client.text
@@ -184,9 +184,9 @@ async def test_what_is_checked_is_what_the_client_has(tmp_path: Path, encoding: 
             client.edit(path, types.TextDocumentContentChangePartial(places, new), version=version)
 
         put('<assign location="count"', '<assign location="coutn"', 2)
-        (found,) = await client.until_codes(path, "undeclared-variable")
+        (diagnostic,) = await client.until_codes(path, "undeclared-variable")
         at = len(mirror.encoded(mirror.text[: mirror.text.index("coutn")]))
-        assert found.range == types.Range(mirror.position(at), mirror.position(at + 5))
+        assert diagnostic.range == types.Range(mirror.position(at), mirror.position(at + 5))
         zero = types.Range(types.Position(0, 0), types.Position(0, 0))
         mirror.edit(zero, "\ufeff")
         client.edit(path, types.TextDocumentContentChangePartial(zero, "\ufeff"), version=3)

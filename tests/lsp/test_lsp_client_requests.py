@@ -139,7 +139,7 @@ async def test_migrate(tmp_path: Path) -> None:
     changes = found["edit"]["documentChanges"]
     old, new = (tmp_path / "clock.scxml").as_uri(), (tmp_path / "clock.ascxml").as_uri()
     assert {"kind": "rename", "oldUri": old, "newUri": new} in changes
-    texts = {each["textDocument"]["uri"]: each["edits"][0]["newText"] for each in changes if "edits" in each}
+    texts = {change["textDocument"]["uri"]: change["edits"][0]["newText"] for change in changes if "edits" in change}
     assert texts[(tmp_path / "main.xml").as_uri()].startswith("<roaml>")
     assert texts[old].startswith("<ascxml")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["clock.scxml", "main.xml"]

@@ -85,8 +85,8 @@ async def test_a_client_that_does_not_resolve_gets_the_edits(tmp_path: Path) -> 
     path = tmp_path / "a.ascxml"
     async with connect(tmp_path) as client:
         client.open(path, WARNED)
-        found = await ask(client, path, WARNED, 'target="|b"')
-        added = next(action for action in found if action.title == "Add the state `b`")
+        actions = await ask(client, path, WARNED, 'target="|b"')
+        added = next(action for action in actions if action.title == "Add the state `b`")
         assert added.kind == "quickfix"
         assert added.is_preferred
         assert [d.code for d in added.diagnostics or ()] == ["undefined-state"]
@@ -98,17 +98,17 @@ async def test_edits_are_made_when_an_action_is_resolved(tmp_path: Path) -> None
     path = tmp_path / "a.ascxml"
     async with connect(tmp_path, capabilities=LAZY) as client:
         client.open(path, WARNED)
-        found = await ask(client, path, WARNED, "<l|og", "quickfix")
-        assert [action.title for action in found] == ["Remove `<log>`", "Fix all `ignored-element` in this file"]
-        assert all(action.edit is None and action.data is not None for action in found)
-        resolved = await client.code_action_resolve_async(found[1])
+        actions = await ask(client, path, WARNED, "<l|og", "quickfix")
+        assert [action.title for action in actions] == ["Remove `<log>`", "Fix all `ignored-element` in this file"]
+        assert all(action.edit is None and action.data is not None for action in actions)
+        resolved = await client.code_action_resolve_async(actions[1])
         assert "<log" not in changed(resolved, path, WARNED)
         later = WARNED.replace('<log expr="2" />', '<log expr="23" />')
         client.replace(path, later)
-        one = changed(await client.code_action_resolve_async(found[0]), path, later)
+        one = changed(await client.code_action_resolve_async(actions[0]), path, later)
         assert one == later.replace('            <log expr="1" />\n', "")
         client.replace(path, WARNED.replace("<log", "<asign"), 3)
-        gone = await client.code_action_resolve_async(found[0])
+        gone = await client.code_action_resolve_async(actions[0])
         assert gone.edit is None
 
 
@@ -134,9 +134,9 @@ async def test_a_new_plugin(tmp_path: Path) -> None:
     title = "Create the plugin `GoHome` in `go_home.ascxml`"
     async with connect(tmp_path, capabilities=LAZY) as client:
         client.open(tree, language="xml")
-        found = await ask(client, tree, text, "<Go|Home", "refactor.extract")
-        assert [action.title for action in found] == [title]
-        edit = (await client.code_action_resolve_async(found[0])).edit
+        actions = await ask(client, tree, text, "<Go|Home", "refactor.extract")
+        assert [action.title for action in actions] == [title]
+        edit = (await client.code_action_resolve_async(actions[0])).edit
         assert edit is not None
         create, content, listing = edit.document_changes or ()
         new = tmp_path / "go_home.ascxml"
@@ -159,8 +159,8 @@ async def test_files_are_made_for_clients_that_can(tmp_path: Path) -> None:
     tree = tmp_path / "tree.xml"
     async with connect(tmp_path) as client:
         client.open(tree, language="xml")
-        found = await ask(client, tree, tree.read_text(encoding="utf-8"), "<Go|Home")
-        assert not [action.title for action in found if action.title.startswith("Create")]
+        actions = await ask(client, tree, tree.read_text(encoding="utf-8"), "<Go|Home")
+        assert not [action.title for action in actions if action.title.startswith("Create")]
 
 
 async def test_an_action_of_nobody(tmp_path: Path) -> None:

@@ -51,8 +51,8 @@ async def items(
 
 async def test_with_snippets(tmp_path: Path) -> None:
     text = TEXT.replace("<ros_topic_p/>", "<ros_topic_p")
-    found = await items(tmp_path, RICH, text, AT)
-    item = found["ros_topic_publish pub"]
+    completion_items = await items(tmp_path, RICH, text, AT)
+    item = completion_items["ros_topic_publish pub"]
     assert item.insert_text_format is types.InsertTextFormat.Snippet
     assert isinstance(item.text_edit, types.TextEdit)
     assert item.text_edit.range == types.Range(types.Position(3, 28), AT)
@@ -62,13 +62,13 @@ async def test_with_snippets(tmp_path: Path) -> None:
     assert isinstance(item.documentation, types.MarkupContent)
     assert item.documentation.kind is types.MarkupKind.Markdown
     assert "std_msgs/Int32" in item.documentation.value
-    assert next(iter(found)) == "ros_topic_publish pub"
+    assert next(iter(completion_items)) == "ros_topic_publish pub"
 
 
 async def test_without_snippets(tmp_path: Path) -> None:
     text = TEXT.replace("<ros_topic_p/>", "<ros_topic_p")
-    found = await items(tmp_path, PULLS, text, AT)
-    item = found["ros_topic_publish pub"]
+    completion_items = await items(tmp_path, PULLS, text, AT)
+    item = completion_items["ros_topic_publish pub"]
     assert item.insert_text_format in (None, types.InsertTextFormat.PlainText)
     assert isinstance(item.text_edit, types.TextEdit)
     assert '<field name="data" expr="0"/>' in item.text_edit.new_text
@@ -80,8 +80,8 @@ async def test_without_snippets(tmp_path: Path) -> None:
 
 
 async def test_the_rest_of_the_tag_stays(tmp_path: Path) -> None:
-    found = await items(tmp_path, RICH, TEXT, AT)
-    edit = found["ros_topic_publish"].text_edit
+    completion_items = await items(tmp_path, RICH, TEXT, AT)
+    edit = completion_items["ros_topic_publish"].text_edit
     assert isinstance(edit, types.TextEdit)
     assert edit.new_text == "ros_topic_publish"
 

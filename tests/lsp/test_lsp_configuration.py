@@ -19,9 +19,9 @@ async def test_mistakes_are_diagnostics_of_the_file(tmp_path: Path, name: str) -
     header = "[tool.as2fm]\n" if name == "pyproject.toml" else "\n"
     configuration.write_text(f'{header}ros-path = ["msgs"]\ningore = []\n')
     async with connect(tmp_path) as client:
-        found = await client.until_codes(configuration, "missing-folder", "invalid-setting")
-        assert [each.range.start.line for each in found] == [1, 2]
-        (fix,) = await client.fixes(configuration, found[1].range)
+        diagnostics = await client.until_codes(configuration, "missing-folder", "invalid-setting")
+        assert [diagnostic.range.start.line for diagnostic in diagnostics] == [1, 2]
+        (fix,) = await client.fixes(configuration, diagnostics[1].range)
         assert fix.title == "Change to `ignore`"
         # As typed, before it is saved.
         client.open(configuration, language="toml")
@@ -79,5 +79,5 @@ async def test_errors_in_settings_of_the_editor_are_reported(tmp_path: Path) -> 
     async with connect(tmp_path, options={"settings": {"ignore": ["no-such-rule"]}}) as client:
         client.open(tmp_path / "clock.ascxml")
         await client.until_codes(tmp_path / "clock.ascxml", "undeclared-variable")
-        told = [each.message for each in client.messages]
+        told = [message.message for message in client.messages]
         assert told == ["In the editor's settings: there is no rule `no-such-rule`."]

@@ -20,8 +20,8 @@ SHOWS = types.ClientCapabilities(
 
 async def lenses(client: Client, path: Path) -> list[types.Command]:
     params = types.CodeLensParams(types.TextDocumentIdentifier(path.as_uri()))
-    found = await client.text_document_code_lens_async(params) or ()
-    return [lens.command for lens in found if lens.command is not None]
+    code_lenses = await client.text_document_code_lens_async(params) or ()
+    return [lens.command for lens in code_lenses if lens.command is not None]
 
 
 async def run(client: Client, command: str, *arguments: Any) -> Any:
@@ -67,7 +67,7 @@ async def test_the_commands_themselves_lead_there(tmp_path: Path, command: str) 
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     async with connect(tmp_path, capabilities=SHOWS) as client:
         await run(client, command, (tmp_path / "main.xml").as_uri())
-        assert [each.uri for each in client.shown_documents] == [(tmp_path / "clock.ascxml").as_uri()]
+        assert [document.uri for document in client.shown_documents] == [(tmp_path / "clock.ascxml").as_uri()]
     async with connect(tmp_path) as client:  # a client that cannot show documents is not asked to
         await run(client, command, (tmp_path / "main.xml").as_uri())
         assert client.shown_documents == []
@@ -80,6 +80,6 @@ async def test_several_systems_are_distinguished(tmp_path: Path) -> None:
     (tmp_path / "other.xml").write_text((tmp_path / "main.xml").read_text().replace("clock.ascxml", "wrong.ascxml"))
     (tmp_path / "wrong.ascxml").write_text(clock.WRONG_CLOCK)
     async with connect(tmp_path) as client:
-        found = await lenses(client, tmp_path / "properties.jani")
-        assert {lens.title for lens in found} == {"Verify in main.xml", "1 error in other.xml: cannot be verified"}
+        commands = await lenses(client, tmp_path / "properties.jani")
+        assert {lens.title for lens in commands} == {"Verify in main.xml", "1 error in other.xml: cannot be verified"}
         assert await run(client, COMMAND, 1) is None

@@ -35,8 +35,8 @@ def document(path: Path) -> types.TextDocumentIdentifier:
 
 
 async def hints(client: Client, path: Path, range_: types.Range = WHOLE) -> list[types.InlayHint]:
-    found = await client.text_document_inlay_hint_async(types.InlayHintParams(document(path), range_))
-    return list(found or ())
+    inlay_hints = await client.text_document_inlay_hint_async(types.InlayHintParams(document(path), range_))
+    return list(inlay_hints or ())
 
 
 def label(hint: types.InlayHint) -> str:
@@ -64,10 +64,10 @@ async def test_hints_are_explained_on_demand(tmp_path: Path) -> None:
         resolve_support=types.ClientInlayHintResolveOptions(["label.tooltip", "label.location"])
     )
     async with connect(tmp_path, capabilities=capabilities(inlay_hint=asks)) as client:
-        found = await hints(client, tmp_path / "a.ascxml")
-        assert [label(each) for each in found] == [" : Pose", "(to : Pose)", " → /a/b"]
-        assert [each.kind for each in found] == [types.InlayHintKind.Type, types.InlayHintKind.Type, None]
-        resolved = await client.inlay_hint_resolve_async(found[0])
+        inlay_hints = await hints(client, tmp_path / "a.ascxml")
+        assert [label(hint) for hint in inlay_hints] == [" : Pose", "(to : Pose)", " → /a/b"]
+        assert [hint.kind for hint in inlay_hints] == [types.InlayHintKind.Type, types.InlayHintKind.Type, None]
+        resolved = await client.inlay_hint_resolve_async(inlay_hints[0])
         assert not isinstance(resolved.label, str)
         part = resolved.label[1]
         assert isinstance(part.tooltip, types.MarkupContent)
@@ -75,15 +75,15 @@ async def test_hints_are_explained_on_demand(tmp_path: Path) -> None:
         assert part.location is not None
         assert part.location.uri.endswith("types.xml")
         line = types.Range(types.Position(5, 0), types.Position(5, 80))
-        assert [label(each) for each in await hints(client, tmp_path / "a.ascxml", line)] == ["(to : Pose)"]
+        assert [label(hint) for hint in await hints(client, tmp_path / "a.ascxml", line)] == ["(to : Pose)"]
 
 
 async def test_a_client_that_does_not_ask_again_gets_plain_hints(tmp_path: Path) -> None:
     load(tmp_path, split_files(ROBOT))
     async with connect(tmp_path) as client:
-        found = await hints(client, tmp_path / "tree.xml")
-        assert [each.label for each in found] == [" bt_1000", " bt_1001", " bt_1002"]
-        assert all(each.data is None for each in found)
+        inlay_hints = await hints(client, tmp_path / "tree.xml")
+        assert [hint.label for hint in inlay_hints] == [" bt_1000", " bt_1001", " bt_1002"]
+        assert all(hint.data is None for hint in inlay_hints)
 
 
 async def test_settings_say_which_are_shown(tmp_path: Path) -> None:
@@ -91,9 +91,9 @@ async def test_settings_say_which_are_shown(tmp_path: Path) -> None:
     settings: dict[str, object] = {"inlayHints": {"types": False, "ports": True}, "codeLens": False}
     async with connect(tmp_path, settings=settings) as client:
         # The server asks for the settings once it is initialised, and goes on meanwhile.
-        while [label(each) for each in await hints(client, tmp_path / "a.ascxml")] != ["(to : Pose)", " → /a/b"]:
+        while [label(hint) for hint in await hints(client, tmp_path / "a.ascxml")] != ["(to : Pose)", " → /a/b"]:
             continue
-        assert " : int32" in [each.label for each in await hints(client, tmp_path / "tree.xml")]
+        assert " : int32" in [hint.label for hint in await hints(client, tmp_path / "tree.xml")]
         lenses = types.CodeLensParams(document(tmp_path / "a.ascxml"))
         assert not await client.text_document_code_lens_async(lenses)
         params = types.DidChangeConfigurationParams({"as2fm": {"inlayHints": False}})
@@ -109,10 +109,10 @@ async def test_lenses_say_how_much_is_used(tmp_path: Path) -> None:
     plugin = tmp_path / "plugin.ascxml"
     for command in ("", "as2fm.showReferences"):
         async with connect(tmp_path, options={"showReferences": command}) as client:
-            found = await client.text_document_code_lens_async(types.CodeLensParams(document(plugin)))
-            assert found
-            assert all(each.command is None for each in found)
-            resolved = await client.code_lens_resolve_async(found[0])
+            lenses = await client.text_document_code_lens_async(types.CodeLensParams(document(plugin)))
+            assert lenses
+            assert all(each.command is None for each in lenses)
+            resolved = await client.code_lens_resolve_async(lenses[0])
             assert resolved.command is not None
             assert (resolved.command.title, resolved.command.command) == ("2 uses in trees", command)
             arguments = resolved.command.arguments
@@ -121,7 +121,7 @@ async def test_lenses_say_how_much_is_used(tmp_path: Path) -> None:
                 assert arguments[0] == plugin.as_uri()
                 assert len(arguments) == 3
             main = await client.text_document_code_lens_async(types.CodeLensParams(document(tmp_path / "main.xml")))
-            assert [each.command.title for each in main or () if each.command] == ["Translate to JANI", "Verify all"]
+            assert [lens.command.title for lens in main or () if lens.command] == ["Translate to JANI", "Verify all"]
 
 
 async def test_the_client_is_told_when_other_files_change_them(tmp_path: Path) -> None:
@@ -153,11 +153,11 @@ async def test_signatures(tmp_path: Path) -> None:
     for further, labels in (({}, ["a", "b"]), ({"signature_help": asks}, [(9, 10), (12, 13)])):
         async with connect(tmp_path, capabilities=capabilities(**further)) as client:
             client.open(machine, text)
-            found = await client.text_document_signature_help_async(types.SignatureHelpParams(*at))
-            assert found is not None
-            (signature,) = found.signatures
-            assert (signature.label, found.active_parameter) == ("Math.max(a, b) : int or float", 1)
-            assert [each.label for each in signature.parameters or ()] == labels
+            signature_help = await client.text_document_signature_help_async(types.SignatureHelpParams(*at))
+            assert signature_help is not None
+            (signature,) = signature_help.signatures
+            assert (signature.label, signature_help.active_parameter) == ("Math.max(a, b) : int or float", 1)
+            assert [parameter.label for parameter in signature.parameters or ()] == labels
 
 
 async def test_hover_in_the_form_that_the_client_shows(tmp_path: Path) -> None:
@@ -168,10 +168,10 @@ async def test_hover_in_the_form_that_the_client_shows(tmp_path: Path) -> None:
     for formats in (MARKDOWN, [types.MarkupKind.PlainText], None):
         asks = types.HoverClientCapabilities(content_format=formats)
         async with connect(tmp_path, capabilities=capabilities(hover=asks)) as client:
-            found = await client.text_document_hover_async(types.HoverParams(*at))
-            assert found is not None
-            assert isinstance(found.contents, types.MarkupContent)
-            shown.append((found.contents.kind, found.contents.value))
+            hover = await client.text_document_hover_async(types.HoverParams(*at))
+            assert hover is not None
+            assert isinstance(hover.contents, types.MarkupContent)
+            shown.append((hover.contents.kind, hover.contents.value))
     assert shown[0][0] == types.MarkupKind.Markdown
     assert shown[0][1].startswith("```\nevent go(to : Pose)\n```\n\n**Sent by** `A`")
     assert shown[1] == shown[2]
@@ -186,13 +186,13 @@ async def test_what_types_are_made_of(tmp_path: Path) -> None:
     at = place(machine, machine.read_text(encoding="utf-8"), "geometry_msgs/|Twist")
     async with connect(tmp_path) as client:
         twist = await client.text_document_prepare_type_hierarchy_async(types.TypeHierarchyPrepareParams(*at))
-        assert [each.name for each in twist or ()] == ["geometry_msgs/Twist"]
+        assert [item.name for item in twist or ()] == ["geometry_msgs/Twist"]
         assert twist
         parts = await client.type_hierarchy_subtypes_async(types.TypeHierarchySubtypesParams(twist[0]))
-        assert [(each.name, each.detail) for each in parts or ()] == [("geometry_msgs/Vector3", "linear, angular")]
+        assert [(part.name, part.detail) for part in parts or ()] == [("geometry_msgs/Vector3", "linear, angular")]
         assert parts
         holders = await client.type_hierarchy_supertypes_async(types.TypeHierarchySupertypesParams(parts[0]))
-        assert [each.name for each in holders or ()] == ["geometry_msgs/Twist"]
+        assert [holder.name for holder in holders or ()] == ["geometry_msgs/Twist"]
         tree = tmp_path / "tree.xml"
         at = place(tree, tree.read_text(encoding="utf-8"), "<S|equence>")
         found = await client.text_document_definition_async(types.DefinitionParams(*at))

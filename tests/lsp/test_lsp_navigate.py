@@ -32,16 +32,19 @@ async def ask(client: Client, machine: Path, text: str) -> None:
     assert lines(await client.text_document_declaration_async(types.DeclarationParams(*at))) == [("a.ascxml", 6)]
     assert lines(await client.text_document_implementation_async(types.ImplementationParams(*at))) == [("a.ascxml", 7)]
     context = types.ReferenceContext(include_declaration=False)
-    found = await client.text_document_references_async(types.ReferenceParams(context, *at))
-    assert lines(found) == [("a.ascxml", 7), ("properties.jani", 1), ("properties.jani", 2)]
+    locations = await client.text_document_references_async(types.ReferenceParams(context, *at))
+    assert lines(locations) == [("a.ascxml", 7), ("properties.jani", 1), ("properties.jani", 2)]
     shown = await client.text_document_document_highlight_async(types.DocumentHighlightParams(*at))
-    assert [each.kind for each in shown or ()] == [types.DocumentHighlightKind.Write, types.DocumentHighlightKind.Read]
+    assert [highlight.kind for highlight in shown or ()] == [
+        types.DocumentHighlightKind.Write,
+        types.DocumentHighlightKind.Read,
+    ]
     typed = place(machine, text, "_msg.da|ta")
     (field,) = lines(await client.text_document_definition_async(types.DefinitionParams(*typed)))
     assert field[0] == "Int32.msg"
     typed = place(machine, text, 'name="in|put"')
-    found = await client.text_document_type_definition_async(types.TypeDefinitionParams(*typed))
-    assert lines(found) == [("Int32.msg", 1)]
+    locations = await client.text_document_type_definition_async(types.TypeDefinitionParams(*typed))
+    assert lines(locations) == [("Int32.msg", 1)]
 
 
 async def test_navigation(tmp_path: Path) -> None:
@@ -52,7 +55,7 @@ async def test_navigation(tmp_path: Path) -> None:
         client.open(machine, text)
         await ask(client, machine, text)
         symbols = await client.workspace_symbol_async(types.WorkspaceSymbolParams("walk"))
-        assert [(each.name, each.kind) for each in symbols or ()] == [("Walk", types.SymbolKind.Class)]
+        assert [(symbol.name, symbol.kind) for symbol in symbols or ()] == [("Walk", types.SymbolKind.Class)]
 
 
 async def test_calls(tmp_path: Path) -> None:
@@ -74,9 +77,9 @@ async def test_hover(tmp_path: Path) -> None:
     clock.write(tmp_path)
     document = types.TextDocumentIdentifier((tmp_path / "clock.ascxml").as_uri())
     async with connect(tmp_path) as client:
-        found = await client.text_document_hover_async(types.HoverParams(document, types.Position(2, 19)))
-        assert found is not None
-        assert isinstance(found.contents, types.MarkupContent)
-        assert "count : uint8" in found.contents.value
-        assert found.range == types.Range(types.Position(2, 18), types.Position(2, 23))
+        hover = await client.text_document_hover_async(types.HoverParams(document, types.Position(2, 19)))
+        assert hover is not None
+        assert isinstance(hover.contents, types.MarkupContent)
+        assert "count : uint8" in hover.contents.value
+        assert hover.range == types.Range(types.Position(2, 18), types.Position(2, 23))
         assert await client.text_document_hover_async(types.HoverParams(document, types.Position(1, 0))) is None

@@ -28,7 +28,8 @@ async def test_rename(tmp_path: Path) -> None:
         edit = await client.text_document_rename_async(types.RenameParams(*at, "went"))
         assert edit is not None
         changed = {
-            uri.rpartition("/")[2]: [each.new_text for each in edits] for uri, edits in (edit.changes or {}).items()
+            uri.rpartition("/")[2]: [text_edit.new_text for text_edit in edits]
+            for uri, edits in (edit.changes or {}).items()
         }
         assert changed == {"a.ascxml": ["went"] * 2, "properties.jani": ["went"] * 2}
 

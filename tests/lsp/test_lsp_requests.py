@@ -81,7 +81,7 @@ async def test_cancelled_when_it_is_answered() -> None:
 
 @pytest.mark.parametrize(("again", "expected"), [([TOKENS], MODIFIED), (["textDocument/hover"], None), (None, None)])
 async def test_a_text_that_is_about_to_change(again: list[str] | None, expected: int | None) -> None:
-    """Only who says that it asks again is told to."""
+    """Only clients that support it are asked to repeat a request."""
     support = {"cancel": True, "retryOnContentModified": again}
     general = {} if again is None else {"general": {"staleRequestSupport": support}}
     found = await answers(
@@ -183,7 +183,9 @@ def titles(client: Client) -> list[str]:
 def token_of(client: Client, title: str) -> str | int | None:
     """The token of the work that is shown under a title."""
     for token, reports in client.progress_reports.items():
-        if any(isinstance(each, types.WorkDoneProgressBegin) and each.title.startswith(title) for each in reports):
+        if any(
+            isinstance(report, types.WorkDoneProgressBegin) and report.title.startswith(title) for report in reports
+        ):
             return token
     return None
 
@@ -214,7 +216,7 @@ async def test_a_long_check_is_shown(tmp_path: Path) -> None:
         await client.until(lambda: any(map(is_over, client.progress_reports.values())))
         assert titles(client) == ["Checking models"]
         (reports,) = client.progress_reports.values()
-    shares = [each.percentage for each in reports[1:-1]]
+    shares = [report.percentage for report in reports[1:-1]]
     assert shares == sorted(set(shares))
     assert 0 < shares[0] < shares[-1] <= 100
 
@@ -245,10 +247,10 @@ async def test_position_encodings(tmp_path: Path, encoding: str) -> None:
     general = types.GeneralClientCapabilities(position_encodings=[ours])
     async with connect(tmp_path, capabilities=types.ClientCapabilities(general=general)) as client:
         client.open(path, text)
-        (found,) = await client.until_codes(path, "undeclared-variable")
+        (diagnostic,) = await client.until_codes(path, "undeclared-variable")
         before = len("            <!--  -->") + UNITS[encoding] + len('<assign location="')
-        assert found.range == types.Range(types.Position(8, before), types.Position(8, before + 5))
-        client.edit(path, types.TextDocumentContentChangePartial(found.range, "count"))
+        assert diagnostic.range == types.Range(types.Position(8, before), types.Position(8, before + 5))
+        client.edit(path, types.TextDocumentContentChangePartial(diagnostic.range, "count"))
         await client.until_codes(path)
 
 
@@ -286,7 +288,7 @@ async def test_settings_change_while_it_runs(tmp_path: Path) -> None:
 
 
 def _severities(client: Client, path: Path) -> list[types.DiagnosticSeverity | None]:
-    return [each.severity for each in client.published[path.as_uri()].diagnostics]
+    return [diagnostic.severity for diagnostic in client.published[path.as_uri()].diagnostics]
 
 
 async def test_settings_that_come_with_the_first_message(tmp_path: Path) -> None:

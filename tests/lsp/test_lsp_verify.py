@@ -17,7 +17,8 @@ from pygls.exceptions import JsonRpcRequestCancelled
 
 import clock
 from as2fm_lsp.cli.main import run
-from as2fm_lsp.handlers.verify import COMMAND, COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import VERIFY as COMMAND
 from stuck_models import hospital
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "assembly_robot"
@@ -58,14 +59,14 @@ async def why(client: Client, main: Path, name: str) -> Any:
 
 async def lenses(client: Client, path: Path) -> list[str]:
     params = types.CodeLensParams(types.TextDocumentIdentifier(path.as_uri()))
-    found = await client.text_document_code_lens_async(params) or ()
-    return [lens.command.title for lens in found if lens.command is not None]
+    code_lenses = await client.text_document_code_lens_async(params) or ()
+    return [lens.command.title for lens in code_lenses if lens.command is not None]
 
 
 async def hints(client: Client, path: Path) -> list[tuple[str, types.Position]]:
     params = types.InlayHintParams(types.TextDocumentIdentifier(path.as_uri()), WHOLE)
-    found = await client.text_document_inlay_hint_async(params) or ()
-    return [(str(hint.label), hint.position) for hint in found if hint.tooltip is not None]
+    inlay_hints = await client.text_document_inlay_hint_async(params) or ()
+    return [(str(hint.label), hint.position) for hint in inlay_hints if hint.tooltip is not None]
 
 
 async def test_results_are_those_of_the_command_line(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -248,17 +249,17 @@ async def until_estimate(client: Client, working: asyncio.Future[object]) -> tup
     progress, too."""
     working.add_done_callback(lambda _: client.news.set())
     await client.until(lambda: working.done() or any(estimates(client)))
-    for found in estimates(client):
-        return found
+    for estimate in estimates(client):
+        return estimate
     raise AssertionError(f"no estimate was told before the end: {await working}")
 
 
 def estimates(client: Client) -> Iterator[tuple[str | int, str]]:
-    """The estimates that were told, each with the token of its progress."""
+    """The published estimates, each with the token of its progress."""
     for token, reports in client.progress_reports.items():
-        for each in reports:
-            if isinstance(each, types.WorkDoneProgressReport) and "traces" in (each.message or ""):
-                yield token, str(each.message)
+        for report in reports:
+            if isinstance(report, types.WorkDoneProgressReport) and "traces" in (report.message or ""):
+                yield token, str(report.message)
 
 
 async def test_the_server_answers_during_verification_and_can_cancel_it(robot: Path) -> None:

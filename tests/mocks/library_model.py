@@ -235,8 +235,8 @@ class Parallel(Node):
 
     def tick(self) -> str:
         count = len(self.children)
-        wanted, allowed = self.number("success_count", -1), self.number("failure_count", 1)
-        successes = max(count + wanted + 1, 0) if wanted < 0 else wanted
+        required, allowed = self.number("success_count", -1), self.number("failure_count", 1)
+        successes = max(count + required + 1, 0) if required < 0 else required
         failures = max(count + allowed + 1, 0) if allowed < 0 else allowed
         if successes > count or failures > count:
             raise LibraryError
@@ -252,7 +252,7 @@ class Parallel(Node):
             good = list(self.done.values()).count(S)
             bad = list(self.done.values()).count(F)
             result = None
-            if good >= successes or (wanted < 0 and good + skipped >= successes):
+            if good >= successes or (required < 0 and good + skipped >= successes):
                 result = S
             elif count - bad < successes or bad == failures:
                 result = F

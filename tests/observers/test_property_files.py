@@ -86,7 +86,7 @@ def test_incomplete_files_cause_no_internal_error(start: int) -> None:
 )
 def test_an_inserted_error_is_reported(old: str, new: str, code: str) -> None:
     assert old in PROPERTIES
-    assert code in {each for each, _ in checked(PROPERTIES.replace(old, new, 1))}
+    assert code in {reported for reported, _ in checked(PROPERTIES.replace(old, new, 1))}
 
 
 def test_names_are_unique_over_all_files() -> None:

@@ -27,7 +27,7 @@ def pinned() -> dict[str, tuple[Requirement, list[str]]]:
         if line and not line.startswith("#"):
             written, *hashes = line.split("--hash=")
             requirement = Requirement(written.strip())
-            found[canonicalize_name(requirement.name)] = (requirement, [each.strip() for each in hashes])
+            found[canonicalize_name(requirement.name)] = (requirement, [digest.strip() for digest in hashes])
     return found
 
 
@@ -36,17 +36,17 @@ def test_all_are_pinned_with_hashes() -> None:
     for name, (requirement, hashes) in pinned().items():
         assert re.fullmatch(r"==[\w.]+", str(requirement.specifier)), name
         assert hashes, name
-        assert all(re.fullmatch(r"sha256:[0-9a-f]{64}", each) for each in hashes), name
+        assert all(re.fullmatch(r"sha256:[0-9a-f]{64}", digest) for digest in hashes), name
 
 
 def test_they_are_those_of_the_server() -> None:
     """`npm run requirements` renews the file when this fails."""
-    found = pinned()
+    pinned_requirements = pinned()
     for written in PROJECT["project"]["dependencies"]:
-        wanted = Requirement(written)
-        requirement, _ = found[canonicalize_name(wanted.name)]
+        dependency = Requirement(written)
+        requirement, _ = pinned_requirements[canonicalize_name(dependency.name)]
         (version,) = requirement.specifier
-        assert wanted.specifier.contains(version.version), written
+        assert dependency.specifier.contains(version.version), written
 
 
 def test_no_index_is_named() -> None:

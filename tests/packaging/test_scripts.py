@@ -34,9 +34,9 @@ def tools(tmp_path: Path) -> Path:
     folder = tmp_path / "bin"
     folder.mkdir()
     for name in TOOLS:
-        found = shutil.which(name)
-        assert found is not None
-        (folder / name).symlink_to(found)
+        tool = shutil.which(name)
+        assert tool is not None
+        (folder / name).symlink_to(tool)
     return folder
 
 

@@ -63,7 +63,7 @@ def hasty_compiler(path: Path) -> Path:
 def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", str(hasty_compiler(tmp_path / "cc")))
     installed = build(tmp_path, c_code)
-    assert len(kernels(installed)) == len(PLAIN) + 3 * kernel.compiled()
+    assert len(kernels(installed)) == len(PLAIN) + len(MODULES) * kernel.compiled()
     for schema in (ROOT / "schemas").iterdir():
         assert (installed / "roaml/schemas" / schema.name).read_bytes() == schema.read_bytes()
     example = installed / "as2fm_lsp/templates/delivery_robot"
@@ -73,7 +73,8 @@ def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, monkeypatch: pyt
     assert said.startswith(str(installed))
 
 
-PLAIN = ["kernel.pxd", "kernel.py", "search.pxd", "search.py", "solver.pxd", "solver.py"]
+MODULES = ("elimination", "kernel", "search", "solver")
+PLAIN = [f"{module}.{ending}" for module in MODULES for ending in ("pxd", "py")]
 VERIFY = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"
 BUILD = (
     "import sys, sysconfig; sys.path.insert(0, sys.argv[1]); sysconfig.get_config_vars()['LDSHARED'] = sys.argv.pop(); "
@@ -92,7 +93,7 @@ def verified(installed: Path) -> str:
 
 def kernels(installed: Path) -> list[str]:
     """The files of the modules that are compiled where that is possible."""
-    patterns = ("smc/kernel.*", "explicit/search.*", "explicit/solver.*")
+    patterns = ("smc/kernel.*", *(f"explicit/{module}.*" for module in MODULES))
     return sorted(path.name for pattern in patterns for path in (installed / "roaml").glob(pattern))
 
 
@@ -109,7 +110,7 @@ def test_wheel_for_every_platform(tmp_path: Path, c_code: Path, monkeypatch: pyt
     monkeypatch.setenv("AS2FM_PURE_PYTHON", "1")
     installed = build(tmp_path, c_code)
     assert list(tmp_path.glob("*-py3-none-any.whl"))
-    carried = sorted([*PLAIN, "kernel.c", "search.c", "solver.c"])
+    carried = sorted([*PLAIN, *(f"{module}.c" for module in MODULES)])
     assert kernels(installed) == carried
     slow = verified(installed)
     _, *flags = shlex.split(sysconfig.get_config_var("LDSHARED"))
@@ -121,4 +122,4 @@ def test_wheel_for_every_platform(tmp_path: Path, c_code: Path, monkeypatch: pyt
     compiled = run(sys.executable, "-I", "-c", IS_COMPILED, str(installed), cwd=tmp_path)
     assert compiled.strip() == str(kernel.compiled())
     assert verified(installed) == slow
-    assert len(kernels(installed)) == len(carried) + 3 * kernel.compiled()
+    assert len(kernels(installed)) == len(carried) + len(MODULES) * kernel.compiled()

@@ -39,7 +39,7 @@ def shown(expr: Expr) -> str:
         case Binary(operator=operator, left=left, right=right):
             return f"({shown(left)} {operator} {shown(right)})"
         case Comparison(operators=operators, operands=operands):
-            rest = (f" {op} {shown(each)}" for op, each in zip(operators, operands[1:], strict=True))
+            rest = (f" {op} {shown(node)}" for op, node in zip(operators, operands[1:], strict=True))
             return f"({shown(operands[0])}{''.join(rest)})"
         case Conditional(test=test, yes=yes, no=no):
             return f"({shown(test)} ? {shown(yes)} : {shown(no)})"

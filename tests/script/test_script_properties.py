@@ -79,7 +79,7 @@ def written(expr: Expr) -> str:
         case Binary(operator=operator, left=left, right=right):
             return f"({written(left)}) {operator} ({written(right)})"
         case Comparison(operators=operators, operands=operands):
-            rest = (f" {operator} ({written(each)})" for operator, each in zip(operators, operands[1:], strict=True))
+            rest = (f" {operator} ({written(node)})" for operator, node in zip(operators, operands[1:], strict=True))
             return f"({written(operands[0])}){''.join(rest)}"
         case Conditional(test=test, yes=yes, no=no):
             return f"({written(test)}) ? ({written(yes)}) : ({written(no)})"
@@ -103,7 +103,9 @@ def structure(expr: Expr) -> object:
 def test_written_scripts_are_parsed_back(statements: list[Expr]) -> None:
     script, problems = parse(Decoded("; ".join(map(written, statements)), 0))
     assert problems == ()
-    assert [structure(each) for each in script.statements] == [structure(each) for each in statements]
+    assert [structure(statement) for statement in script.statements] == [
+        structure(statement) for statement in statements
+    ]
 
 
 PIECES = st.lists(

@@ -175,15 +175,17 @@ def test_decisions_that_are_not_possible(robot: api.VerificationTarget) -> None:
 
 def test_a_fault_is_an_error_with_its_place() -> None:
     division = way("b", y=op("floor", op("/", 1, "x")))
-    found = model(document(automaton("A", "a b", [edge("a", division)]), variables=[variable("x"), variable("y")]))
-    session = api.session(found)
+    actual_model = model(
+        document(automaton("A", "a b", [edge("a", division)]), variables=[variable("x"), variable("y")])
+    )
+    session = api.session(actual_model)
     with pytest.raises(api.FaultError, match="division by zero"):
         session.step()
 
 
 def test_a_model_without_properties_can_run() -> None:
-    found = model(document(automaton("A", "a b", [edge("a", "b")])))
-    session = api.session(found)
+    actual_model = model(document(automaton("A", "a b", [edge("a", "b")])))
+    session = api.session(actual_model)
     assert session.step() is not None
     assert session.step() is None
     assert session.end is api.End.DEADLOCK

@@ -86,7 +86,7 @@ def document(
     system: Json = {"elements": [{"automaton": a["name"]} for a in automata]}
     if syncs is not None:
         system["syncs"] = [{"synchronise": list(vector)} for vector in syncs]
-    found = [{"name": name, "expression": expression} for name, expression in (properties or {}).items()]
+    listed = [{"name": name, "expression": expression} for name, expression in (properties or {}).items()]
     return {
         "jani-version": 1,
         "name": "test",
@@ -96,7 +96,7 @@ def document(
         "variables": list(variables),
         "automata": list(automata),
         "system": system,
-        "properties": found,
+        "properties": listed,
         **more,
     }
 

@@ -52,9 +52,9 @@ def chain(length: int, type_: str = "mdp") -> Json:
 
 
 def test_nothing_to_choose() -> None:
-    found = looked_at(chain(5))
-    assert found.agreement == "there is only one choice in each of 11 states"
-    assert (found.minimum, found.differ) == (found.maximum, False)
+    choices = looked_at(chain(5))
+    assert choices.agreement == "there is only one choice in each of 11 states"
+    assert (choices.minimum, choices.differ) == (choices.maximum, False)
     assert looked_at(chain(10**6, "dtmc")).agreement == "the model has no nondeterminism"
 
 
@@ -62,34 +62,36 @@ def test_choices_that_do_not_matter() -> None:
     """Two coins, thrown in any order."""
     coins = [automaton(f"coin{i}", "s e", [edge("s", way("e", 0.5, **{f"x{i}": 1}), way("e", 0.5))]) for i in range(2)]
     both = op("F", op("∧", op("=", "x0", 1), op("=", "x1", 1)))
-    found = looked_at(document(*coins, variables=[variable("x0"), variable("x1")], properties={"p": probability(both)}))
-    assert found.agreement.startswith("all ")
-    assert found.minimum is not None
-    assert (found.minimum.value, found.minimum.found) == (pytest.approx(0.25), EXPLORATION)
-    assert found.maximum is not None
-    assert found.maximum.value == pytest.approx(0.25)
+    choices = looked_at(
+        document(*coins, variables=[variable("x0"), variable("x1")], properties={"p": probability(both)})
+    )
+    assert choices.agreement.startswith("all ")
+    assert choices.minimum is not None
+    assert (choices.minimum.value, choices.minimum.found) == (pytest.approx(0.25), EXPLORATION)
+    assert choices.maximum is not None
+    assert choices.maximum.value == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize("chance", [False, True])
 def test_a_machine_that_can_be_made_to_wait_for_ever(chance: bool) -> None:
     """The uniform value is 1, the minimum 0: found from all states, where they are few."""
-    found = looked_at(starving(20, chance))
-    assert found.differ
-    assert found.minimum is not None
-    assert found.maximum is not None
-    assert (found.minimum.value, found.maximum.value) == (0, 1)
-    assert found.minimum.is_exact
+    choices = looked_at(starving(20, chance))
+    assert choices.differ
+    assert choices.minimum is not None
+    assert choices.maximum is not None
+    assert (choices.minimum.value, choices.maximum.value) == (0, 1)
+    assert choices.minimum.is_exact
 
 
 def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
-    found = looked_at(starving(6000))
-    assert found.differ
-    assert found.minimum is not None
-    assert (found.minimum.value, found.minimum.found) == (0, SAMPLING)
-    assert found.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
-    assert found.minimum.bounds.upper < 0.2
-    assert found.maximum is not None
-    assert (found.maximum.value, found.maximum.found) == (1, UNIFORM)
+    choices = looked_at(starving(6000))
+    assert choices.differ
+    assert choices.minimum is not None
+    assert (choices.minimum.value, choices.minimum.found) == (0, SAMPLING)
+    assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
+    assert choices.minimum.bounds.upper < 0.2
+    assert choices.maximum is not None
+    assert (choices.maximum.value, choices.maximum.found) == (1, UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:

@@ -27,18 +27,18 @@ def reference(case: dict[str, Any]) -> Path:
 
 def load(path: Path) -> Model:
     value, _ = parse(gzip.decompress(path.read_bytes()).decode())
-    found, _ = read_model(value, str(path))
-    assert found is not None
-    return found
+    model, _ = read_model(value, str(path))
+    assert model is not None
+    return model
 
 
 @pytest.mark.parametrize("path", sorted({reference(case) for case in CASES}), ids=lambda path: path.name)
 def test_reference_translations(path: Path) -> None:
-    found = load(path)
-    wanted = {case["property"]: case for case in CASES if reference(case) == path}
-    checker = ModelChecker(found, [each for each in found.properties if each.name in wanted])
+    model = load(path)
+    expected = {case["property"]: case for case in CASES if reference(case) == path}
+    checker = ModelChecker(model, [each for each in model.properties if each.name in expected])
     with Pool() as pool:
         for asked in checker.asked:
-            case = wanted[asked.question.name]
+            case = expected[asked.question.name]
             answer = checker.answer(asked, Options(seed=1), pool)
             assert answer.value == pytest.approx(case["probability"], abs=case["tolerance"] + 1e-12)

@@ -36,8 +36,8 @@ def of_system(folder: Path, files: dict[str, str], *properties: str) -> ModelChe
     return api.checker(api.to_jani(api.load(str(folder / "main.xml"))), properties or None)
 
 
-def counts(found: Answer) -> dict[End, int]:
-    return {reason: ended.count for reason, ended in found.tally.ends.items()}
+def counts(actual_answer: Answer) -> dict[End, int]:
+    return {reason: ended.count for reason, ended in actual_answer.tally.ends.items()}
 
 
 def test_reasons_are_those_of_the_kernel() -> None:
@@ -70,8 +70,8 @@ LOOP = [edge("s", way("t", x=1)), edge("t", "t")]
 )
 def test_any_model(edges: list[Json], goals: dict[str, Json], reason: End, value: float) -> None:
     written = document(automaton("a", "s t", edges), variables=[variable("x")], properties=goals)
-    found = answer(ModelChecker(model(written)))
-    assert (counts(found), found.value) == ({reason: 1}, value)
+    actual_answer = answer(ModelChecker(model(written)))
+    assert (counts(actual_answer), actual_answer.value) == ({reason: 1}, value)
 
 
 def test_reasons_are_counted_with_their_shortest_traces() -> None:
@@ -81,24 +81,24 @@ def test_reasons_are_counted_with_their_shortest_traces() -> None:
     places = "s goal two three four end"
     written = document(automaton("a", places, edges), variables=[variable("x")], properties=FINALLY)
     checker = ModelChecker(model(written))
-    found = answer(checker, traces=500)
-    tally = found.tally
-    assert sum(counts(found).values()) == tally.traces == 500
-    assert counts(found)[End.DECIDED] == tally.successes
+    actual_answer = answer(checker, traces=500)
+    tally = actual_answer.tally
+    assert sum(counts(actual_answer).values()) == tally.traces == 500
+    assert counts(actual_answer)[End.DECIDED] == tally.successes
     assert tally.ends[End.DECIDED].shortest.steps == 1
     assert tally.ends[End.DEADLOCK].shortest == tally.shortest[0]
     assert tally.ends[End.DEADLOCK].shortest.steps == 2
     assert Tally.from_json(tally.to_json()) == tally
-    assert counts(answer(checker, traces=500, jobs=2)) == counts(found)
+    assert counts(answer(checker, traces=500, jobs=2)) == counts(actual_answer)
 
 
 def test_goals_decided_early_keep_their_end(tmp_path: Path) -> None:
-    """Whether the system would have got stuck later is not known of such a trace."""
+    """It is not known whether the system would have got stuck later in these traces."""
     checker = of_system(tmp_path, hospital())
-    found = answer(checker, traces=300)
-    assert counts(found)[End.DECIDED] == found.tally.successes
-    assert counts(found)[End.STUCK] == found.failures
-    assert 0 < found.failures < 300
+    actual_answer = answer(checker, traces=300)
+    assert counts(actual_answer)[End.DECIDED] == actual_answer.tally.successes
+    assert counts(actual_answer)[End.STUCK] == actual_answer.failures
+    assert 0 < actual_answer.failures < 300
 
 
 NO_CLOCK = system(
@@ -124,9 +124,9 @@ NO_CLOCK = system(
     ],
 )
 def test_translated_systems(tmp_path: Path, files: dict[str, str], reason: End) -> None:
-    found = answer(of_system(tmp_path, files, "stuck"), traces=20, max_steps=10_000)
-    assert counts(found) == {reason: 20}
-    assert found.value == (reason is End.STUCK)
+    actual_answer = answer(of_system(tmp_path, files, "stuck"), traces=20, max_steps=10_000)
+    assert counts(actual_answer) == {reason: 20}
+    assert actual_answer.value == (reason is End.STUCK)
 
 
 @pytest.mark.parametrize(

@@ -95,8 +95,8 @@ def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
         properties={"p": probability(op("F", op("=", "y", 77)))},
     )
     compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
-    for each in (kernel, plain_kernel()):
-        found = each.Kernel(compiled.program, compiled.goal)
+    for module in (kernel, plain_kernel()):
+        found = module.Kernel(compiled.program, compiled.goal)
         assert found.begin(0, 0) == program.UNKNOWN
         assert found.advance(5) == program.FAULTY
     with pytest.raises(Exception, match=message):

@@ -90,8 +90,8 @@ def formulas() -> st.SearchStrategy[Json]:
 @given(formulas(), st.lists(st.integers(0, 3), min_size=1, max_size=6), st.booleans())
 def test_path_formulas(formula: Json, labels: list[int], loop: bool) -> None:
     expected = holds(formula, labels, loop)
-    found = answers(path_model(labels, loop, {"p": probability(formula)}))["p"]
-    assert (found.value, found.tally.undecided) == (float(expected), 0)
+    answer = answers(path_model(labels, loop, {"p": probability(formula)}))["p"]
+    assert (answer.value, answer.tally.undecided) == (float(expected), 0)
 
 
 def test_exclusive_bounds() -> None:
@@ -111,8 +111,8 @@ def test_deadlock() -> None:
             "ends": probability(op("F", {"op": "deadlock"})),
             "goes on": probability(op("G", op("¬", {"op": "deadlock"}))),
         }
-        found = answers(path_model([0, 1], loop, formulas))
-        assert (found["ends"].value, found["goes on"].value) == (not loop, loop)
+        actual_answers = answers(path_model([0, 1], loop, formulas))
+        assert (actual_answers["ends"].value, actual_answers["goes on"].value) == (not loop, loop)
 
 
 def test_a_trace_that_is_cut_is_undecided() -> None:
@@ -172,8 +172,8 @@ def test_rewards_of_steps_and_states() -> None:
         "values of states that are left": expectation("x", ["exit"]),
         "both": expectation("x", ["steps", "exit"]),
     }
-    found = {name: answer.value for name, answer in answers(path_model(labels, False, properties), 3).items()}
-    assert found == {"steps": 3, "values after steps": 5, "values of states that are left": 4, "both": 9}
+    values = {name: answer.value for name, answer in answers(path_model(labels, False, properties), 3).items()}
+    assert values == {"steps": 3, "values after steps": 5, "values of states that are left": 4, "both": 9}
 
 
 def test_rewards_of_transient_variables() -> None:

@@ -233,7 +233,7 @@ def test_leaving_in_the_middle_of_large_results() -> None:
     """Workers that were killed while they send would leave the rest of a result to be waited for."""
     for _ in range(5):
         with Pool(2, start_delay_s=0) as pool:
-            found = pool.outcomes(Task(each.payload, 0, each.first * 1000, 10_000, 100) for each in tasks())
+            found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
             next(found)
             next(found)
     assert not multiprocessing.active_children()

@@ -131,16 +131,16 @@ def bools(depth: int) -> st.SearchStrategy[Any]:
 ))  # fmt: skip
 def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
     type_, text = case
-    found = model(system(type_, text))
-    (assignment,) = found.automata[0].edges[0].destinations[0].assignments
-    functions = {function.name: function for function in found.functions}
+    actual_model = model(system(type_, text))
+    (assignment,) = actual_model.automata[0].edges[0].destinations[0].assignments
+    functions = {function.name: function for function in actual_model.functions}
     try:
         expected: Value | str = evaluate(assignment.value, {**VALUES, "m": MATRIX}, functions)
     except EvaluationError as error:
         expected = error.message
     assume(not isinstance(expected, float) or not math.isnan(expected))
     assume(isinstance(expected, (str, float)) or abs(expected) < 1 << 62)  # type: ignore[arg-type]
-    checker = ModelChecker(found)
+    checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     try:
         ((_, (branch,)),) = explorer.choices(explorer.initial)
@@ -159,9 +159,9 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
         assert branch.state.ints[-2] == int(expected)  # type: ignore[arg-type]
 
 
-def states_of(found: Model, limit: int) -> set[tuple[Any, ...]]:
-    """All reachable states by the engine, as the slow explorer tells them."""
-    checker = ModelChecker(found)
+def states_of(actual_model: Model, limit: int) -> set[tuple[Any, ...]]:
+    """All reachable states of the engine, in the form of the slow explorer."""
+    checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     layout = checker.legend.layout
     states = set()
@@ -178,7 +178,7 @@ def states_of(found: Model, limit: int) -> set[tuple[Any, ...]]:
                     result.append(cells[storage.base])
             return tuple(result)
 
-        locations = tuple(checker.legend.locations[each][1] for each in place)
+        locations = tuple(checker.legend.locations[number][1] for number in place)
         states.add((locations, values(layout.shared), tuple(values(i.own) for i in layout.instances)))
     return states
 
@@ -196,12 +196,12 @@ def never(found: Json) -> Json:
 @settings(max_examples=examples(80), suppress_health_check=list(HealthCheck))
 @given(networks())
 def test_networks_reach_the_states_that_are_defined(written: Json) -> None:
-    found = model(never(written))
+    actual_model = model(never(written))
     try:
-        expected = {as_tuple(state) for state in SlowExplorer(found).reachable(120)}
+        expected = {as_tuple(state) for state in SlowExplorer(actual_model).reachable(120)}
     except OverflowError:
         assume(False)
-    assert states_of(found, 10_000) == expected
+    assert states_of(actual_model, 10_000) == expected
 
 
 def test_the_states_of_a_translated_system(tmp_path: Path) -> None:
@@ -228,10 +228,10 @@ def test_the_states_of_a_translated_system(tmp_path: Path) -> None:
 <input type="node-ascxml" src="a.ascxml" /><input type="node-ascxml" src="b.ascxml" /></node_models>
 <properties><input type="jani" src="p.jani" /></properties></roaml>"""
     )
-    found = api.to_jani(api.load(str(tmp_path / "main.xml")))
-    expected = {as_tuple(state) for state in SlowExplorer(found).reachable(5000)}
+    actual_model = api.to_jani(api.load(str(tmp_path / "main.xml")))
+    expected = {as_tuple(state) for state in SlowExplorer(actual_model).reachable(5000)}
     assert len(expected) > 50
-    assert states_of(found, 10_000) == expected
+    assert states_of(actual_model, 10_000) == expected
 
 
 # ------------------------------------------------------------ single rules
@@ -245,11 +245,11 @@ def reaches(written: Json, traces: int = 1) -> float:
 def test_assignments_of_one_index_are_simultaneous() -> None:
     swap = ways("m", [("x", "y", 0), ("y", "x", 0), (at("v", "x"), "y", 0), ("x", op("+", "x", 10), 1)])
     values = {"op": "av", "elements": [0, 0, 0]}
-    wanted = op("∧", op("=", "x", 12), op("=", "y", 1))
+    expected = op("∧", op("=", "x", 12), op("=", "y", 1))
     found = document(
         automaton("a", "l m", [edge("l", swap)]),
         variables=[variable("x", initial=1), variable("y", initial=2), variable("v", TYPES["v"], values)],
-        properties={"p": probability(op("F", op("∧", wanted, op("=", "v", {"op": "av", "elements": [0, 2, 0]}))))},
+        properties={"p": probability(op("F", op("∧", expected, op("=", "v", {"op": "av", "elements": [0, 2, 0]}))))},
     )
     assert reaches(found) == 1
 

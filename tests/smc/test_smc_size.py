@@ -37,10 +37,10 @@ def model(assigned: Any, initial: Any = 0, type_: Any = "int", functions: tuple[
         "automata": [automaton],
         "system": {"elements": [{"automaton": "A"}]},
     }
-    found, findings = read_model(parse(json.dumps(value))[0])
-    assert found is not None
+    actual_model, findings = read_model(parse(json.dumps(value))[0])
+    assert actual_model is not None
     assert findings == ()
-    return ModelChecker(found)
+    return ModelChecker(actual_model)
 
 
 def function(name: str, body: Any) -> Any:

@@ -135,8 +135,8 @@ def test_coverage_of_intervals(p: float, confidence: float) -> None:
 @cache
 def stop(n: int, k: int, confidence: float, epsilon: float) -> tuple[float, float] | None:
     """The interval if sampling stops here."""
-    found = clopper_pearson(k, n, 1 - (1 - confidence) * PEEKING)
-    return found if found.half_width <= epsilon else None
+    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * PEEKING)
+    return bounds if bounds.half_width <= epsilon else None
 
 
 def added(open_: dict[int, float], size: int, p: float) -> dict[int, float]:

@@ -33,9 +33,9 @@ ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
 
 
-def estimates(found: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
+def estimates(actual_model: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
     """Property -> successes and traces."""
-    checker = ModelChecker(found)
+    checker = ModelChecker(actual_model)
     with Pool() as pool:
         options = Options(method=FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
         answers = {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
@@ -111,14 +111,14 @@ def test_estimates_agree_with_storm() -> None:
 @pytest.mark.parametrize("name", COINS)
 def test_translated_systems_agree_with_storm(name: str) -> None:
     coin, count, expected = COINS[name]
-    found = api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=reaches("told__heads", count))))
-    ((successes, traces),) = estimates(found).values()
+    actual_model = api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=reaches("told__heads", count))))
+    ((successes, traces),) = estimates(actual_model).values()
     assert two_sided(successes, traces, float(expected)) > 1e-4
 
 
-def induced(found: Model, limit: int, folder: Path) -> float | None:
+def induced(actual_model: Model, limit: int, folder: Path) -> float | None:
     """The probability that Storm computes for the Markov chain that uniform choices make of a model."""
-    checker = ModelChecker(found)
+    checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     try:
         verdicts = explorer.reachable(limit)
@@ -150,11 +150,11 @@ def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -
     surprises = []
     for seed in range(60):
         written = example(seed)
-        found = model(written)
-        expected = induced(found, 300, tmp_path)
+        actual_model = model(written)
+        expected = induced(actual_model, 300, tmp_path)
         if expected is None:
             continue
-        checker = ModelChecker(found)
+        checker = ModelChecker(actual_model)
         with Pool() as pool:
             answer = checker.answer(checker.asked[0], Options(method=FIXED, max_traces=TRACES, max_steps=3000), pool)
         low = answer.tally.successes
@@ -192,20 +192,20 @@ ARRAY: Any = {"op": "av", "elements": [1, 2]}
 def test_exact_answers() -> None:
     """Least and greatest over all schedulers, of which the uniform one is between."""
     steps = [edge("l", way("m", 0.25, x=1), way("m", 0.75, x=2)), edge("l", way("m", 0.5, x=1), way("m", 0.5, x=2))]
-    found = model(
+    actual_model = model(
         document(
             automaton("a", "l m", steps),
             variables=[variable("x"), variable("v", {"kind": "array", "base": "int"}, ARRAY)],
             properties={"p": probability(op("F", op("=", "x", at("v", 0))))},
         )
     )
-    checker = ModelChecker(found)
+    checker = ModelChecker(actual_model)
     result = exact_values(checker, checker.asked[0], StateLimits(100))
     assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
     with pytest.raises(UndecidedError, match="there are more than 2 "):
         exact_values(checker, checker.asked[0], StateLimits(2))
     assert result.average == pytest.approx(0.375)
-    ((successes, traces),) = estimates(found).values()
+    ((successes, traces),) = estimates(actual_model).values()
     assert two_sided(successes, traces, 0.375) > 1e-4
 
 
@@ -219,12 +219,12 @@ def test_extremes_from_all_states_are_those_of_storm() -> None:
         until = op("U", op("<", "y", 2), op("=", "x", 2))
         for path in (goal, opposite, until):
             written["properties"] = [{"name": "p", "expression": probability(path)}]
-            found = model(written)
-            checker = ModelChecker(found)
+            actual_model = model(written)
+            checker = ModelChecker(actual_model)
             solution = solve(checker.compiled(checker.asked[0]), limit=300)
             if solution is None or solution.minimum is None or solution.maximum is None:
                 continue
-            expected = storm_exact(found, "p")
+            expected = storm_exact(actual_model, "p")
             assert solution.minimum.lower - 2e-6 <= expected.least <= solution.minimum.upper + 2e-6, (seed, path)
             assert solution.maximum.lower - 2e-6 <= expected.greatest <= solution.maximum.upper + 2e-6, (seed, path)
             solved += solution.minimum.half_width < 1e-6 and solution.maximum.half_width < 1e-6
@@ -239,15 +239,15 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
         following = chr(ord(place) + 1)
         steps.append(edge(place, way(following, 0.9, x=op("+", "x", 1)), way(following, 0.1)))
         steps.append(edge(place, way(following, 0.2, x=op("+", "x", 1)), way(following, 0.8)))
-    found = model(
+    actual_model = model(
         document(
             automaton("a", "a b c d", steps),
             variables=[variable("x")],
             properties={"p": probability(op("F", op("=", "x", 3)))},
         )
     )
-    expected = storm_exact(found, "p")
-    checker = ModelChecker(found)
+    expected = storm_exact(actual_model, "p")
+    checker = ModelChecker(actual_model)
     with Pool() as pool:
         state = Search()
         checker.search(checker.asked[0], Options(epsilon=0.02), pool, state)

@@ -68,7 +68,7 @@ def test_each_answer_is_that_of_traces_of_its_own(options: Options) -> None:
     checker = ModelChecker(model(walk()))
     asked = list(checker.asked)
     shared = [numbers(answer) for answer in together(checker, asked, options)]
-    separate = [numbers(alone(checker, each, options)) for each in asked]
+    separate = [numbers(alone(checker, compiled_property, options)) for compiled_property in asked]
     assert shared == separate
     assert len({answer[1] for answer in shared}) >= 4
 
@@ -89,7 +89,7 @@ def test_questions_that_are_continued_from_different_traces() -> None:
         tally.is_finished = False
     continued = together(checker, asked, Options(method=FIXED, max_traces=400), tallies)
     assert [numbers(answer) for answer in continued] == [
-        numbers(alone(checker, each, Options(method=FIXED, max_traces=400))) for each in asked
+        numbers(alone(checker, compiled_property, Options(method=FIXED, max_traces=400))) for compiled_property in asked
     ]
 
 
@@ -101,12 +101,14 @@ def test_a_trace_that_fails_concerns_only_the_questions_that_it_does_not_answer_
     assert [a.message for a in answers if isinstance(a, FaultError)] == ["division by zero"]
     assert isinstance(answers[-1], FaultError)
     good = [answer for answer in answers if isinstance(answer, Answer)]
-    assert [numbers(a) for a in good] == [numbers(alone(checker, each, options)) for each in checker.asked[:-1]]
+    assert [numbers(a) for a in good] == [
+        numbers(alone(checker, compiled_property, options)) for compiled_property in checker.asked[:-1]
+    ]
 
 
 def test_both_kernels_say_the_same_of_all_questions() -> None:
     checker = ModelChecker(model(walk()))
-    goal = merged([each.goal for each in checker.asked])
+    goal = merged([compiled_property.goal for compiled_property in checker.asked])
     compiled = Compiled(checker.program, goal)
     seen = set()
     results: list[list[Any]] = []

@@ -50,8 +50,8 @@ def test_one_edge_with_three_among_many_with_two() -> None:
     parts += [automaton(f"m{n}", "s t", [edge("s", "t", action="a"), edge("s", "t", action="a")]) for n in range(30)]
     goals = {"p": probability(op("F", op("=", "x", 0)))}
     written = document(*parts, variables=[variable("x", initial=-1)], syncs=[["a"] * 31], properties=goals)
-    found = answers(written, 4000)["p"]
-    lower, upper = clopper_pearson(found.tally.successes, 4000, SURE)
+    answer = answers(written, 4000)["p"]
+    lower, upper = clopper_pearson(answer.tally.successes, 4000, SURE)
     assert lower < 1 / 3 < upper
 
 
@@ -67,8 +67,8 @@ def test_the_weight_of_an_action_is_the_number_of_its_combinations(common: int, 
     goals = {"p": probability(op("F", op("=", "x", 2)))}
     size = common + more + 1
     written = document(first, *parts, variables=[variable("x")], syncs=[["a"] * size, ["b"] * size], properties=goals)
-    found = answers(written, 600)["p"]
-    lower, upper = clopper_pearson(found.tally.successes, 600, SURE)
+    answer = answers(written, 600)["p"]
+    lower, upper = clopper_pearson(answer.tally.successes, 600, SURE)
     assert lower < 1 / (1 + 2**more) < upper
 
 
@@ -88,11 +88,11 @@ def test_an_action_that_is_negligible_is_never_taken() -> None:
     written = document(alone, *parts, variables=[variable("x")], syncs=[[None, *["a"] * 1200]], properties=goals)
     checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.asked[0])
-    found = kernel.Kernel(compiled.program, compiled.goal)
+    actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     for trace in range(50):
-        found.begin(0, trace)
-        found.step()
-        assert found.integer(0) == 0
+        actual_kernel.begin(0, trace)
+        actual_kernel.step()
+        assert actual_kernel.integer(0) == 0
 
 
 @pytest.mark.parametrize(("count", "edges"), [(12, 2), (64, 2), (40, 5)])
@@ -107,13 +107,13 @@ def test_schedulers_choose_every_edge() -> None:
     """No scheduler looks at all combinations; together they choose all edges alike."""
     checker = ModelChecker(model(wide(64, 2)))
     compiled = checker.compiled(checker.asked[0])
-    found = kernel.Kernel(compiled.program, compiled.goal)
+    actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     chosen = [0] * 64
     for scheduler in range(1, 301):
-        found.begin(0, 0, scheduler)
-        found.step()
+        actual_kernel.begin(0, 0, scheduler)
+        actual_kernel.step()
         for number in range(64):
-            chosen[number] += found.integer(number)
+            chosen[number] += actual_kernel.integer(number)
     for ones in chosen:
         lower, upper = clopper_pearson(ones, 300, SURE)
         assert lower < 0.5 < upper
@@ -123,12 +123,12 @@ def test_a_scheduler_is_a_function_of_the_state() -> None:
     """The same scheduler does the same in the same state, whatever the trace and its random numbers."""
     checker = ModelChecker(model(wide(64, 3)))
     compiled = checker.compiled(checker.asked[0])
-    found = kernel.Kernel(compiled.program, compiled.goal)
+    actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     seen = set()
     for trace in range(20):
-        found.begin(trace, trace, 5)
-        found.step()
-        seen.add(tuple(found.snapshot()[0]))
+        actual_kernel.begin(trace, trace, 5)
+        actual_kernel.step()
+        seen.add(tuple(actual_kernel.snapshot()[0]))
     assert len(seen) == 1
 
 

@@ -37,8 +37,8 @@ def test_few_names_are_all_compared() -> None:
 def test_close_names_are_candidates_and_no_others_are_closer(names: list[str], name: str) -> None:
     close = close_names(name, names, 1)
     assert set(close) <= set(names)
-    if name.lower() in {each.lower() for each in names}:
-        assert [each.lower() for each in close] == [name.lower()]
+    if name.lower() in {known.lower() for known in names}:
+        assert [suggested.lower() for suggested in close] == [name.lower()]
 
 
 def test_the_number_of_comparisons_does_not_grow_with_the_names(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Places in TOML: what stands at the place of a value means that value."""
+"""Places in TOML: the text at the position of a value is that value."""
 
 from __future__ import annotations
 
@@ -89,11 +89,11 @@ def is_header(text: str, span: Span) -> bool:
 
 
 def everything(value: Any, path: Path) -> list[tuple[Path, Any]]:
-    found = [(path, value)] if path else []
+    rows = [(path, value)] if path else []
     items: Any = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, inner in items:
-        found += everything(inner, (*path, key))
-    return [each for each in found if each[0]]
+        rows += everything(inner, (*path, key))
+    return [row for row in rows if row[0]]
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavior trees executed in plain Python: what the built-in nodes of docs/spec/nodes.md do, said a second time.
+"""Behavior trees executed in plain Python: a second implementation of the built-in nodes of docs/spec/nodes.md.
 
 - Nothing here knows how the nodes are translated; each class is a paragraph of the specification.
 - A node is ticked and halted by its parent only. Both, and the answers, are logged in the order in which they happen.
@@ -342,8 +342,8 @@ class Switch(Node, names=("Switch2", "Switch3", "Switch4", "Switch5", "Switch6")
 
     def on_tick(self) -> Status:
         cases = len(self.children) - 1
-        wanted = self.port("variable")
-        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == wanted]
+        expected = self.port("variable")
+        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == expected]
         chosen = self.children[holds[0] if holds else cases]
         if self.running is not None and self.running is not chosen:
             self.running.halt()

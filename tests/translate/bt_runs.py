@@ -24,7 +24,7 @@ _WORDS = {"tick": "tick", "halt": "halt", "halt_response": "halted"}
 
 
 def step(event: str, status: int) -> Step | None:
-    """What `event` tells of a node; `status` is that of a response."""
+    """The step of a node that `event` describes; `status` is that of a response."""
     match = _EVENT.fullmatch(event)
     if match is None:
         return None
@@ -48,9 +48,9 @@ def of_network(network: Network, seed: int, most: int | None = None) -> tuple[li
             break
         after = following[-1]
         for event in after.pending - now.pending:
-            found = step(event, dict(dict(after.sent)[event]).get("status", 0))
-            if found is not None:
-                steps.append(found)
+            following = step(event, dict(dict(after.sent)[event]).get("status", 0))
+            if following is not None:
+                steps.append(following)
         now = after
     return steps, now
 
@@ -91,12 +91,12 @@ def of_model_in_any_order(model: Model, expected: list[Step], limit: int) -> Non
         for after in following:
             steps = watched.steps(state, after)
             assert steps == expected[done : done + len(steps)]
-            found = (after, done + len(steps))
-            if found not in seen:
+            follower = (after, done + len(steps))
+            if follower not in seen:
                 if len(seen) >= limit:
                     raise OverflowError
-                seen.add(found)
-                left.append(found)
+                seen.add(follower)
+                left.append(follower)
 
 
 class _Watched:
@@ -111,4 +111,6 @@ class _Watched:
             event for i, event in self.events if before.locations[i] != "received" and after.locations[i] == "received"
         ]
         values = self.explorer.globals(after) if sent else {}
-        return [found for event in sent if (found := step(event, values.get(f"{event}__status", 0))) is not None]
+        return [
+            following for event in sent if (following := step(event, values.get(f"{event}__status", 0))) is not None
+        ]

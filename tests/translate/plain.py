@@ -206,7 +206,7 @@ def value(node: expr.Expr, data: dict[str, Any], params: dict[str, Any]) -> Any:
         case expr.String():
             return tuple(node.value.encode())
         case expr.ArrayLiteral():
-            return tuple(value(each, data, params) for each in node.elements)
+            return tuple(value(element, data, params) for element in node.elements)
         case expr.Name():
             return data[node.name]
         case expr.Member(object=expr.Member(object=expr.Name(name="_event"), name="data")):
@@ -227,7 +227,7 @@ def value(node: expr.Expr, data: dict[str, Any], params: dict[str, Any]) -> Any:
             left, right = value(node.left, data, params), value(node.right, data, params)
             return _OPERATORS[node.operator.symbol](left, right)
         case expr.Call(function=expr.Member()):
-            return _FUNCTIONS[node.function.name](*(value(each, data, params) for each in node.arguments))
+            return _FUNCTIONS[node.function.name](*(value(argument, data, params) for argument in node.arguments))
     raise NotImplementedError(node)
 
 

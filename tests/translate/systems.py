@@ -29,10 +29,10 @@ def expressions(draw: st.DrawFn, kind: str, event: str | None, depth: int = 2) -
             "bool": ["true", "false", "b"],
             "list": ["v", "[]", "[2]"],
         }
-        found = list(leaves[kind])
+        texts = list(leaves[kind])
         if event is not None and EVENTS[event] == kind:
-            found += ["_event.data.p"] * 3
-        return draw(st.sampled_from(found))
+            texts += ["_event.data.p"] * 3
+        return draw(st.sampled_from(texts))
     below = depth - 1
     if kind == "int":
         left, right = (draw(expressions("int", event, below)) for _ in range(2))

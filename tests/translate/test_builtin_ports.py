@@ -25,10 +25,10 @@ EXAMPLES = {part.kind: part for tree in reversed(list(cases())) for part in tree
 PORTS = [(kind, port) for kind, plugin in builtin_plugins().items() for port in plugin.ports if port.direction == "in"]
 
 
-def in_tree(found: Sequence[Diagnostic], text: str) -> list[str]:
+def in_tree(diagnostics: Sequence[Diagnostic], text: str) -> list[str]:
     """What the findings are about; all are in the tree."""
-    assert {d.path for d in found} <= {os.path.join(FOLDER, "tree.xml")}
-    return [text[d.span.start : d.span.end] for d in found]
+    assert {d.path for d in diagnostics} <= {os.path.join(FOLDER, "tree.xml")}
+    return [text[d.span.start : d.span.end] for d in diagnostics]
 
 
 def same_steps(files: dict[str, str], tree: Tree) -> None:
@@ -42,12 +42,12 @@ def test_port_bound_to_the_blackboard(kind: str, port: PortOutline) -> None:
     plain = EXAMPLES[kind]
     tree = gated(replace(plain, ports=tuple({**dict(plain.ports), port.key: value}.items())))
     files = system(tree, SETUP)
-    found = errors(files)
+    diagnostics = errors(files)
     role = next(a.port for a in BEHAVIOR_TREE.elements[kind].ports if a.name == port.key)
     assert role is not None
     if role.constant:
-        assert [d.code for d in found] == ["node-configuration"]
-        assert in_tree(found, files["tree.xml"]) == [value]
+        assert [d.code for d in diagnostics] == ["node-configuration"]
+        assert in_tree(diagnostics, files["tree.xml"]) == [value]
     else:
         same_steps(files, tree)
 
@@ -170,9 +170,9 @@ SCRIPTS = [a.name for a in BEHAVIOR_TREE.elements["Sequence"].attributes.values(
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_script(script: str) -> None:
     files = system(node("Sequence", leaf("S"), **{script: "x := 1"}), SETUP)
-    found = errors(files)
-    assert [d.code for d in found] == ["untranslatable-script"]
-    assert in_tree(found, files["tree.xml"])[0].startswith(script)
+    diagnostics = errors(files)
+    assert [d.code for d in diagnostics] == ["untranslatable-script"]
+    assert in_tree(diagnostics, files["tree.xml"])[0].startswith(script)
 
 
 @pytest.mark.parametrize("kind", [e.name for e in BEHAVIOR_TREE.elements.values() if e.node and not e.translated])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the reference cannot translate and we can (docs/spec/differences.md#accepted): Storm finds what must come out of
+"""Models that only this tool translates (docs/spec/differences.md#accepted): Storm finds what must come out of
 it.
 
 The systems stand in `beyond.txt`. The property of each is written as `VARIABLE = VALUE`: sooner or later this holds,
@@ -30,5 +30,5 @@ def test_comes_true(title: str) -> None:
     variable, _, value = files["properties.jani"].partition("=")
     model = translated({**files, "properties.jani": reaches(variable.strip(), int(value))})
     assert check_model(model) == ()
-    found = exact(model, "p")
-    assert (found.least, found.greatest) == pytest.approx((1, 1))
+    actual_exact = exact(model, "p")
+    assert (actual_exact.least, actual_exact.greatest) == pytest.approx((1, 1))

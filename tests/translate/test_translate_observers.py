@@ -166,7 +166,7 @@ def test_the_same_traces_satisfy_both(name: str) -> None:
     assert one.answer is not None
     assert other.answer is not None
     verdicts = [
-        {verdict: [seen.trace for seen in each] for verdict, each in answer.tally.examples.items()}
+        {verdict: [seen.trace for seen in seens] for verdict, seens in answer.tally.examples.items()}
         for answer in (one.answer, other.answer)
     ]
     assert verdicts[0] == verdicts[1]
@@ -318,8 +318,8 @@ def test_an_expectation_that_compares_with_no_probability(written: str) -> None:
 
 def test_nothing_is_expected_of_an_assumption() -> None:
     assumed = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.5"')
-    found = errors(with_assumptions(assumed, EXISTS.format("g", "whistle")))
-    assert [(error.code, error.message) for error in found] == [
+    diagnostics = errors(with_assumptions(assumed, EXISTS.format("g", "whistle")))
+    assert [(error.code, error.message) for error in diagnostics] == [
         ("property-form", "an assumption has no value, so nothing can be expected of it")
     ]
 

@@ -107,9 +107,11 @@ COINS = {
 @pytest.mark.parametrize("name", COINS)
 def test_probabilities(name: str) -> None:
     coin, count, expected = COINS[name]
-    found = exact(api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=reaches("told__heads", count)))), "p")
-    assert found.least == pytest.approx(float(expected), abs=1e-9)
-    assert found.greatest == pytest.approx(float(expected), abs=1e-9)
+    actual_exact = exact(
+        api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=reaches("told__heads", count)))), "p"
+    )
+    assert actual_exact.least == pytest.approx(float(expected), abs=1e-9)
+    assert actual_exact.greatest == pytest.approx(float(expected), abs=1e-9)
 
 
 def test_many_draws_do_not_multiply() -> None:

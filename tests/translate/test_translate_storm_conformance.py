@@ -64,15 +64,15 @@ def test_read(path: Path) -> None:
 def test_probability(system: str, name: str) -> None:
     model = api.to_jani(loaded(conformance.ROOT / "models" / system), [name])
     expected = PROBABILITIES[system, name]
-    found = exact(model, name)
-    assert found.states == expected.states
-    assert found.least == pytest.approx(expected.least, abs=1e-6)
-    assert found.greatest == pytest.approx(expected.greatest, abs=1e-6)
+    actual_exact = exact(model, name)
+    assert actual_exact.states == expected.states
+    assert actual_exact.least == pytest.approx(expected.least, abs=1e-6)
+    assert actual_exact.greatest == pytest.approx(expected.greatest, abs=1e-6)
 
 
 @pytest.mark.parametrize(("tree", "name"), TREES, ids=str)
 def test_tree(tree: str, name: str) -> None:
     model = api.to_jani(loaded(conformance.ROOT / "models" / f"bt_test_models/main_test_{tree}.xml"), [name])
-    found = exact(model, name)
-    assert found.least == pytest.approx(TREES[tree, name], abs=1e-6)
-    assert found.greatest == pytest.approx(TREES[tree, name], abs=1e-6)
+    actual_exact = exact(model, name)
+    assert actual_exact.least == pytest.approx(TREES[tree, name], abs=1e-6)
+    assert actual_exact.greatest == pytest.approx(TREES[tree, name], abs=1e-6)

@@ -19,12 +19,12 @@ STATEMENTS = ("assign", "send", "ros_topic_publish", "if", "raise", "log", "bt_s
 
 def varied(random: Random, texts: Mapping[str, str]) -> dict[str, str]:
     """`texts` with one to three changes in files of XML."""
-    found = dict(texts)
+    actual_texts = dict(texts)
     paths = [path for path in texts if not path.endswith((".jani", ".json"))]
     for _ in range(random.choice((1, 1, 2, 3))):
         path = random.choice(paths)
-        found[path] = random.choice(CHANGES)(random, found[path])
-    return found
+        actual_texts[path] = random.choice(CHANGES)(random, actual_texts[path])
+    return actual_texts
 
 
 def _attributes(text: str, *names: str) -> list[tuple[Element, Attribute]]:
@@ -143,7 +143,7 @@ def change_type(random: Random, text: str) -> str:
 
 
 def add_condition(random: Random, text: str) -> str:
-    """A condition that stands somewhere in the file, on a transition that has none."""
+    """A condition of another element, on a transition without one."""
     conditions = [piece(text, a.value_span) for _, a in _attributes(text, "cond")] or ["false", "1 &lt; 2"]
     handlers = [e for e in elements_of(text) if e.get("target") is not None and e.get("cond") is None]
     if not handlers:

@@ -85,9 +85,9 @@ ARM = """free
 
 
 def test_a_plugin_waits_for_the_result_of_an_action(tmp_path: Path) -> None:
-    found = told(tmp_path, system({"Move": MOVE, "Arm": ARM}, "<Inverter><Move /></Inverter>"))
+    text = told(tmp_path, system({"Move": MOVE, "Arm": ARM}, "<Inverter><Move /></Inverter>"))
     assert (
-        found
+        text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Move (bt_1001) to answer its tick (tree.xml:3)
@@ -128,9 +128,9 @@ PUBLISHER = """s
 
 def test_a_service_waits_for_a_message_of_a_machine_with_a_timer(tmp_path: Path) -> None:
     machines = {"Ask": ASK, "Server": SERVER, "Publisher": PUBLISHER}
-    found = told(tmp_path, system(machines, "<Sequence><AlwaysSuccess /><Ask /></Sequence>"))
+    text = told(tmp_path, system(machines, "<Sequence><AlwaysSuccess /><Ask /></Sequence>"))
     assert (
-        found
+        text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Ask (bt_1002) to answer its tick (tree.xml:3)
@@ -149,12 +149,12 @@ def test_a_server_that_never_responds(tmp_path: Path) -> None:
 <state id="free"><ros_service_handle_request name="s" target="done" /></state>
 <state id="done"><transition cond="false" target="free"><ros_service_send_response name="s" /></transition></state>
 """
-    found = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
-    assert found[2:4] == [
+    lines = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
+    assert lines[2:4] == [
         "Ask (bt_1000) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)",
         "Deaf waits for a condition that can never become true (Deaf.ascxml:4)",
     ]
-    assert len(found) == 5
+    assert len(lines) == 5
 
 
 def test_a_server_that_cannot_come_to_respond(tmp_path: Path) -> None:
@@ -167,8 +167,8 @@ def test_a_server_that_cannot_come_to_respond(tmp_path: Path) -> None:
 </ros_service_handle_request></state>
 <state id="done"><ros_rate_callback name="t" target="done" /></state>
 """
-    found = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
-    assert found[3] == "Deaf stays in `done` and never sends the response of the service `/s` (Deaf.ascxml:8)"
+    lines = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
+    assert lines[3] == "Deaf stays in `done` and never sends the response of the service `/s` (Deaf.ascxml:8)"
 
 
 def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
@@ -198,8 +198,8 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
 </ros_rate_callback></state>
 """
     machines = {"Slow": slow, "Gate": gate, "Server": server}
-    found = told(tmp_path, system(machines, "<ReactiveSequence><Gate /><Slow /></ReactiveSequence>")).splitlines()
-    assert found[1:] == [
+    lines = told(tmp_path, system(machines, "<ReactiveSequence><Gate /><Slow /></ReactiveSequence>")).splitlines()
+    assert lines[1:] == [
         "the tree waits for Slow (bt_1002) to answer its halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock advances (Server.ascxml:5)",
@@ -209,8 +209,8 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
 
 
 def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
-    found = told(tmp_path, CROSSED)
-    assert set(found.splitlines()) == {
+    text = told(tmp_path, CROSSED)
+    assert set(text.splitlines()) == {
         "A waits in `wait` for the response of the service `/b` (A.ascxml:5)",
         "B waits in `wait` for the response of the service `/a` (B.ascxml:5)",
     }
@@ -261,8 +261,8 @@ NODES = """\
 
 def test_the_tree_waits_at_the_line_of_the_node_that_is_ticked(tmp_path: Path) -> None:
     """Behind inner nodes, and not that of another node of the same name."""
-    found = told(tmp_path, system({"Fetch": ASK, "Server": SERVER, "Publisher": PUBLISHER}, NODES)).splitlines()
-    assert found[:2] == [
+    lines = told(tmp_path, system({"Fetch": ASK, "Server": SERVER, "Publisher": PUBLISHER}, NODES)).splitlines()
+    assert lines[:2] == [
         "the clock waits at 2 s for the tree to take its next tick (tree.xml:3)",
         "the tree waits for Fetch (bt_1003) to answer its tick (tree.xml:6)",
     ]

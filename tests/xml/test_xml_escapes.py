@@ -51,11 +51,11 @@ MAPPED = [
 @pytest.mark.parametrize(("written", "meant", "parts"), MAPPED)
 def test_way_back(written: str, meant: str, parts: list[str]) -> None:
     text = f"__{written}__"
-    found = decoded(text, Span(2, 2 + len(written)))
-    assert found.text == meant
-    spans = [found.span(i, i + 1) for i in range(len(meant))]
+    actual_decoded = decoded(text, Span(2, 2 + len(written)))
+    assert actual_decoded.text == meant
+    spans = [actual_decoded.span(i, i + 1) for i in range(len(meant))]
     assert [text[s.start : s.end] for s in spans] == parts
-    assert found.span(0, len(meant)) == (2, 2 + len(written))
+    assert actual_decoded.span(0, len(meant)) == (2, 2 + len(written))
 
 
 PIECES = st.lists(st.sampled_from(["a", "<", ">", "&", "&lt;", "&amp;", "&#65;", "&x;", "&#0;", ";", "é"]), max_size=12)
@@ -64,12 +64,12 @@ PIECES = st.lists(st.sampled_from(["a", "<", ">", "&", "&lt;", "&amp;", "&#65;",
 @given(PIECES)
 def test_way_back_in_order(pieces: list[str]) -> None:
     text = "".join(pieces)
-    found = decoded(text, Span(0, len(text)))
-    assert found.text == unescape(text)
-    offsets = [found.offset(i) for i in range(len(found.text) + 1)]
+    actual_decoded = decoded(text, Span(0, len(text)))
+    assert actual_decoded.text == unescape(text)
+    offsets = [actual_decoded.offset(i) for i in range(len(actual_decoded.text) + 1)]
     assert offsets == sorted(set(offsets))
     assert offsets[-1] == len(text)
-    for i, character in enumerate(found.text):
+    for i, character in enumerate(actual_decoded.text):
         assert unescape(text[offsets[i] : offsets[i + 1]]) == character or character == "&"
 
 

@@ -85,9 +85,14 @@ ATTRIBUTES = [
 def test_attributes(element: str, name: str, value: str, written: str, whole: str) -> None:
     root = parse(TEXT).root
     assert root is not None
-    found = next(e for e in root.walk() if e.name == element).get(name)
-    assert found is not None
-    assert (found.value, cut(found.value_span), cut(found.name_span), cut(found.span)) == (value, written, name, whole)
+    attribute = next(e for e in root.walk() if e.name == element).get(name)
+    assert attribute is not None
+    assert (attribute.value, cut(attribute.value_span), cut(attribute.name_span), cut(attribute.span)) == (
+        value,
+        written,
+        name,
+        whole,
+    )
 
 
 def test_character_data() -> None:

@@ -160,7 +160,9 @@ def _summary(session: Session) -> str:
     end = session.end
     if end is not None:
         parts.append(end.text)
-    if session.is_by_hand:
+    if session.is_changed:
+        parts.append("the state was changed by hand, so that the run says nothing about the model")
+    elif session.is_by_hand:
         parts.append("some steps were chosen by hand")
     return f"  {', '.join(parts)}\n"
 

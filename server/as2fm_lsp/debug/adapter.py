@@ -14,6 +14,7 @@ from typing import Any, BinaryIO
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.breakpoints import BreakpointRequests
+from as2fm_lsp.debug.by_hand import ByHandRequests
 from as2fm_lsp.debug.capabilities import CAPABILITIES
 from as2fm_lsp.debug.choices import ChoiceRequests
 from as2fm_lsp.debug.framing import Inbox, Message
@@ -39,6 +40,7 @@ class Adapter:
         self._connection = Connection(output)
         self._session = session = DebugSession(self._connection)
         self._breakpoints = BreakpointRequests(session)
+        by_hand = ByHandRequests(session)
         self._is_configured = False
         self._has_ended = False
         self._handlers: Mapping[str, Handler] = {
@@ -50,7 +52,8 @@ class Adapter:
             "disconnect": self._disconnect,
             "terminate": self._terminate,
             "cancel": self._cancel,
-            **StateRequests(session).handlers,
+            **StateRequests(session, by_hand).handlers,
+            **by_hand.handlers,
             **MovementRequests(session).handlers,
             **ChoiceRequests(session).handlers,
             **self._breakpoints.handlers,

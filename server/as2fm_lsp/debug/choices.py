@@ -37,6 +37,7 @@ class ChoiceRequests:
             "property": session.asked.question.name,
             "verdicts": debugger.verdicts,
             "isByHand": session.is_by_hand,
+            "isChanged": session.is_changed,
             "end": None if end is None else end.text,
             "fault": None if debugger.fault is None else debugger.fault.message,
             "choices": [

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.debug.by_hand import ByHandRequests, is_command
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
 from as2fm_lsp.debug.variables import Shown
 from roaml.debugging.debugger import StopReason
@@ -19,8 +20,9 @@ from roaml.debugging.values import shown, type_of
 class StateRequests:
     """The handlers of these requests."""
 
-    def __init__(self, session: DebugSession) -> None:
+    def __init__(self, session: DebugSession, by_hand: ByHandRequests) -> None:
         self._session = session
+        self._by_hand = by_hand
         self.handlers: Mapping[str, Handler] = {
             "threads": self._threads,
             "stackTrace": self._stack_trace,
@@ -79,6 +81,8 @@ class StateRequests:
         debugger = self._session.stopped
         text = arguments.text("expression", None)
         frame = self._session.frame(arguments) if arguments.has("frameId") else None
+        if arguments.text("context") == "repl" and is_command(text):
+            return {"result": self._by_hand.execute(text, frame), "variablesReference": 0}
         value = evaluate(parsed(text), debugger.values.names(frame))
         entry = ScopeEntry(text, value, expression=text)
         body: dict[str, Any] = {"result": shown(value), "type": type_of(value)}

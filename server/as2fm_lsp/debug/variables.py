@@ -46,7 +46,9 @@ class References:
         and its type says what it was."""
         entry, before = shown_.entry, shown_.before
         has_changed = before is not None and before != entry.value
-        attributes = ["readOnly", *(["changed"] if has_changed else [])]
+        attributes = ["changed"] if has_changed else []
+        if entry.variable is None:
+            attributes.insert(0, "readOnly")
         type_ = entry.type or type_of(entry.value)
         variable: dict[str, Any] = {
             "name": entry.name,

@@ -21,6 +21,7 @@ from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome
+from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session, ends_tick
 from roaml.simulation.verdicts import Decided, Verdicts
 from roaml.smc.fault import FaultError
@@ -287,6 +288,16 @@ class Debugger:
         decided = self._follow()
         after = self._reached(self._match().after(self.session.steps[position], decided))
         return self._stop_at(after) if after else self._stop(StopReason.STEP)
+
+    def intervene(self, change: Intervention) -> Stop:
+        """Change the state by hand; other steps that followed here are discarded."""
+        self._remember()
+        position = self.session.position
+        self.session.intervene(change)
+        self._verdicts.discard(position)
+        self._looked_at = -1
+        self._follow()
+        return self._stop(StopReason.STEP)
 
     def restart_frame(self, frame: Frame) -> Stop:
         """Go back to where a frame began: a handler received its event, a state was entered, a node was ticked."""

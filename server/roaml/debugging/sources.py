@@ -7,11 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from roaml.expr.types import Type
+from roaml.expr.types import Type, leaves
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.expand import Instance, node_at
+from roaml.model.ros import InterfaceType
+from roaml.model.system import sanitise
+from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
+from roaml.scxml.names import FIELD_PREFIX
 from roaml.text import Location
 from roaml.verification.target import LineColumn, VerificationTarget
 
@@ -76,6 +80,28 @@ class Sources:
     def event_parameters(self) -> Mapping[str, Mapping[str, Type]]:
         """The parameters of each event, with their types."""
         return {} if self.analysis is None else self.analysis.event_parameters(self.target.path)
+
+    @cached_property
+    def declared_parameters(self) -> Mapping[str, Mapping[str, Type]]:
+        """The parameters of each event, with the types of the ROS definitions where these declare them."""
+        system = None if self.analysis is None else self.analysis.system(self.target.path)
+        if self.analysis is None or system is None:
+            return {}
+        forms = [
+            *((f"topic_{channel.name}_msg", "message", channel) for channel in system.topics.values()),
+            *((f"srv_{sanitise(channel.name)}_req", "request", channel) for channel in system.services.values()),
+            *((f"action_{sanitise(channel.name)}_goal", "goal", channel) for channel in system.actions.values()),
+        ]
+        declared: dict[str, Mapping[str, Type]] = dict(self.event_parameters)
+        for prefix, part, channel in forms:
+            for endpoint in channel.endpoints[:1]:
+                interface = self.analysis.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
+                if isinstance(interface, InterfaceType):
+                    fields = {FIELD_PREFIX + "__".join(path): type_ for path, type_ in leaves(interface.part(part))}
+                    for event, types in self.event_parameters.items():
+                        if event.startswith(prefix):
+                            declared[event] = {name: fields.get(name, type_) for name, type_ in types.items()}
+        return declared
 
     def tag(self, origin: Origin | None) -> str:
         """The element at a place, such as `<assign>`; "" if there is none."""

@@ -26,8 +26,11 @@ def plain_search() -> ModuleType:
 
 @cache
 def plain_solver() -> ModuleType:
-    """The module of the solver, whether it was compiled or not."""
-    return _loaded("plain_solver", Path(__file__).with_name("solver.py"))
+    """The module of the solver, whether it was compiled or not; what it uses is plain Python, too."""
+    module = _loaded("plain_solver", Path(__file__).with_name("solver.py"))
+    elimination = _loaded("plain_elimination", Path(__file__).with_name("elimination.py"))
+    module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]
+    return module
 
 
 def _loaded(name: str, path: Path) -> ModuleType:

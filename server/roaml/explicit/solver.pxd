@@ -3,13 +3,14 @@
 # cython: language_level=3
 
 cimport cython
+from roaml.explicit.elimination cimport SmallProcess
 
 ctypedef long long i64
 
 cdef int MAXIMUM, MINIMUM, MEAN, NOTHING, AS_JUDGED, NEGATED
 cdef int FALSE, TRUE, UNKNOWN, STATUS, LASTS, FAILS, HOLDS
 cdef double INFINITE, CLOSE, LEAST_CHANGE, ROUNDING
-cdef int SWEEPS
+cdef int SWEEPS, SMALL
 cdef i64 MAX_WORK
 
 @cython.final
@@ -85,8 +86,21 @@ cdef class Solver:
                    distance=double, size=double, relative=double)
     cdef double _step(self, int first, int last, double[::1] values) noexcept
     @cython.locals(gap=double, i=int, state=int, tolerance=double, change=double, is_proven=int, own=int, value=double,
-                   k=int)
+                   k=int, limit=i64)
     cdef void _iterate(self, int first, int last) except *
+    @cython.locals(count=i64)
+    cdef i64 _direct_work(self, int first, int last) noexcept
+    @cython.locals(process=SmallProcess, error=double, largest=double, i=int, state=int, value=double)
+    cdef int _solve_directly(self, int first, int last, double gap) except -1
+    @cython.locals(own=int, states=int, choices=i64, i=int, state=int, process=SmallProcess, group=int, before=int)
+    cdef SmallProcess _small_process(self, int first, int last)
+    @cython.locals(share=double, at=i64, size=int, weight=double, k=int, chance=double)
+    cdef void _add_choices(self, SmallProcess process, int state, int group, int own) noexcept
+    cdef void _add_entry(self, SmallProcess process, int to, double chance, int own) noexcept
+    @cython.locals(weights=double, at=i64, size=int)
+    cdef double _weight(self, int state) noexcept
+    @cython.locals(leaves=int, k=int, to=int)
+    cdef int _is_useful(self, i64 at, int group) noexcept
     @cython.locals(i=int, own=int, value=double, k=int)
     cdef int _lower_is_proven(self, int first, int last) noexcept
     @cython.locals(merged=int, i=int)

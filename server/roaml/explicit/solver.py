@@ -5,6 +5,7 @@
 - Strongly connected components are solved in reverse topological order (Tarjan 1972, without recursion).
 - End components, in which a scheduler can stay for ever, are found (de Alfaro 1997). Each becomes one state, after
   which the equations have one solution.
+- A small component whose values converge slowly is solved by policy iteration (`elimination`).
 - Values from below by value iteration; from above by Park induction, as in optimistic value iteration (Hartmanns and
   Kaminski 2020): values that no step increases are upper bounds.
 """
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from roaml.explicit.elimination import SmallProcess
 from roaml.explicit.memory import flat
 
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
@@ -28,6 +30,8 @@ LEAST_CHANGE = 1e-16
 ROUNDING = 1e-15
 SWEEPS = 100
 """The number of steps in which upper bounds must have proved themselves."""
+SMALL = 2_500
+"""Components of up to so many states are solved directly when value iteration is slow; the matrix occupies 50 MB."""
 MAX_WORK = 20_000_000_000
 """The maximum number of additions for all components; then bounds stay as wide as they are."""
 
@@ -702,9 +706,17 @@ class Solver:
         tolerance = CLOSE / 10
         change = INFINITE
         is_proven = 0
+        limit = MAX_WORK
+        if last - first <= SMALL:
+            limit = self.work + self.size + self._direct_work(first, last)
         while is_proven == 0:
-            while change > tolerance and self.work < MAX_WORK:
+            while change > tolerance and self.work < limit:
                 change = self._step(first, last, self.low)
+            if change > tolerance and limit < MAX_WORK:
+                if self._solve_directly(first, last, gap) != 0:
+                    return
+                limit = MAX_WORK
+                continue
             for i in range(first, last):
                 own = self.group[self.order[i]]
                 if own == self.order[i] and self.fixed[own] == 0:
@@ -742,6 +754,133 @@ class Solver:
             if self.fixed[state] == 0:
                 self.low[state] = self.low[self.group[state]]
                 self.high[state] = self.high[self.group[state]]
+
+    def _direct_work(self, first: int, last: int) -> int:
+        """The number of additions after which a component is solved directly, in about the same time."""
+        count = last - first
+        return count * count * count // 16 + 1000 * count
+
+    def _solve_directly(self, first: int, last: int, gap: float) -> int:
+        """Bounds for the states of a component by policy iteration; returns 0 if that is not possible."""
+        process = self._small_process(first, last)
+        if process is None:
+            return 0
+        error = process.solve(MINIMUM if self.mode == MINIMUM else MAXIMUM)
+        largest = max((abs(value) for value in process.values), default=0.0)
+        if error > CLOSE * (largest if self.is_reward != 0 else 1.0):
+            return 0
+        for i in range(first, last):
+            state = self.order[i]
+            if self.fixed[state] != 0:
+                continue
+            value = process.values[self.index[self.group[state]]]
+            self.low[state] = value - error
+            self.high[state] = value + error + gap
+            if self.is_signed == 0 and self.low[state] < 0.0:
+                self.low[state] = 0.0
+            if self.is_reward == 0 and self.high[state] > 1.0:
+                self.high[state] = 1.0
+        return 1
+
+    def _small_process(self, first: int, last: int) -> Any:
+        """The states of a component, in which successors outside are immediate values; `None` if a state has no choice.
+        `index` is then the number of each merged state."""
+        own = self.sets
+        self.sets += 1
+        states = 0
+        choices = 0
+        for i in range(first, last):
+            state = self.order[i]
+            if self.fixed[state] != 0:
+                continue
+            self.set_of[state] = own
+            if self.group[state] == state:
+                states += 1
+            choices += self.start[state + 1] - self.start[state]
+        process = SmallProcess(states, choices, choices)
+        states = 0
+        i = first
+        while i < last:
+            group = self.group[self.order[i]]
+            if self.fixed[group] != 0:
+                i += 1
+                continue
+            self.index[group] = states
+            states += 1
+            while i < last and self.group[self.order[i]] == group:
+                i += 1
+        i = first
+        while i < last:
+            group = self.group[self.order[i]]
+            if self.fixed[group] != 0:
+                i += 1
+                continue
+            before = process.choices
+            while i < last and self.group[self.order[i]] == group:
+                self._add_choices(process, self.order[i], group, own)
+                i += 1
+            if process.choices == before:
+                return None
+            process.end_state()
+        return process
+
+    def _add_choices(self, process: Any, state: int, group: int, own: int) -> None:
+        """Add the choices of a state to a process: with uniform choices, one for all. Those that stay in a merged state
+        or lead to an infinite value are left out."""
+        share = 1.0
+        if self.mode == MEAN:
+            share = 1.0 / self._weight(state)
+        at = self.start[state]
+        while at < self.start[state + 1]:
+            size = self.code[at]
+            if size >= 0:
+                if self.mode == MEAN or (self.group[size] != group and self.low[self.group[size]] != INFINITE):
+                    self._add_entry(process, size, share, own)
+                    if self.mode != MEAN:
+                        process.end_choice()
+                at += 1
+                continue
+            if self.mode == MEAN or self._is_useful(at, group) != 0:
+                weight = share * self.reals[self.code[at + 1]] if self.mode == MEAN else 1.0
+                if self.is_reward != 0:
+                    process.gain[process.choices] += weight * self.reals[self.code[at + 2]]
+                for k in range(-size):
+                    self._add_entry(
+                        process, self.code[at + 3 + 2 * k], weight * self.reals[self.code[at + 4 + 2 * k]], own
+                    )
+                if self.mode != MEAN:
+                    process.end_choice()
+            at += 3 - 2 * size
+        if self.mode == MEAN:
+            process.end_choice()
+
+    def _add_entry(self, process: Any, to: int, chance: float, own: int) -> None:
+        if self.set_of[to] == own:
+            process.add_entry(self.index[self.group[to]], chance)
+        else:
+            process.leaves[process.choices] += chance
+            process.gain[process.choices] += chance * self.low[self.group[to]]
+
+    def _weight(self, state: int) -> float:
+        """The sum of the weights of the choices of a state."""
+        weights = 0.0
+        at = self.start[state]
+        while at < self.start[state + 1]:
+            size = self.code[at]
+            weights += 1.0 if size >= 0 else self.reals[self.code[at + 1]]
+            at += 1 if size >= 0 else 3 - 2 * size
+        return weights
+
+    def _is_useful(self, at: int, group: int) -> int:
+        """Whether a choice with probabilities leaves a merged state, and leads to finite values only."""
+        leaves = 0
+        for k in range(-self.code[at]):
+            to = self.group[self.code[at + 3 + 2 * k]]
+            if self.low[to] == INFINITE:
+                return 0
+            if to != group:
+                leaves = 1
+        return leaves
 
     def _lower_is_proven(self, first: int, last: int) -> int:
         """Lower bounds where rewards may be negative: values that no step decreases."""

@@ -29,6 +29,8 @@ _RANGES = {
     "unsigned": (0, 2**32 - 1),
     "uint64": (0, 2**64 - 1),
 }
+SIMPLE_TYPES = (*_RANGES, "double", "float", "bool", "string", "NodeStatus")
+"""The types without templates and namespaces."""
 _REALS = ("double", "float", "chrono::milliseconds", "chrono::seconds")
 _BOOLS = ("0", "1", "true", "false", "True", "False", "TRUE", "FALSE")
 _STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
@@ -52,6 +54,13 @@ def element_type(name: str) -> str | None:
     """The type of the elements of a list; `None` if the type is not a list."""
     match = _LIST.match(name)
     return match[1] if match else None
+
+
+def is_converted(type_name: str) -> bool:
+    """Whether the library itself converts texts to a type; other types need a function of the program."""
+    name = normal(type_name)
+    inner = element_type(name)
+    return is_converted(inner) if inner is not None else name in (*SIMPLE_TYPES, *_REALS, ANY, SCRIPT)
 
 
 @dataclass(frozen=True, slots=True)

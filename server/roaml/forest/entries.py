@@ -15,8 +15,10 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.forest.cpp_types import ANY, SCRIPT
-from roaml.forest.forest import Forest, port_type, ports_of
+from roaml.forest.forest import Forest, port_type
+from roaml.forest.ports import ports_of
 from roaml.forest.scripts import names_in, scripts_of
+from roaml.libraries import Node
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.roles import Direction
 from roaml.text import Span
@@ -51,6 +53,7 @@ class Use:
         type: the type of the port, `any` if not known.
         from_library: whether the type comes from a library, not from a model in a file.
         script: whether the use is in a script.
+        remaps: whether the use only gives an entry to a subtree under another name.
         span: the place of the value; in scripts, of the value of the attribute.
     """
 
@@ -65,16 +68,21 @@ class Use:
     script: bool
     node: TreeNode
     span: Span
+    remaps: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Entries:
     """Attributes:
     uses: all uses, in the order of the files and of the text.
+    remapped: the names that uses of subtrees give to entries outside.
+    intended: the names that wrong values of output ports probably name; "" is any name.
     """
 
     uses: tuple[Use, ...]
     _roots: Mapping[Key, Key]
+    remapped: frozenset[Key] = frozenset()
+    intended: frozenset[Key] = frozenset()
 
     def entry(self, tree: str, name: str) -> Key:
         """The key that represents the entry to which a name in a tree refers."""
@@ -82,6 +90,10 @@ class Entries:
         while key in self._roots:
             key = self._roots[key]
         return key
+
+    def is_intended(self, tree: str, name: str) -> bool:
+        """Whether a wrong value of an output port is probably intended to write an entry."""
+        return (tree, name) in self.intended or (tree, "") in self.intended
 
     def by_entry(self) -> Mapping[Key, list[Use]]:
         uses: dict[Key, list[Use]] = {}
@@ -99,9 +111,36 @@ def entry_of(setting: PortSetting) -> str | None:
     return setting.attribute.name if name == "=" else name or None
 
 
+def names_entry(node: Node, port: str) -> bool:
+    """Whether the value of a port is the name of an entry even without braces."""
+    return (node.name, port) in _NAMING_PORTS
+
+
 def find_entries(forest: Forest) -> Entries:
     uses = tuple(_uses(forest))
-    return Entries(uses, _joined(forest, uses))
+    return Entries(uses, _joined(forest, uses), frozenset(_remapped(forest)), frozenset(_intended(forest, uses)))
+
+
+def _remapped(forest: Forest) -> Iterator[Key]:
+    for _, inner, node in _calls(forest):
+        yield from ((inner, setting.attribute.name) for setting in ports_of(node) if entry_of(setting) is not None)
+
+
+def _intended(forest: Forest, uses: tuple[Use, ...]) -> Iterator[Key]:
+    names = {(use.tree, use.name) for use in uses if not use.node.is_subtree or use.remaps}
+    for _, inner, node in _calls(forest):
+        model = forest.subtree_models.get(inner)
+        for setting in ports_of(node):
+            name = setting.attribute.name
+            if (inner, name) not in names and (model is None or model.port(name) is None):
+                yield inner, ""
+    for _, tree, node in forest.all_nodes():
+        known = forest.declaration(node)
+        for setting in ports_of(node) if known else ():
+            port = known.port(setting.attribute.name) if known else None
+            if port is not None and port.direction is Direction.OUT and entry_of(setting) is None:
+                text = setting.value.value.strip().strip("{}")
+                yield _name(tree), text if _NAME.match(text) else ""
 
 
 def _uses(forest: Forest) -> Iterator[Use]:
@@ -135,8 +174,8 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
                 continue
             direction = port.direction
             reads = direction.reads if direction is not Direction.INOUT else None
-            type_ = port_type(port)
             assert known is not None
+            type_ = ANY if forest.is_partly_described(known) else port_type(port)
             library = bool(known.library)
             yield Use(path, own, name, reads, direction.writes, True, type_, library, False, node, span)
         elif name is not None:
@@ -154,6 +193,8 @@ def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator
             yield Use(path, inner, key, False, True, True, ANY, False, False, node, setting.value.span)
         elif not known:
             yield Use(path, own, name, None, None, True, ANY, False, False, node, setting.value.span)
+        else:
+            yield Use(path, own, name, False, False, False, ANY, False, False, node, setting.value.span, remaps=True)
 
 
 def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.forest.cpp_types import normal
+from roaml.forest.ports import ports_of
 from roaml.forest.settings import TreeSettings
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library
 from roaml.model.kinds import PROJECT_EXTENSION
-from roaml.model.tree import NodeModel, PortSetting, Tree, TreeFile, TreeNode, nodes
+from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.roles import NodeKind
 
 CPP = library(BEHAVIORTREE_CPP)
@@ -29,7 +30,7 @@ _COMMON_NAMES = frozenset(
 )
 """Names that are also common in other programs: such a name alone does not show that the library is used."""
 
-_OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
+OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))
 
 
@@ -37,7 +38,8 @@ _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.
 class Forest:
     """Attributes:
     path: the file that is analysed.
-    files: (path, file) pairs of that file, the files that it includes, projects, and models.
+    files: (path, file) pairs of that file, the files that it includes, projects, and models. Files that include it
+        come first.
     beside: the names of the trees in the same folder, because a program may load these files together.
     complete: whether all included files could be read.
     """
@@ -48,9 +50,20 @@ class Forest:
     beside: frozenset[str] = frozenset()
     complete: bool = True
 
-    @property
+    @cached_property
     def file(self) -> TreeFile:
-        return self.files[0][1]
+        return next(file for path, file in self.files if path == self.path)
+
+    @property
+    def is_included(self) -> bool:
+        """Whether another file includes the file that is analysed."""
+        return self.files[0][0] != self.path
+
+    @property
+    def main(self) -> str | None:
+        """The name of the tree that is executed, if a file names it."""
+        main = self.files[0][1].main
+        return main.value if main else None
 
     @cached_property
     def is_version_3(self) -> bool:
@@ -70,6 +83,34 @@ class Forest:
         return trees
 
     @cached_property
+    def subtrees(self) -> Mapping[str, frozenset[str]]:
+        """Tree -> the trees that it uses, known or not."""
+        return {
+            name: frozenset(
+                node.plugin.value
+                for node in nodes(tree)
+                if node.plugin is not None and (node.is_subtree or self.names_tree(node))
+            )
+            for name, (_, tree) in self.trees.items()
+        }
+
+    def reached(self, start: str) -> frozenset[str]:
+        """A tree and all trees that are part of it."""
+        reached, pending = {start}, [start]
+        while pending:
+            for name in self.subtrees.get(pending.pop(), frozenset()) - reached:
+                reached.add(name)
+                pending.append(name)
+        return frozenset(reached)
+
+    @cached_property
+    def executed(self) -> frozenset[str]:
+        """The trees that are executed: of files that do not name the executed tree, all trees."""
+        if self.main is not None and self.main in self.trees:
+            return self.reached(self.main)
+        return frozenset((*self.trees, ""))
+
+    @cached_property
     def models(self) -> Mapping[str, Node]:
         """The nodes that models in the files describe, without subtrees; if names are equal, the first one."""
         models: dict[str, Node] = {}
@@ -78,6 +119,15 @@ class Forest:
                 if model.id is not None and model.kind != "SubTree":
                     models.setdefault(model.id.value, node_of(model))
         return models
+
+    def is_partly_described(self, node: Node) -> bool:
+        """Whether a mistake in the model of a node may hide ports of it."""
+        return node.name in self._mistaken_models and not node.library
+
+    @cached_property
+    def _mistaken_models(self) -> frozenset[str]:
+        models = (model for _, file in self.files for model in file.models)
+        return frozenset(model.id.value for model in models if model.id is not None and not _is_clear(model))
 
     @cached_property
     def subtree_models(self) -> Mapping[str, Node]:
@@ -172,6 +222,12 @@ class Forest:
             return None
         return self.node(node.plugin.value)
 
+    def declaration(self, node: TreeNode) -> Node | None:
+        """The declaration of the type of a node, also of a subtree that a model describes; `None` if there is none."""
+        if node.plugin is not None and (node.is_subtree or self.names_tree(node)):
+            return self.subtree_models.get(node.plugin.value)
+        return self.known_node(node)
+
     def names_tree(self, node: TreeNode) -> bool:
         """Whether a node in compact form has the name of a tree, which is then executed as a subtree."""
         return node.compact and node.plugin is not None and node.plugin.value in self.trees
@@ -182,8 +238,15 @@ def _is_old(node: TreeNode) -> bool:
     return (
         node.element.name in _OLD_TAGS
         or (not node.compact and not node.is_subtree and name in _OLD_TAGS)
-        or (node.is_subtree and any(node.element.get(attribute) for attribute in _OLD_ATTRIBUTES))
+        or (node.is_subtree and any(node.element.get(attribute) for attribute in OLD_ATTRIBUTES))
     )
+
+
+def _is_clear(model: NodeModel) -> bool:
+    """Whether a model names each of its ports once."""
+    names = [port.name.value if port.name else "" for port in model.ports]
+    is_port = all(child.name.endswith("_port") for child in model.element.elements if child.get("name"))
+    return "" not in names and len(set(names)) == len(names) and is_port
 
 
 def node_of(model: NodeModel) -> Node:
@@ -206,11 +269,6 @@ def node_of(model: NodeModel) -> Node:
 
 
 _KINDS = frozenset(kind.value for kind in NodeKind)
-
-
-def ports_of(node: TreeNode) -> Iterator[PortSetting]:
-    """The attributes of a node that set ports, without those that begin with `_`, which belong to the library."""
-    return (setting for setting in node.ports if not setting.attribute.name.startswith("_"))
 
 
 def port_type(port: Port | None) -> str:

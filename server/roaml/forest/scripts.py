@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roaml.forest.cpp_types import SCRIPT
 from roaml.forest.forest import CPP, Forest
+from roaml.forest.ports import probable_ports
 from roaml.model.tree import TreeNode
 from roaml.script.parse import ScriptProblem, parse
 from roaml.script.tree import Assignment, Name, Script, walk
@@ -20,6 +22,7 @@ CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """The attributes with scripts that are executed after a node has ended."""
 
+_CREATED = re.compile(r"(@?[A-Za-z_]\w*)\s*:=", re.ASCII)
 _CONDITION_PORTS = ("Precondition", "ScriptCondition")
 _SCRIPT_PORTS = {
     name: ports
@@ -44,9 +47,16 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
     name = node.plugin.value if node.plugin else ""
     if name in _SCRIPT_PORTS and forest.known_node(node) is CPP.nodes[name]:
         for port in _SCRIPT_PORTS[name]:
-            attribute_of_port = node.element.get(port)
+            attribute_of_port = node.element.get(port) or _probable(node, port)
             if attribute_of_port is not None and attribute_of_port.has_value:
                 yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
+
+
+def _probable(node: TreeNode, port: str) -> Attribute | None:
+    """The misspelled attribute that probably means a port."""
+    assert node.plugin is not None
+    probable = probable_ports(node, CPP.nodes[node.plugin.value])
+    return next((node.element.get(name) for name, ports in probable.items() if port in ports), None)
 
 
 def script_attributes(node: TreeNode) -> Iterator[Attribute]:
@@ -66,8 +76,9 @@ def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
 
 @functools.lru_cache(maxsize=2048)
 def names_in(text: str) -> tuple[tuple[str, str], ...]:
-    """The names in a script, each with `read` or with the operator that assigns to it."""
-    script, _ = parse(Decoded(text, 0))
+    """The names in a script, each with `read` or with the operator that assigns to it. A statement with a syntax error
+    creates its entry as well."""
+    script, problems = parse(Decoded(text, 0))
     names: list[tuple[str, str]] = []
     targets: set[int] = set()
     for expr in walk(script):
@@ -76,4 +87,6 @@ def names_in(text: str) -> tuple[tuple[str, str], ...]:
             names.append((expr.target.name, expr.operator))
         elif isinstance(expr, Name) and id(expr) not in targets:
             names.append((expr.name, "read"))
+    if problems:
+        names += [(name, ":=") for name in _CREATED.findall(text)]
     return tuple(names)

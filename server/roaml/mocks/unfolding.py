@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from roaml.forest.entries import entry_of, is_autoremapped
-from roaml.forest.forest import Forest, ports_of
+from roaml.forest.forest import Forest
+from roaml.forest.ports import ports_of
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER

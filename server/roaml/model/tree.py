@@ -12,6 +12,7 @@ from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
 from roaml.roles import Direction, ValueRole
+from roaml.suggest import are_similar
 from roaml.xml_syntax import Attribute, Document, Element, Text
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
@@ -128,13 +129,20 @@ def build_tree_file(document: Document) -> TreeFile | None:
             for child in root.elements
             if child.name == "BehaviorTree"
         ),
-        tuple(_model(model) for child in root.elements if child.name == "TreeNodesModel" for model in child.elements),
+        tuple(_model(model) for child in root.elements if _is_list_of_models(child) for model in child.elements),
         tuple(
             Include(child, name_of(child.get("path")), name_of(child.get("ros_pkg")))
             for child in root.elements
             if child.name == "include"
         ),
     )
+
+
+def _is_list_of_models(element: Element) -> bool:
+    """Whether an element is a `<TreeNodesModel>`, or one whose name is misspelled."""
+    if element.name == "TreeNodesModel":
+        return True
+    return element.name not in BEHAVIOR_TREE.elements and are_similar(element.name, "TreeNodesModel")
 
 
 def _node(element: Element) -> TreeNode:

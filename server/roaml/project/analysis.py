@@ -463,6 +463,17 @@ class Analysis:
                 outlines.setdefault(file.path, file)
         return tuple(outlines.values())
 
+    def _including(self, path: str) -> tuple[str, ...]:
+        """The files of a family that include a file and that no other includes, then the file itself."""
+        tops = self._tops.get(path, ())
+        return (path,) if path in tops else (*(top for top in tops if path in self.trees_from(top)), path)
+
+    def outlines_around(self, path: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of a tree file that belongs to no system, and of the files that include it or that it
+        includes."""
+        outlines = (outline for top in self._including(path) for outline in self.outlines_from(top))
+        return tuple({outline.path: outline for outline in outlines}.values())
+
     @cached_property
     def _tops(self) -> Mapping[str, tuple[str, ...]]:
         """Tree file -> those of its family that no other includes."""
@@ -486,14 +497,16 @@ class Analysis:
         return families
 
     def forest(self, path: str) -> Forest | None:
-        """A tree file that belongs to no system, with the files that are analysed together with it."""
+        """A tree file that belongs to no system, with the files that are analysed together with it: those that include
+        it come first."""
         if self.tree(path) is None:
             return None
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
-        paths = tuple(dict.fromkeys((*self.trees_from(path), *models)))
+        paths = tuple(dict.fromkeys(p for top in self._including(path) for p in self.trees_from(top)))
+        paths = tuple(dict.fromkeys((*paths, *models)))
         files = tuple((p, tree) for p in paths if (tree := self.tree(p)) is not None)
         beside = self._names_in_folder(path)
-        targets = (self.include_path(p, i) for p, tree in files for i in tree.includes if i.path)
+        targets = (self.include_path(p, i) for p, tree in files for i in tree.includes)
         complete = all(target is not None and self.tree(target) is not None for target in targets)
         key = (files, beside, complete, self.tree_settings)
         return self.memo.get("forest", path, key, lambda: Forest(path, files, self.tree_settings, beside, complete))

@@ -49,6 +49,7 @@ from roaml.rules.rule import (
     SystemContext,
     TreeContext,
 )
+from roaml.rules.support.end_tags import without_misnamed_ends
 from roaml.text import Location, SourceFile, Span
 
 log = logging.getLogger(__name__)
@@ -252,7 +253,7 @@ class _Run:
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
-        findings = tuple(self._all())
+        findings = without_misnamed_ends(tuple(self._all()))
         if any(finding.code in _FORM for finding in findings):
             # Something that seems unused may be used in the unreadable part.
             return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
@@ -409,14 +410,25 @@ class _Run:
         missing, interface = self._missing_includes(), self.analysis.interface
         forest = None if self.system_path else self.analysis.forest(self.path)
         return TreeContext(
-            self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest
+            *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest),
+            self._unknown_packages(),
         )
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
-        """The trees with which this file is checked: those of its system, or those that it includes."""
+        """The trees with which this file is checked: those of its system, or those that it includes and that include
+        it."""
         if self.system_path:
             return self.analysis.tree_outlines(self.system_path)
-        return self.analysis.outlines_from(self.path)
+        return self.analysis.outlines_around(self.path)
+
+    def _unknown_packages(self) -> frozenset[str]:
+        """The ROS packages of includes that no folder around the file has."""
+        file = self.analysis.tree(self.path)
+        return frozenset(
+            include.package.value
+            for include in (file.includes if file else ())
+            if include.package is not None and self.analysis.include_path(self.path, include) is None
+        )
 
     def _missing_includes(self) -> dict[str, str]:
         """The includes that cannot be used, with the reasons."""
@@ -427,7 +439,7 @@ class _Run:
             if include.path is None:
                 continue
             if target is None:
-                if self.system is not None and include.package is not None:
+                if self.system_path and include.package is not None:
                     problems[include.path.value] = (
                         f"no folder around this file has the ROS package `{include.package.value}`"
                     )

@@ -86,7 +86,8 @@ class MachineContext:
 @dataclass(frozen=True, slots=True)
 class TreeContext:
     """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` are the
-    facts that unreadable parts of this file may contain. `forest` is given if the file belongs to no system."""
+    facts that unreadable parts of this file may contain. `forest` is given if the file belongs to no system.
+    `unknown_packages` are the ROS packages of includes that no folder around the file has."""
 
     source: SourceFile
     document: Document
@@ -98,6 +99,7 @@ class TreeContext:
     gaps: tuple[PlacedGap, ...]
     older: bool = False
     forest: Forest | None = None
+    unknown_packages: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

@@ -101,6 +101,14 @@ def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[Sc
         yield from _truth(script.statements[-1], entry)
 
 
+def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
+    """The assignment that is the value of a condition: probably a comparison was intended."""
+    last = script.statements[-1] if script.statements else None
+    if isinstance(last, Assignment) and not isinstance(last.value, Comparison):
+        compared = "==" if last.operator in ("=", ":=") else ""
+        yield ScriptProblem(last.operator_span, f"`{last.operator}` assigns a value; `==` compares", compared)
+
+
 def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
     """The statements before the last one that assign nothing: either an operator is missing, or they are
     superfluous."""

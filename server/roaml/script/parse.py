@@ -330,6 +330,8 @@ class _Parser:
             raise _MistakeError(
                 token, f"`{token.text}` is not an operator; write `{_WORDS[token.text]}`", _WORDS[token.text]
             )
+        if follows.text == "(" and follows.start == token.end and token.text not in _WORDS:
+            raise _MistakeError(token, f"the script language has no functions, so `{token.text}(` is not a call")
         return Name(self.span(token), token.text)
 
     def _number(self) -> Expr:

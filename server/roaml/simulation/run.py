@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from roaml.simulation.intervention import Intervention, intervene, is_free, is_possible
 from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
@@ -42,6 +43,9 @@ class Decision:
     vector: int
     picks: tuple[int, ...]
     ways: tuple[int, ...]
+
+
+ByHand = Decision | Intervention
 
 
 class EnabledEdges(NamedTuple):
@@ -90,7 +94,7 @@ class Run:
         asked: CompiledProperty,
         seed: int,
         trace: int = 0,
-        decisions: Iterable[Decision | None] = (),
+        decisions: Iterable[ByHand | None] = (),
     ) -> None:
         self.checker = checker
         self.asked = asked
@@ -102,7 +106,8 @@ class Run:
         self.legend = checker.legend
         self._reader = StepReader(self._kernel, self.legend)
         self.steps: list[TraceStep] = []
-        self.decisions: list[Decision | None] = []
+        self.decisions: list[ByHand | None] = []
+        self._interventions: list[int] = []
         self._snapshots: dict[int, tuple[Any, ...]] = {}
         self._begin()
         shared = self.legend.layout.shared
@@ -129,7 +134,7 @@ class Run:
 
     # ------------------------------------------------------------ moving
 
-    def advance(self, decision: Decision | None = None) -> TraceStep | None:
+    def advance(self, decision: ByHand | None = None) -> TraceStep | None:
         """Take a step. If it differs from the step taken here before, the steps after the position are discarded.
 
         Returns:
@@ -154,13 +159,18 @@ class Run:
             return self.steps[self.position - 1]
         if self.position <= len(self.steps):
             self._discard(self.position - 1)
-        self.steps.append(self._reader.read(self.position))
+        if isinstance(decision, Intervention):
+            action = f"{decision.event}_on_send" if decision.event else None
+            self.steps.append(self._reader.change(self.position, action))
+        else:
+            self.steps.append(self._reader.read(self.position))
         self.decisions.append(decision)
         return self.steps[-1]
 
     def _discard(self, position: int) -> None:
         """Discard the steps after `position`."""
         del self.steps[position:], self.decisions[position:]
+        self._interventions = [number for number in self._interventions if number <= position]
         self._snapshots = {at: saved for at, saved in self._snapshots.items() if at <= position}
 
     def _return(self) -> None:
@@ -191,7 +201,7 @@ class Run:
         self._kernel.load(saved)
         self.position = position
 
-    def _take(self, decision: Decision | None, until: int = 0) -> None:
+    def _take(self, decision: ByHand | None, until: int = 0) -> None:
         """Take one step by hand, or the steps that the seed decides up to position `until`; 0 means only the next
         one."""
         if decision is None:
@@ -199,6 +209,12 @@ class Run:
             while self._kernel.outcome()[0] < until:
                 self._learn(self._kernel.advance(until))
             self.position = until
+        elif isinstance(decision, Intervention):
+            intervene(self._kernel, self.legend, self._reader.variables, decision)
+            if self._kernel.problem()[0]:
+                self._learn(FAULTY)
+            self.position += 1
+            self._interventions = sorted({*self._interventions, self.position})
         else:
             self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
             self._learn(self._kernel.look())
@@ -207,7 +223,22 @@ class Run:
         if self.position % SNAPSHOT_INTERVAL == 0 and self.position not in self._snapshots:
             self._snapshots[self.position] = self.status, self.has_ended, self._kernel.save()
 
-    def _check_possible(self, decision: Decision) -> None:
+    @property
+    def is_changed(self) -> bool:
+        """Whether the state was changed by hand up to the position, so that it says nothing about the model."""
+        return bool(self._interventions) and self._interventions[0] <= self.position
+
+    def is_free(self, event: str) -> bool:
+        """Whether an event can be sent by hand: the last one of its name has been received."""
+        return is_free(self._kernel, self.legend, event)
+
+    def _check_possible(self, decision: ByHand) -> None:
+        if isinstance(decision, Intervention):
+            if not is_possible(self.legend, self._reader.variables, decision):
+                raise RunError("the model has no such event or variable, or the value does not fit")
+            if decision.event and not self.is_free(decision.event):
+                raise RunError("the last message of this kind has not been received yet")
+            return
         for enabled in self.enabled():
             if enabled.vector == decision.vector:
                 fits = len(decision.picks) == len(decision.ways) == len(enabled.slots) and all(
@@ -219,8 +250,9 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """Store the verdict on the property after a step; a decided property stays decided."""
-        if self.status == UNKNOWN or status == FAULTY:
+        """Store the verdict on the property after a step; a decided property stays decided, and a state that was
+        changed by hand decides nothing."""
+        if status == FAULTY or (self.status == UNKNOWN and not self.is_changed):
             self.status = status
             self._check()
 

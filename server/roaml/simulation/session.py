@@ -13,7 +13,8 @@ from roaml.jani.model import Automaton
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome, choices
 from roaml.simulation.follow import Follower
-from roaml.simulation.run import SNAPSHOT_INTERVAL, Decision, Run
+from roaml.simulation.intervention import Intervention
+from roaml.simulation.run import SNAPSHOT_INTERVAL, ByHand, Decision, Run
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import resting
 from roaml.smc.end import End
@@ -42,13 +43,15 @@ class SavedSession:
     seed: int
     trace: int
     position: int
-    decisions: tuple[Decision | None, ...] = ()
+    decisions: tuple[ByHand | None, ...] = ()
 
     def to_json(self) -> str:
         """The session as JSON text. Consecutive steps that the seed decides are written as their number."""
         rows: list[Any] = []
         for decision in self.decisions:
-            if decision is not None:
+            if isinstance(decision, Intervention):
+                rows.append(decision.to_json())
+            elif decision is not None:
                 rows.append({"vector": decision.vector, "picks": decision.picks, "ways": decision.ways})
             elif rows and isinstance(rows[-1], int):
                 rows[-1] += 1
@@ -76,10 +79,12 @@ class SavedSession:
             value = json.loads(text)
             if value["format"] != FORMAT_VERSION or value["engine"] != ENGINE_VERSION:
                 raise ValueError("this session was saved by another version of the program")
-            decisions: list[Decision | None] = []
+            decisions: list[ByHand | None] = []
             for row in value["decisions"]:
                 if isinstance(row, int) and 0 < row <= MAX_STEPS - len(decisions):
                     decisions += [None] * row
+                elif "event" in row:
+                    decisions.append(Intervention.from_json(row))
                 else:
                     picks, ways = tuple(map(int, row["picks"])), tuple(map(int, row["ways"]))
                     decisions.append(Decision(int(row["vector"]), picks, ways))
@@ -170,6 +175,11 @@ class Session:
         return any(decision is not None for decision in self._run.decisions[: self.position])
 
     @property
+    def is_changed(self) -> bool:
+        """Whether the state was changed by hand up to here, so that the run says nothing about the model."""
+        return self._run.is_changed
+
+    @property
     def seed(self) -> int:
         return self._run.seed
 
@@ -188,7 +198,7 @@ class Session:
         return self._clock or ()
 
     @property
-    def decisions(self) -> Sequence[Decision | None]:
+    def decisions(self) -> Sequence[ByHand | None]:
         """The decision of each of `steps`; `None` where the seed decides."""
         return self._run.decisions
 
@@ -203,6 +213,11 @@ class Session:
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
         """The parts of a step except for those of automata that only hold an event."""
         return self._follower.events.actors(step)
+
+    @property
+    def actions(self) -> list[str | None]:
+        """The actions of the model; `None` for steps without one."""
+        return [action for _, action in self._run.legend.vectors]
 
     @property
     def automata_of_model(self) -> Sequence[Automaton]:
@@ -267,11 +282,24 @@ class Session:
         Returns:
             `None` if no step changes anything.
         """
-        decision = None
         if choice is not None:
-            decision = (outcome or self._drawn(choice)).decision
-        elif self.position < len(self._run.steps):
-            decision = self._run.decisions[self.position]
+            return self._advance((outcome or self._drawn(choice)).decision)
+        return self._advance(self._run.decisions[self.position] if self.position < len(self._run.steps) else None)
+
+    def intervene(self, change: Intervention) -> None:
+        """Change the state by hand, as a step of the run. From then on, the run decides no property.
+
+        Raises:
+            RunError: the model has no such event or variable, or the last event of this name has not been received.
+            FaultError: a guard has no value in the new state.
+        """
+        self._advance(change)
+
+    def is_free(self, event: str) -> bool:
+        """Whether an event can be sent by hand: the last one of its name has been received."""
+        return self._run.is_free(event)
+
+    def _advance(self, decision: ByHand | None) -> TraceStep | None:
         position = self.position
         before = self._run.steps[position] if position < len(self._run.steps) else None
         step = self._run.advance(decision)

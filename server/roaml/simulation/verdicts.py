@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from roaml.simulation.run import Decision
+from roaml.simulation.intervention import Intervention
+from roaml.simulation.run import ByHand
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
@@ -28,7 +29,7 @@ class Verdicts:
     def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
         self._followers = [_PropertyFollower(checker, asked, seed, trace) for asked in checker.asked]
 
-    def follow(self, decisions: Sequence[Decision | None], position: int, has_ended: bool) -> list[Decided]:
+    def follow(self, decisions: Sequence[ByHand | None], position: int, has_ended: bool) -> list[Decided]:
         """Follow the run up to a position; returns the properties that are decided exactly there.
 
         Args:
@@ -72,9 +73,11 @@ class _PropertyFollower:
         if self._position > position and not (self.decided and self.decided.position <= position):
             self._begin()
 
-    def follow(self, decisions: Sequence[Decision | None], position: int, has_ended: bool) -> None:
+    def follow(self, decisions: Sequence[ByHand | None], position: int, has_ended: bool) -> None:
         while self.decided is None and self._position < position:
             decision = decisions[self._position]
+            if isinstance(decision, Intervention):
+                return  # what follows says nothing about the model
             if decision is None:
                 until = self._position + 1
                 while until < position and decisions[until] is None:
@@ -86,7 +89,7 @@ class _PropertyFollower:
                 status = self._kernel.look()
                 self._position += 1
             self._note(status)
-        if has_ended and self.decided is None and self._kernel.ended():
+        if has_ended and self.decided is None and self._position == position and self._kernel.ended():
             self._note(self._kernel.close())
 
     def _note(self, status: int) -> None:

@@ -109,6 +109,12 @@ class StepReader:
         parts = tuple(self._part(instance, way, places) for instance, way in self._kernel.taken())
         return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
 
+    def change(self, number: int, action: str | None) -> TraceStep:
+        """A step that no automaton has taken: the state was changed by hand."""
+        ints, reals = self._ints, self._reals
+        self.start()
+        return TraceStep(number, action, (), self._changes(ints, reals, self._ints, self._reals))
+
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
         """The values of the variables in the current state."""
         ints, reals = self._kernel.snapshot()

@@ -329,11 +329,11 @@ class _Parser:
         if not self.stack:
             drop = Fix("Remove it", (TextEdit(tag, ""),))
             self.stray(tag, f"`</{shown(name)}>` closes nothing", drop)
-        elif self.open_names.get(name):
+        elif self.open_names.get(name) and not self.is_misnamed(name, at):
             while self.names[-1] != name:
                 self.close_unclosed(at)
             self.close(tag, name_span)
-        elif resemble(name, self.names[-1]):
+        elif resemble(name, self.names[-1]) or self.is_misnamed(name, at):
             open_name = self.names[-1]
             self.report(
                 name_span,
@@ -347,6 +347,24 @@ class _Parser:
             message = f"`</{shown(name)}>` closes nothing; the open element is `<{shown(self.names[-1])}>`"
             self.stray(tag, message, drop)
         return end
+
+    def is_misnamed(self, name: str, at: int) -> bool:
+        """Whether the indentation shows that the end tag `name` at `at` closes the innermost element, which has another
+        name: both are alike, those of the element around it and of the innermost element `name` are not."""
+        if self.names[-1] == name or len(self.stack) < 2:
+            return False
+        indentation = self.indentation(at)
+        if indentation is None or self.indentation(self.stack[-1].open_span.start) != indentation:
+            return False
+        outer = self.stack[-2]
+        if self.open_names.get(name):
+            outer = next(e for e, other in zip(self.stack[::-1], self.names[::-1], strict=True) if other == name)
+        return self.indentation(outer.open_span.start) not in (indentation, None)
+
+    def indentation(self, at: int) -> str | None:
+        """The white space before `at` in its line; `None` if other text precedes it."""
+        line = self.text[self.text.rfind("\n", 0, at) + 1 : at]
+        return None if line.strip() else line
 
     def stray(self, tag: Span, message: str, drop: Fix) -> None:
         self.report(tag, message, drop)

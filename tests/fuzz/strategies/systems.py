@@ -96,11 +96,11 @@ def rename_somewhere(random: Random, texts: Texts, other: Model) -> str:
 
 def swap_attributes(random: Random, texts: Texts, other: Model) -> str:
     """The values of two attributes of one name change places, from file to file."""
-    found = [(path, a) for path in sorted(texts) for a in _attributes(texts[path]) if a.name in _NAMING]
-    if len(found) < 2:
+    places = [(path, a) for path in sorted(texts) for a in _attributes(texts[path]) if a.name in _NAMING]
+    if len(places) < 2:
         return "nothing"
-    path, one = random.choice(found)
-    same = [(p, a) for p, a in found if a.name == one.name and (p, a) != (path, one)]
+    path, one = random.choice(places)
+    same = [(p, a) for p, a in places if a.name == one.name and (p, a) != (path, one)]
     if not same:
         return "nothing"
     other_path, another = random.choice(same)
@@ -124,8 +124,8 @@ def move_element(random: Random, texts: Texts, other: Model) -> str:
         return "nothing"
     source = random.choice(paths)
     taken = random.choice(_elements(origin[source]))
-    wanted = [e for e in _elements(texts[target]) if e.name == taken.name] or _elements(texts[target])
-    at = random.choice(wanted).span.end
+    named = [e for e in _elements(texts[target]) if e.name == taken.name] or _elements(texts[target])
+    at = random.choice(named).span.end
     written = piece(origin[source], taken.span)[:20_000]
     if not foreign and source != target and random.random() < 0.5:
         texts[source] = put(texts[source], taken.span, "")
@@ -137,10 +137,10 @@ def exchange_files(random: Random, texts: Texts, other: Model) -> str:
     """Two files of a system have each other's text, or one has that of another system's."""
     path = random.choice(sorted(texts))
     if random.random() < 0.5 and len(texts) > 1:
-        second = random.choice([each for each in sorted(texts) if each != path])
+        second = random.choice([name for name in sorted(texts) if name != path])
         texts[path], texts[second] = texts[second], texts[path]
         return f"{os.path.basename(path)} <-> {os.path.basename(second)}"
-    same = [each for each in sorted(other.texts) if os.path.splitext(each)[1] == os.path.splitext(path)[1]]
+    same = [name for name in sorted(other.texts) if os.path.splitext(name)[1] == os.path.splitext(path)[1]]
     if not same:
         return "nothing"
     source = random.choice(same)
@@ -176,10 +176,10 @@ def drop_file(random: Random, texts: Texts, other: Model) -> str:
 
 def change_number(random: Random, texts: Texts, other: Model) -> str:
     """A parameter, bound, rate or size is another."""
-    found = [(path, m) for path in sorted(texts) for m in re.finditer(r'(?<=[\["= ])\d+(?:\.\d+)?', texts[path])]
-    if not found:
+    places = [(path, m) for path in sorted(texts) for m in re.finditer(r'(?<=[\["= ])\d+(?:\.\d+)?', texts[path])]
+    if not places:
         return "nothing"
-    path, match = random.choice(found)
+    path, match = random.choice(places)
     new = random.choice(["0", "1", "2", "7", "100", "1000", "99999", "2147483647", "0.5", "1e-9", "3e9", "-1"])
     texts[path] = put(texts[path], Span(*match.span()), new)
     return f"{match[0]} -> {new} in {os.path.basename(path)}"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from roaml.forest.entries import entry_of
-from roaml.forest.forest import ports_of
+from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
 from roaml.text import Location, Span

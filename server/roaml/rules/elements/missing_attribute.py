@@ -28,7 +28,9 @@ def check(context: FileContext) -> Iterator[Finding]:
         element, attribute = violation.element, violation.attribute
         if attribute.name == "name" and set(attribute.refers) & DECLARING_ELEMENTS.keys():
             continue  # undeclared-handle reports this with more detail
-        if not misspelled.attribute(element, attribute.name, violation.type.attributes):
+        known = violation.type.attributes
+        meant = any(misspelled.only_missing(element, violation.type, a.name) for a in element.attributes)
+        if not meant and not misspelled.attribute(element, attribute.name, known):
             choices = [choice.value for choice in attribute.simple.choices if not choice.use]
             value = choices[0] if len(choices) == 1 else _likely(context, element, attribute.name)
             yield _missing(element, attribute.name, value)

@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.language.validate import UnknownAttribute
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support import misspelled
 
 WITHOUT_CONDITION = (
     "ros_action_handle_success_result",
@@ -25,7 +26,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue
         element, attribute, known = violation.element, violation.attribute, violation.type.attributes.values()
         free = [a.name for a in known if a.ignored is None and not a.use and element.get(a.name) is None]
-        close = close_names(attribute.name, free)
+        close = close_names(attribute.name, free) or misspelled.only_missing(element, violation.type, attribute.name)
         remove = Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=not close)
         if attribute.name == "cond" and element.name in WITHOUT_CONDITION:
             message = f"`<{element.name}>` does not support conditions; test the condition with an `<if>` inside it"

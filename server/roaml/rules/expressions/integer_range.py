@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
 from roaml.expr.tree import ArrayLiteral, Conditional, Expr, ObjectLiteral
-from roaml.expr.types import INTEGER_RANGES, Array, Scalar, Struct, Type, unwrap
+from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, unwrap
 from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type, wide_enough
@@ -44,7 +44,7 @@ def outside(expr: Expr, required: Type) -> Iterator[tuple[Span, int, str]]:
         case Conditional(), _:
             yield from outside(expr.then, required)
             yield from outside(expr.otherwise, required)
-        case _, Scalar(kind="int", name=name) if name in INTEGER_RANGES:
+        case _, Scalar(kind=ScalarKind.INT, name=name) if name in INTEGER_RANGES:
             number = constant(expr)
             if isinstance(number, int) and not INTEGER_RANGES[name][0] <= number <= INTEGER_RANGES[name][1]:
                 yield expr.span, number, name

@@ -14,6 +14,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if include.path is not None and include.path.value in context.missing_includes:
             reason = context.missing_includes[include.path.value]
             yield RULE.at(include.path.span, f"`{include.path.value}` cannot be included: {reason}")
+        elif include.package is not None and include.package.value in context.unknown_packages:
+            message = (
+                f"no folder around this file has the ROS package `{include.package.value}`, "
+                "so the trees and models in it are not known"
+            )
+            yield RULE.at(include.package.span, message, severity=Severity.INFORMATION)
 
 
 RULE = Rule("missing-include", Severity.ERROR, "A tree file includes a file that cannot be included.", tree=check)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Severity
+from roaml.expr.types import BASE_TYPES
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import node_at
 from roaml.model.gaps import Act, GapAct, InterfaceAct, answers
@@ -14,6 +15,7 @@ from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
+from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
@@ -29,6 +31,8 @@ _MAX_NAMED_QUESTIONS = 3
 def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
     if context.system is None:
         return
+    if isinstance(context, MachineContext) and not context.all_structs:
+        yield from _unknown_types(context)
     causes = list(_causes(context, context.system))
     wants = list(_wants(context.system, context.interface)) if causes else []
     told: dict[Span, list[str]] = {}
@@ -38,6 +42,23 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
     for span, questions in told.items():
         if questions:
             yield RULE.at(span, f"not checked because of this error: {_listing(questions)}; fix the error first")
+
+
+def _unknown_types(context: MachineContext) -> Iterator[Finding]:
+    """The types of variables that may be structs whose declaration cannot be read, each at its first use."""
+    known = {*BASE_TYPES, *context.struct_names, *FOREIGN_TYPES}
+    for chart in context.machine.charts:
+        for data in chart.data:
+            if data.type is None or data.type.name is None:
+                continue
+            name = data.type.name.base
+            if name not in known:
+                known.add(name)
+                message = (
+                    f"not checked: whether the type `{name}` exists, because a declaration of structs in this system "
+                    "cannot be read; fix the errors of the declarations first"
+                )
+                yield RULE.at(data.type.span, message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +134,11 @@ def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFo
         elif not event.receivers and not system.is_observed(event.name):
             yield _Want(GapAct.RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
     for variable, ports in system.blackboard.items():
+        is_read = any(bound.port.read for bound in ports)
         if not any(bound.port.written for bound in ports):
-            yield _Want(GapAct.VARIABLE, variable, f"which node writes the blackboard variable `{variable}`")
-        elif not any(bound.port.read for bound in ports):
+            does = "writes" if is_read else "writes and which reads"
+            yield _Want(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
+        elif not is_read:
             yield _Want(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
     known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.forest.entries import Use
+from roaml.forest.entries import Entries, Use
+from roaml.forest.forest import Forest
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import forest_of
@@ -18,6 +19,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     entries = entries_of(forest)
+    executed = forest.executed
     by_entry = entries.by_entry()
     written = {key for key, uses in by_entry.items() if any(use.writes is not False for use in uses)}
     names: dict[str, list[str]] = {}
@@ -28,9 +30,25 @@ def check(context: TreeContext) -> Iterator[Finding]:
         hosted = any(use.name.removeprefix("@") in forest.host_entries for use in uses)
         if key in written or hosted or not any(use.reads for use in uses):
             continue
+        if any(entries.is_intended(use.tree, use.name) for use in uses):
+            continue  # node-port-value reports the output port that should write it
         for use in uses:
-            if use.path == context.source.path and use.reads and not use.script:
+            if use.path == context.source.path and _is_outermost(forest, entries, use) and use.tree in executed:
                 yield _finding(use, names.get(use.tree, []))
+
+
+def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
+    """Whether a use reads an entry or gives it to a subtree, in the outermost tree that has a name for it."""
+    if use.script or "{" in use.name or not (use.reads or use.remaps):
+        return False
+    return (use.tree, use.name) not in entries.remapped and not _is_parameter(forest, use)
+
+
+def _is_parameter(forest: Forest, use: Use) -> bool:
+    """Whether the model of a subtree has a port for an entry; missing-node-port reports if it is not set."""
+    model = forest.subtree_models.get(use.tree)
+    port = model.port(use.name) if model is not None else None
+    return port is not None and port.direction.reads
 
 
 def _finding(use: Use, names: list[str]) -> Finding:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -28,12 +29,13 @@ def check(context: TreeContext) -> Iterator[Finding]:
 def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
     """The uses with a type other than that of the entry, each with the use that determines the type of the entry.
 
-    The first port determines it. An entry created as a string accepts other types, but only values of one type.
+    The first port determines it, unless most of the others agree on another type. An entry created as a string accepts
+    other types, but only values of one type.
     """
-    first = typed[0]
-    for use in typed[1:]:
+    first = _first(typed)
+    for use in typed:
         if use.type != first.type:
-            if first.type != STRING:
+            if typed[0].type != STRING:
                 yield use, first
             elif use.writes and (writer := next((u for u in typed if u.writes and u.type != use.type), None)):
                 yield use, writer
@@ -41,6 +43,15 @@ def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
                 strings = all(u.type == STRING for u in typed if u.writes)
                 if strings and any(u.writes for u in typed) and not use.type.startswith(_CONVERTED):
                     yield use, first
+
+
+def _first(typed: list[Use]) -> Use:
+    """The first use with the type of the entry: of the most frequent type, if the first port is not a string."""
+    if typed[0].type == STRING:
+        return typed[0]
+    counts = Counter(use.type for use in typed)
+    most = max(counts.values())
+    return next(use for use in typed if counts[use.type] == most)
 
 
 _CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "NodeStatus", "chrono")

@@ -3,17 +3,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.forest.entries import is_autoremapped
-from roaml.forest.forest import CPP, Forest
-from roaml.libraries import Node, Port
+from roaml.forest.forest import CPP
+from roaml.forest.ports import missing_ports, probable_ports
+from roaml.libraries import LIBRARIES, Node, Port, library
 from roaml.model.tree import TreeNode
+from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
-from roaml.suggest import close_names
 from roaml.text import Span, TextEdit
+
+_OPTIONAL = re.compile(r"\boptional|\bif (?:it is |this is )?(?:not|un)|\bdefault|\bempty\b", re.I)
+"""Texts of ports that need not be set, although a model gives them no default."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -21,28 +26,51 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     for _, node in forest.own_nodes():
-        known = forest.known_node(node)
-        if known is not None and known.library:
-            severity = Severity.ERROR if known.name in CPP.nodes else Severity.WARNING
-            yield from _check(forest, node, known, severity)
-        elif node.plugin is not None and (node.is_subtree or forest.names_tree(node)) and not is_autoremapped(node):
-            model = forest.subtree_models.get(node.plugin.value)
-            if model is not None:
-                yield from _check(forest, node, model, Severity.ERROR)
-
-
-def _check(forest: Forest, node: TreeNode, known: Node, severity: Severity) -> Iterator[Finding]:
-    assert node.plugin is not None
-    given = {attribute.name for attribute in node.element.attributes}
-    strange = [name for name in given if known.port(name) is None and not name.startswith("_")]
-    for port in known.ports:
-        if not port.required or port.name in given or any(close_names(name, (port.name,)) for name in strange):
+        known = forest.declaration(node)
+        if known is None or (known.kind is NodeKind.SUBTREE and is_autoremapped(node)):
             continue
-        at = node.plugin.span.end if node.compact else node.element.attributes[-1].span.end
-        fix = Fix(f"Add `{port.name}`", (TextEdit(Span(at, at), f' {port.name}="{_value(port)}"'),), preferred=False)
-        kind_name = "the subtree" if node.is_subtree else "the node"
-        message = f"{kind_name} `{known.name}` needs the port `{port.name}`"
-        yield RULE.at(node.plugin.span, message, fix, severity=severity)
+        if known.library or known.kind is NodeKind.SUBTREE:
+            yield from _missing(node, known, known)
+        elif not forest.is_partly_described(known):
+            twin = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
+            yield from _missing(node, known, twin) if twin else _without_value(node, known)
+
+
+def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:
+    """Report the ports that the node needs according to the declaration `needing`."""
+    certain = needing.name in CPP.nodes or needing.kind is NodeKind.SUBTREE
+    probable = _probable(node, known)
+    for port in missing_ports(node, needing):
+        if port.name not in probable:
+            kind_name = "the subtree" if node.is_subtree else "the node"
+            message = f"{kind_name} `{known.name}` needs the port `{port.name}`"
+            yield _finding(node, port, message, Severity.ERROR if certain else Severity.WARNING)
+
+
+def _without_value(node: TreeNode, known: Node) -> Iterator[Finding]:
+    """Report the inputs that are not set and have no default. The node may do without them."""
+    meant = probable_ports(node, known)
+    if not all(meant.values()):
+        return  # unknown-node-port reports an attribute that may mean any port
+    probable = _probable(node, known)
+    for port in known.ports:
+        if port.name in probable or node.element.get(port.name) is not None or _OPTIONAL.search(port.text):
+            continue
+        if port.direction is Direction.IN and port.default is None:
+            message = f"`{port.name}` of `{known.name}` has no value: it is not set, and its model has no default"
+            yield _finding(node, port, message, Severity.INFORMATION)
+
+
+def _probable(node: TreeNode, known: Node) -> set[str]:
+    """The ports that misspelled attributes probably mean: unknown-node-port reports these."""
+    return {name for names in probable_ports(node, known).values() for name in names}
+
+
+def _finding(node: TreeNode, port: Port, message: str, severity: Severity) -> Finding:
+    assert node.plugin is not None
+    at = node.plugin.span.end if node.compact else node.element.attributes[-1].span.end
+    fix = Fix(f"Add `{port.name}`", (TextEdit(Span(at, at), f' {port.name}="{_value(port)}"'),), preferred=False)
+    return RULE.at(node.plugin.span, message, fix, severity=severity)
 
 
 def _value(port: Port) -> str:

@@ -4,16 +4,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.forest.cpp_types import SCRIPT, mismatch
-from roaml.forest.entries import entry_of
-from roaml.forest.forest import Forest, ports_of
+from roaml.forest.cpp_types import SCRIPT, is_converted, mismatch
+from roaml.forest.entries import entry_of, names_entry
+from roaml.forest.ports import ports_of
 from roaml.libraries import Node, Port
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, replacements
+from roaml.rules.support.entries import entries_of, names_of
 from roaml.rules.support.forest import forest_of
 from roaml.text import TextEdit
 
@@ -24,13 +25,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for _, node in forest.own_nodes():
-        known = _known(forest, node)
+    for tree, node in forest.own_nodes():
+        known = forest.declaration(node)
         for setting in ports_of(node):
             port = known.port(setting.attribute.name) if known else None
             if port is not None and port.type == SCRIPT:
                 continue
             wrong = list(_reference(setting))
+            if not wrong and entry_of(setting) is None:
+                names = names_of(entries_of(forest), tree.id.value if tree.id else "")
+                wrong = list(_without_braces(node, port, setting, names))
             yield from wrong
             if known is not None and port is not None and not wrong and entry_of(setting) is None:
                 yield from _literal(known, port, setting)
@@ -45,15 +49,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
                     yield RULE.at(default.value_span, message, severity=Severity.WARNING)
 
 
+_CODE = re.compile(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
+
+
 def _is_code(text: str) -> bool:
     """Whether a default is a C++ expression, which models use as a description for people."""
-    return any(mark in text for mark in "(:<") or text.endswith("f")
-
-
-def _known(forest: Forest, node: TreeNode) -> Node | None:
-    if node.plugin is not None and (node.is_subtree or forest.names_tree(node)):
-        return forest.subtree_models.get(node.plugin.value)
-    return forest.known_node(node)
+    return bool(_CODE.match(text))
 
 
 def _reference(setting: PortSetting) -> Iterator[Finding]:
@@ -64,6 +65,12 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
         name = inner[1:-1]
         if not name.strip():
             yield RULE.at(setting.value.span, "the braces do not contain the name of a blackboard entry")
+        elif _NAME.match(name.strip("{}")) and name.strip("{}") != name:
+            plain = f"{{{name.strip('{}')}}}"
+            message = f"`{inner}` has too many braces, which belong to the name of the entry; write `{plain}`"
+            yield RULE.at(
+                setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
+            )
         elif name != name.strip() and "{" not in name:
             plain = f"{{{name.strip()}}}"
             message = f"the spaces belong to the name of the entry; write `{plain}`"
@@ -77,6 +84,27 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
         yield RULE.at(setting.value.span, message, *fixes, severity=Severity.WARNING)
 
 
+_DOLLAR = re.compile(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
+
+
+def _without_braces(node: TreeNode, port: Port | None, setting: PortSetting, names: Set[str]) -> Iterator[Finding]:
+    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` where the library
+    cannot convert a text itself."""
+    text, span = setting.value.value.strip(), setting.value.span
+    dollar = _DOLLAR.match(text)
+    name = dollar[1] if dollar else text
+    if name not in names or (port is not None and port.direction is Direction.OUT):
+        return
+    severity = Severity.WARNING
+    if dollar is None:
+        subtree = node.is_subtree and setting.attribute.name != name
+        if not subtree and (port is None or is_converted(port.type)):
+            return
+        severity = Severity.INFORMATION if subtree else severity
+    message = f"`{text}` is a constant; write `{{{name}}}` for the entry `{name}`"
+    yield RULE.at(span, message, *replacements(span, (f"{{{name}}}",)), severity=severity)
+
+
 def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]:
     text, span = setting.value.value, setting.value.span
     if port.direction is Direction.OUT:
@@ -85,6 +113,9 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
         reason = f"`{name}` is a string" if name else "nothing is given"
         message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
         yield RULE.at(span, message, *fixes, severity=_severity(known))
+        return
+    if not text.strip() and names_entry(known, port.name):
+        yield RULE.at(span, f"`{port.name}` of `{known.name}` needs the name of a blackboard entry")
         return
     problem = mismatch(port.type, text)
     if problem is not None:

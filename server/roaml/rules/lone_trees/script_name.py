@@ -33,6 +33,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         own = tree.id.value if tree.id else ""
         for name, operator in _names(script) if not problems else ():
             plain = name.name.removeprefix("@")
+            if entries.is_intended(own, name.name):
+                continue  # node-port-value reports the output port that should create it
             if entries.entry(own, name.name) not in created and plain not in forest.host_entries:
                 yield _finding(name, operator, nearest_name(name.name, names.get(own, ())), _is_closed(forest, tree))
 
@@ -50,10 +52,9 @@ def _names(script: Script) -> Iterator[tuple[Name, str]]:
 
 def _is_closed(forest: Forest, tree: Tree) -> bool:
     """Whether all uses of a tree are known: other files may remap its entries."""
-    main = forest.file.main
     if not forest.complete:
         return False
-    return len(forest.trees) == 1 or (main is not None and tree.id is not None and main.value in forest.trees)
+    return len(forest.trees) == 1 or (tree.id is not None and forest.main in forest.trees)
 
 
 def _finding(name: Name, operator: str, near: str | None, closed: bool) -> Finding:

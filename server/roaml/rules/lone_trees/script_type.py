@@ -12,7 +12,7 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import forest_of
 from roaml.rules.support.scripts import fixes, scripts
-from roaml.script.infer import Type, check_condition, check_types
+from roaml.script.infer import Type, assignments_as_conditions, check_condition, check_types
 
 _TYPES = {
     STRING: Type.TEXT, "double": Type.REAL, "float": Type.REAL, "bool": Type.REAL,
@@ -39,6 +39,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if use.is_condition:
             for problem in check_condition(script, lookup):
                 yield RULE.at(problem.span, f"`{use.attribute.name}` is a condition: {problem.message}")
+            for problem in assignments_as_conditions(script):
+                message = f"`{use.attribute.name}` is a condition: {problem.message}"
+                yield RULE.at(problem.span, message, *fixes(context, use, problem), severity=Severity.WARNING)
 
 
 def _types(entries: Entries) -> dict[Key, Type]:

@@ -10,10 +10,12 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP
+from roaml.language import BEHAVIOR_TREE
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support import misspelled
 from roaml.text import Edit, Span, TextEdit, computed
-from roaml.xml_syntax import Attribute
+from roaml.xml_syntax import Attribute, Element
 
 CURRENT = "4"
 _YES = ("1", "true", "True", "TRUE")
@@ -31,9 +33,17 @@ def check(context: TreeContext) -> Iterator[Finding]:
         message = "this file is written for version 3 of BehaviorTree.CPP; version 4 reads it differently"
         fix = Fix("Convert to version 4", functools.partial(_plan, context), preferred=True)
         yield RULE.at(span, message, fix)
+    elif version is None and context.file.trees and not _is_misspelled(root):
+        fix = Fix(f'Add `BTCPP_format="{CURRENT}"`', tuple(_version(context)), preferred=True)
+        message = f"`BTCPP_format` is missing; version {CURRENT} of BehaviorTree.CPP warns about this"
+        yield RULE.at(root.name_span, message, fix, severity=Severity.INFORMATION)
     elif version is not None and context.file.format != CURRENT:
         fix = Fix(f"Change to `{CURRENT}`", (TextEdit(version.value_span, CURRENT),), preferred=True)
         yield RULE.at(version.value_span, f"the format must be `3` or `4`, not `{version.value}`", fix)
+
+
+def _is_misspelled(root: Element) -> bool:
+    return misspelled.attribute(root, "BTCPP_format", BEHAVIOR_TREE.elements[root.name].attributes)
 
 
 def _plan(context: TreeContext) -> tuple[TextEdit, ...]:
@@ -42,15 +52,19 @@ def _plan(context: TreeContext) -> tuple[TextEdit, ...]:
 
 def _edits(context: TreeContext) -> Iterator[Edit]:
     """The edits that convert the file to version 4."""
+    yield from _version(context)
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            yield from _node(context, node)
+
+
+def _version(context: TreeContext) -> Iterator[TextEdit]:
     root = context.file.element
     version = root.get("BTCPP_format")
     if version is None:
         yield TextEdit(Span(root.name_span.end, root.name_span.end), f' BTCPP_format="{CURRENT}"')
     else:
         yield TextEdit(version.value_span, CURRENT)
-    for tree in context.file.trees:
-        for node in nodes(tree):
-            yield from _node(context, node)
 
 
 def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:

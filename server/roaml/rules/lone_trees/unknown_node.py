@@ -6,12 +6,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.edit.elements import rename_tag
+from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP, Forest
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of, probably_meant
-from roaml.text import TextEdit
+from roaml.text import Span, TextEdit
+
+_STRUCTURE = (
+    *("root", "include", "BehaviorTree", "TreeNodesModel", "input_port", "output_port", "inout_port", "description"),
+    "MetadataFields",
+)
+"""The elements of the format that are not nodes."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -20,23 +26,28 @@ def check(context: TreeContext) -> Iterator[Finding]:
         return
     undescribed: set[str] = set()
     for _, node in forest.own_nodes():
+        if node.element.name == "SubTreePlus":
+            yield _renamed(node.element.name_span, rename_tag(node.element, "SubTree"), "SubTreePlus", "SubTree")
         if node.plugin is not None and not node.is_subtree and not forest.names_tree(node):
-            for finding in _check(forest, node):
+            for finding in _check(context, forest, node):
                 # A node that no model describes is reported once for each name.
                 if finding.fixes or node.plugin.value not in undescribed:
                     yield finding
             undescribed.add(node.plugin.value)
 
 
-def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
+def _renamed(span: Span, fix: Fix, name: str, now: str) -> Finding:
+    return RULE.at(span, f"`{name}` is the name in version 3; write `{now}`", fix, severity=Severity.ERROR)
+
+
+def _check(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Finding]:
     assert node.plugin is not None
     name, span = node.plugin.value, node.plugin.span
     if forest.node(name) is not None or name in forest.beside:
         return
     renamed, absent, old = CPP.renamed.get(name), forest.absent(name), CPP.nodes.get(name)
     if renamed is not None:
-        message = f"`{name}` is the name in version 3; write `{renamed.now}`"
-        yield RULE.at(span, message, _renaming(node, renamed.now), severity=Severity.ERROR)
+        yield _renamed(span, _renaming(node, renamed.now), name, renamed.now)
     elif absent is not None:
         fixes = (_renaming(node, absent.instead),) if absent.instead else ()
         yield RULE.at(span, f"`{name}` is not a node: {absent.reason}", *fixes)
@@ -49,14 +60,23 @@ def _check(forest: Forest, node: TreeNode) -> Iterator[Finding]:
             f"`{name}` exists since version {old.since} of BehaviorTree.CPP; the settings name an older version",
             severity=Severity.ERROR,
         )
+    elif node.compact and name in _STRUCTURE:
+        drop = Fix("Remove it", (removal(context.source.text, node.element.span),), preferred=False)
+        yield RULE.at(span, f"`<{name}>` is not a node, so it cannot be part of a tree", drop, severity=Severity.ERROR)
     else:
-        yield from _unknown(forest, node, name)
+        yield from _unknown(context, forest, node, name)
 
 
-def _unknown(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
+def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
     """A program may register nodes that no model describes; a name similar to that of a node is always reported."""
     assert node.plugin is not None
     trees = tuple(forest.trees)
+    close = node.element.close_name_span
+    end = context.source.text[close.start : close.end] if close else ""
+    if node.compact and end and end != name and (forest.node(end) is not None or end in trees):
+        message = f"there is no node `{name}`; its end tag is `</{end}>`"
+        yield RULE.at(node.plugin.span, message, rename_tag(node.element, end), severity=Severity.ERROR)
+        return
     near = probably_meant(name, forest.names) or probably_meant(name, trees, most=1)
     if near is not None:
         kind_name = "tree" if near in trees and near not in forest.names else "node"

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.forest.forest import ports_of
+from roaml.forest.forest import OLD_ATTRIBUTES
+from roaml.forest.ports import ports_of, probable_ports
 from roaml.forest.scripts import AFTERWARDS, CONDITIONS
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
 from roaml.rules.support.forest import forest_of, probably_meant
-from roaml.suggest import close_names
+from roaml.suggest import are_similar
 
 MAX_PORTS = 8
 """The maximum number of ports that a message lists."""
@@ -27,21 +28,20 @@ def check(context: TreeContext) -> Iterator[Finding]:
         return
     for _, node in forest.own_nodes():
         yield from _conditions(node)
+        yield from _identifier(node)
         known = forest.known_node(node)
-        if known is not None:
+        if known is not None and not forest.is_partly_described(known):
             yield from _ports(context, node, known)
 
 
 def _ports(context: TreeContext, node: TreeNode, known: Node) -> Iterator[Finding]:
     names = [port.name for port in known.ports if not port.alias_of]
-    given = {setting.attribute.name for setting in node.ports}
+    probable = probable_ports(node, known)
     for setting in ports_of(node):
         attribute = setting.attribute
-        if attribute.name in names:
+        if attribute.name not in probable:
             continue
-        alias = known.port(attribute.name)
-        free = [name for name in names if name not in given]
-        close = (alias.alias_of,) if alias and alias.alias_of in free else close_names(attribute.name, free)
+        close = probable[attribute.name]
         hint = did_you_mean(close) or _known(names)
         drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),), preferred=False)
         fixes = (*replacements(attribute.name_span, close), *(() if close else (drop,)))
@@ -58,15 +58,42 @@ def _known(names: list[str]) -> str:
     return f"; it has {listing(names[:MAX_PORTS])}{more}"
 
 
+def _identifier(node: TreeNode) -> Iterator[Finding]:
+    """Report a misspelled `ID`."""
+    if node.plugin is None:
+        for attribute in node.element.attributes:
+            if attribute.name != "ID" and are_similar(attribute.name, "ID"):
+                message = f"`<{node.element.name}>` needs the attribute `ID`; did you mean it by `{attribute.name}`?"
+                yield RULE.at(attribute.name_span, message, *replacements(attribute.name_span, ("ID",)))
+
+
 def _conditions(node: TreeNode) -> Iterator[Finding]:
     """Report unknown attributes that begin with `_`, which the library ignores."""
     for attribute in node.element.attributes:
-        if attribute.name.startswith("_") and attribute.name not in _OF_LIBRARY:
-            near = probably_meant(attribute.name, _OF_LIBRARY)
+        if attribute.name in OLD_ATTRIBUTES and node.is_subtree:
+            message = f"`{attribute.name}` is an attribute of version 3 and is ignored; version 4 has `_autoremap`"
+            current = () if node.element.get("_autoremap") else ("_autoremap",)
+            fixes = replacements(attribute.name_span, current)
+            yield RULE.at(attribute.name_span, message, *fixes, severity=Severity.WARNING)
+        elif attribute.name.startswith("_") and attribute.name not in _OF_LIBRARY:
+            near = probably_meant(attribute.name, _OF_LIBRARY) or _extended(attribute.name)
             if near is not None and node.element.get(near) is None:
                 message = f"`{attribute.name}` is ignored; did you mean `{near}`?"
                 fixes = replacements(attribute.name_span, (near,))
                 yield RULE.at(attribute.name_span, message, *fixes, severity=Severity.WARNING)
+
+
+def _extended(name: str) -> str | None:
+    """The attribute of which `name` is a part of at least three letters, or which is a part of it: `_onFail`,
+    `_postCondition`."""
+    plain = name.lower()
+    return next(
+        (other for other in (*CONDITIONS, *AFTERWARDS) if len(plain) > 3 and _is_part(plain, other.lower())), None
+    )
+
+
+def _is_part(one: str, other: str) -> bool:
+    return one.startswith(other) or other.startswith(one)
 
 
 RULE = Rule("unknown-node-port", Severity.ERROR, "A node sets a port that it does not have.", tree=check)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from functools import lru_cache
 
-from roaml.language import HL_SCXML, Grammar
+from roaml.language import HL_SCXML, ElementType, Grammar
 from roaml.model.machine import Machine
 from roaml.suggest import are_similar
 from roaml.xml_syntax import Element
@@ -17,6 +17,15 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
     """Whether an attribute of `element` that is not in `known` is probably a misspelling of `name`."""
     names = set(known)
     return any(a.name not in names and are_similar(a.name, name) for a in element.attributes)
+
+
+def only_missing(element: Element, type_: ElementType, name: str) -> tuple[str, ...]:
+    """The required attribute that `name` probably means: the only one that is missing, if `name` is the only unknown
+    one."""
+    names = [a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns"]
+    unknown = [attribute for attribute in names if attribute not in type_.attributes]
+    missing = [a.name for a in type_.attributes.values() if a.required and element.get(a.name) is None]
+    return tuple(missing) if unknown == [name] and len(missing) == 1 and not type_.any_attribute else ()
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:

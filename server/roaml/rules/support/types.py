@@ -18,6 +18,10 @@ def phrase(type_: Type) -> str:
         return f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"a {type_.what}"
     if isinstance(type_, Unknown):
         return "this"
-    kinds = {"int": "an integer", "real": "a real number", "bool": "a boolean"}
+    kinds: dict[object, str] = {
+        ScalarKind.INT: "an integer",
+        ScalarKind.REAL: "a real number",
+        ScalarKind.BOOL: "a boolean",
+    }
     name = f" (`{type_}`)" if getattr(type_, "name", "") not in ("", "bool") else ""
-    return kinds.get(getattr(type_, "kind", ""), f"`{type_}`") + name
+    return kinds.get(getattr(type_, "kind", None), f"`{type_}`") + name

@@ -85,8 +85,8 @@ def _subtree(
 def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tuple[str, str]]:
     """The uses that close cycles, in a traversal of the trees that begins at the executed tree or, without it, the
     first one."""
-    main = context.file.main
-    first = (main.value,) if main is not None and main.value in uses else ()
+    main = context.files[0].main if context.files else ""
+    first = (main,) if main in uses else ()
     closing: set[tuple[str, str]] = set()
     entered: set[str] = set()
     left: set[str] = set()
@@ -112,12 +112,14 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
 
     A misspelled `<BehaviorTree>` may also be the missing one.
     """
-    if context.missing_includes or _has_misspelled_tree(context):
+    if context.missing_includes or _has_misspelled_tree(context) or _has_nameless_tree(context):
         return
     close = close_names(name.value, known)
     message = f"there is no tree `{name.value}`{did_you_mean(close)}"
     forest = context.forest
-    if forest is None or (forest.complete and close):
+    if forest is not None and not forest.complete:
+        return
+    if forest is None or close:
         yield RULE.at(name.span, message, *replacements(name.span, close))
     elif name.value not in forest.trees and name.value not in forest.beside:
         elsewhere = "" if close else " in this file, the files that it includes, or its folder"
@@ -231,6 +233,12 @@ def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Fi
 
 def _has_misspelled_tree(context: TreeContext) -> bool:
     return misspelled.among(context.file.element.elements, "BehaviorTree", BEHAVIOR_TREE)
+
+
+def _has_nameless_tree(context: TreeContext) -> bool:
+    """Whether a tree of a file without a system has no name although there are several, which is reported."""
+    names = [tree.id for file in context.files for tree in file.trees]
+    return context.forest is not None and len(names) > 1 and "" in names
 
 
 def _another(context: TreeContext, main: Name, executed: str) -> Iterator[Finding]:

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""End tags that differ from their start tags because the name in the start tag is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from roaml.diagnostics import Finding, Severity, Symbol
+from roaml.text import Span
+
+
+def without_misnamed_ends(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """The findings without those about end tags whose start tags are reported, and corrected, as the wrong ones."""
+    wrong: set[Span | Symbol] = {f.span for f in findings if f.fixes and _is_certain(f)}
+    return tuple(finding for finding in findings if not _is_at_wrong_start(finding, wrong))
+
+
+def _is_certain(finding: Finding) -> bool:
+    """Whether a finding is an error about the name of an element, with a fix that changes both tags."""
+    return finding.code == "unknown-element" or (finding.code == "unknown-node" and finding.severity is Severity.ERROR)
+
+
+def _is_at_wrong_start(finding: Finding, wrong: set[Span | Symbol]) -> bool:
+    return finding.code == "xml-syntax" and any(related.place in wrong for related in finding.related)

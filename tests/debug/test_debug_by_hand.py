@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Publishing, calling and setting by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from dap_client import Client
+
+ROBOT = Path(__file__).resolve().parents[2] / "examples" / "assembly_robot"
+BUG = ROBOT / "main_with_bug.xml"
+
+
+@pytest.fixture
+def client() -> Iterator[Client]:
+    with Client() as client:
+        yield client
+
+
+def test_a_message_is_published_and_received(client: Client) -> None:
+    client.begin(BUG, property="never_placed_empty")
+    events = {event["name"]: event for event in client.ask("events")["events"]}
+    assert events["/arm/command"]["fields"] == "{data: 0}"
+    assert events["/arm/command"]["types"] == {"data": "uint8"}
+    assert events["/arm/command"]["isFree"]
+    assert not client.ask("choices")["isChanged"]
+    client.ask("publish", event="/arm/command", fields={"data": 1})
+    client.event("stopped")
+    state = client.ask("choices")
+    assert (state["step"], state["isByHand"], state["isChanged"]) == (1, True, True)
+    assert "has been sent and not been received" in client.refusal("publish", event="/arm/command", fields={"data": 2})
+    (receives,) = (choice for choice in state["choices"] if choice["text"].startswith("Arm receives"))
+    assert "(data: 1)" in receives["text"]
+    client.ask("choose", choice=receives["number"])
+    client.event("stopped")
+    client.move("next")
+    assert client.ask("evaluate", expression="Arm.holding")["result"] == "true"
+    while client.ask("choices")["end"] is None:
+        client.move()
+    assert set(client.ask("choices")["verdicts"].values()) == {"undecided"}
+    client.ask("goToStep", step=0)
+    client.event("stopped")
+    assert not client.ask("choices")["isChanged"]
+    assert client.ask("evaluate", expression="Arm.holding")["result"] == "false"
+    client.ask("goToStep", step=1)
+    client.event("stopped")
+    assert client.ask("choices")["isChanged"]
+
+
+def test_the_console_publishes_and_completes(client: Client) -> None:
+    client.begin(BUG)
+    (target,) = client.ask("completions", text="publish /arm/com", column=17)["targets"]
+    assert target["text"] == "/arm/command {data: 0}"
+    assert (target["start"], target["length"]) == (9, 8)
+    result = client.ask("evaluate", expression="publish /arm/command {data: 1 + 1}", context="repl")["result"]
+    assert "by hand" in result
+    client.event("stopped")
+    assert client.step() == 1
+    frame = client.stack(2)[0]["id"]
+    messages = client.scope(frame, "Messages")
+    assert messages["a message on the topic `/arm/command`"]["value"] == "{data: 2}"
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"data": 300}, "`data` is between 0 and 255, not 300"),
+        ({"data": 0.5}, "`data` is an integer"),
+        ({"data": True}, "`data` is a number, not true"),
+        ({"x": 1}, "there is no field `x`; there are data"),
+        ([1], "must be an object"),
+        ("{data: ", "a value"),
+    ],
+)
+def test_fields_that_do_not_fit(client: Client, fields: object, reason: str) -> None:
+    client.begin(BUG)
+    assert reason in client.refusal("publish", event="/arm/command", fields=fields)
+    assert "no topic, service, action or event" in client.refusal("publish", event="/nothing", fields={})
+    assert client.step() == 0
+
+
+def test_variables_are_set_and_saved(client: Client, tmp_path: Path) -> None:
+    client.begin(BUG, seed=3)
+    client.ask("goToStep", step=40)
+    client.event("stopped")
+    scopes = client.ask("scopes", frameId=client.stack(2)[0]["id"])["scopes"]
+    reference = scopes[0]["variablesReference"]
+    assert "255" in client.refusal("setVariable", variablesReference=reference, name="way", value="256")
+    assert client.ask("setVariable", variablesReference=reference, name="way", value="2 + 3")["value"] == "5"
+    client.event("stopped")
+    assert client.ask("evaluate", expression="Arm.way")["result"] == "5"
+    client.move("stepBack")
+    assert client.ask("evaluate", expression="Arm.way")["result"] == "0"
+    client.move("stepIn")
+    file = tmp_path / "run.json"
+    file.write_text(client.ask("saveSession")["session"], encoding="utf-8")
+    with Client() as other:
+        other.begin(BUG, session=str(file))
+        assert (other.step(), other.ask("choices")["isChanged"]) == (41, True)
+        assert other.ask("evaluate", expression="Arm.way")["result"] == "5"

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All states of models of the Quantitative Verification Benchmark Set, where it lies beside the project: the values are
+those of `expected.json`, which Storm has computed. The other models are refused with the reason."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import conformance
+from roaml.explicit.space import StateLimits
+from roaml.jani.model import Model
+from roaml.jani.reader import read_model
+from roaml.json_syntax import parse
+from roaml.smc.fault import FaultError
+from roaml.smc.model import ModelChecker
+from roaml.verification.exhaustive import exact_values
+from roaml.verification.schedulers import asks_for_minimum
+
+FOLDER = conformance.ROOT.parent / "qvbs"
+MAX_STATES = 6_000
+"""Larger models take more time than a test should."""
+WIDTH = 1e-6
+STORM = 2e-6
+"""The distance of Storm's values, from value iteration without bounds: for `c2` of consensus, whose minimum is 49/128,
+it ended at 0.3828113."""
+REFUSED = {
+    "bluetooth": "no initial value",
+    "brp-pta": "type pta",
+    "cluster": "type ctmc",
+    "embedded": "type ctmc",
+    "ftwc": "type ma",
+    "herman": "no initial value",
+    "herman#2": "no initial value",
+    "jobs": "type ma",
+    "polling": "type ctmc",
+    "repudiation_malicious": "type pta",
+    "stream": "type ma",
+}
+
+
+def rows() -> list[Any]:
+    """Model, property and values of each answer that is known."""
+    if not FOLDER.is_dir():
+        return []
+    expected = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))
+    small = [row for row in expected if row["states"] <= MAX_STATES]
+    return [pytest.param(row, id=f"{Path(row['model']).stem}-{row['property']}") for row in small]
+
+
+def load(name: str) -> Model:
+    value, _ = parse((FOLDER / name).read_text(encoding="utf-8-sig"))
+    model, findings = read_model(value, name)
+    assert model is not None, findings
+    return model
+
+
+@pytest.mark.parametrize("row", rows())
+def test_values_are_those_of_storm(row: dict[str, Any]) -> None:
+    model = load(row["model"])
+    checker = ModelChecker(model, [asked for asked in model.properties if asked.name == row["property"]])
+    asked = checker.asked[0]
+    exact = exact_values(checker, asked, StateLimits())
+    assert exact.is_precise
+    extreme = exact.minimum if asks_for_minimum(asked.question) else exact.maximum
+    for bounds, value in ((extreme, row["asked"]), (exact.uniform, row["uniform"])):
+        assert bounds.upper - bounds.lower <= WIDTH
+        assert bounds.lower - STORM <= value <= bounds.upper + STORM
+
+
+@pytest.mark.parametrize("name", REFUSED if FOLDER.is_dir() else ())
+def test_other_models_are_refused_with_the_reason(name: str) -> None:
+    with pytest.raises(FaultError, match=REFUSED[name]):
+        ModelChecker(load(f"{name}.jani"))
