@@ -43,7 +43,7 @@ class Key(NamedTuple):
     text: str
 
     def change(self) -> dict[str, Any]:
-        """The content change that tells of it."""
+        """Its content change."""
         start, end = position(self.before, self.start), position(self.before, self.end)
         return {"range": {"start": start, "end": end}, "text": self.inserted}
 

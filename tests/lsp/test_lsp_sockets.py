@@ -156,7 +156,7 @@ DISCONNECTED = [
 
 
 async def test_refused_clients(tmp_path: Path) -> None:
-    """Each is told or disconnected, and the client that comes then is served as if they had not been there."""
+    """Each receives an error or is disconnected, and the next client is served."""
     main = clock.write(tmp_path)
     async with listening("--tcp", "127.0.0.1:0", AS2FM_TOKEN=TOKEN) as server:
         for data in REFUSED:
