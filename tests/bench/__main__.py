@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, requests, storm, translate, verify
+from bench import check, debug, growth, requests, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -17,6 +17,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **requests.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,
+    **trees.BENCHMARKS,
     **verify.BENCHMARKS,
 }
 
