@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must stay true of the code itself."""
+"""Invariants of the code itself."""
 
 from __future__ import annotations
 

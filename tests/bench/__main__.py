@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, requests, scan, storm, translate, verify
+from bench import check, debug, growth, requests, scan, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -18,6 +18,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **scan.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,
+    **trees.BENCHMARKS,
     **verify.BENCHMARKS,
 }
 

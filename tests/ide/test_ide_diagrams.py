@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of machines, trees and systems, with the places that their parts stand for."""
+"""Pictures of machines, trees and systems, with the places of their parts in the text."""
 
 from __future__ import annotations
 

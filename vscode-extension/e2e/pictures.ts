@@ -4,7 +4,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
-import { OUTPUT } from "./support/workbench";
+import { OUTPUT } from "./support/paths";
 
 export function pictures(stage: Stage): void {
     stage.use();
