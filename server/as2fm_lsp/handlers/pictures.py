@@ -97,5 +97,8 @@ def _drawing(drawing: Drawing) -> dict[str, object]:
         "width": drawing.size.width,
         "height": drawing.size.height,
         "scene": svg_scene(drawing),
-        "nodes": [{"index": index, **box._asdict()} for index, box in drawing.nodes.items()],
+        "nodes": [
+            {"index": index, "x": box.x, "y": box.y, "width": box.width, "height": box.height}
+            for index, box in drawing.nodes.items()
+        ],
     }
