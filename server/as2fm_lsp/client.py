@@ -26,14 +26,18 @@ class Client:
     Attributes:
         show_references: the command of the client that shows places; "" if it has none.
         show_counterexample: the command that explains why a property fails.
+        show_witness: the command that explains how a property holds.
         debug_counterexample: the command that debugs a trace in which a property fails.
+        set_expectation: the command that asks for the expected value of a property.
         trigger_suggest: the command that requests completions.
     """
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.show_references = ""
         self.show_counterexample = ""
+        self.show_witness = ""
         self.debug_counterexample = ""
+        self.set_expectation = ""
         self.trigger_suggest = ""
         self._endpoint = endpoint
 
@@ -41,6 +45,8 @@ class Client:
         """Read the names of the client's commands from its `initializationOptions`."""
         self.show_references = str(options.get("showReferences") or "")
         self.show_counterexample = str(options.get("showCounterexample") or "")
+        self.show_witness = str(options.get("showWitness") or "")
+        self.set_expectation = str(options.get("setExpectation") or "")
         self.debug_counterexample = str(options.get("debugCounterexample") or "")
         self.trigger_suggest = str(options.get("triggerSuggest") or "")
 
@@ -67,6 +73,10 @@ class Client:
 
     def publish_diagnostics(self, uri: str, diagnostics: list[types.Diagnostic], version: int | None) -> None:
         self._endpoint.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, diagnostics, version))
+
+    def send_partial_result(self, token: int | str, value: dict[str, Any]) -> None:
+        """Send a part of an answer before the answer, with the token that the client has given for it."""
+        self._endpoint.progress(types.ProgressParams(token, value))
 
     # --------------------------------------------------------------- requests
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from as2fm_lsp.client import Client
 from as2fm_lsp.display_settings import display_settings
 from as2fm_lsp.session import Session
-from as2fm_lsp.verification.known_results import KnownResults
+from as2fm_lsp.verification.known_results import KnownResults, expected_now
 
 
 class Refresh:
@@ -51,4 +51,6 @@ class Refresh:
         }
         results = self._results
         stale = [results.is_stale(known, moment.snapshot(system).analysis, system) for system, known in results.all()]
-        return display_settings(self._session.client_settings), systems, results.changes, stale
+        client_settings = self._session.client_settings
+        expected = [expected_now(moment.snapshot(system), system, client_settings) for system in results.systems]
+        return display_settings(client_settings), systems, results.changes, stale, expected

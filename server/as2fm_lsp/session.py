@@ -208,8 +208,12 @@ class Session:
 
     def settings_of(self, path: str) -> Settings:
         """The settings with which a file is checked."""
+        return self._settings(self.configured_folder(path))
+
+    def configured_folder(self, path: str) -> str:
+        """The folder whose configuration applies to a file."""
         near = [folder for folder in self._folders if is_below(path, folder)]
-        return self._settings(max(near, key=len) if near else _surroundings(path))
+        return max(near, key=len) if near else _surroundings(path)
 
     def _settings(self, folder: str) -> Settings:
         """The configuration in a folder, with the client's settings added."""

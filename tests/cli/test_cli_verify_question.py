@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify`: what was asked is what is answered, and what cannot be answered is told."""
+"""`as2fm-lsp verify`: the answer states its question, and a question without an answer is reported."""
 
 from __future__ import annotations
 
@@ -52,7 +52,10 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     """Uniform choices give 1, and 1 is at least 0.9: but the minimum is asked for, and it is 0."""
     done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
     assert done.status == 1
-    assert "warning: this is the value under uniform choices, and `Pmin` asks for the minimum" in done.out
+    assert (
+        "warning: this is the value under uniform choices, and the property asks for the minimum over all schedulers"
+        in done.out
+    )
     assert "schedulers range from 0 " in done.out
     assert "expected ≥ 0.9: NOT MET" in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["p"]
@@ -117,9 +120,7 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
         "\nnote: these are values under uniform choices; the minimum or maximum over all schedulers may differ\n"
         in (done.out)
     )
-    assert re.search(
-        r"\n  p \(`Pmin` asks for the minimum\): up to \d+ sampled schedulers show no difference", done.out
-    )
+    assert re.search(r"\n  minimum of p: up to \d+ sampled schedulers show no difference", done.out)
     assert "\n  help: use --scheduler uniform for " in done.out
     assert "may differ" in rows(command("verify", name, *options, "--format", "json").out)["p"]["warning"]
     (judged,) = rows(command("verify", name, *options, "--format", "json").out)["p"]["expectations"]
@@ -144,9 +145,9 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     (note,) = re.findall(r"^note: .*\n((?:  .*\n)+)", out, re.MULTILINE)
     lines = note.splitlines()
     assert [line.split(":")[0] for line in lines] == [
-        "  p, q (`Pmin` asks for the minimum)",
-        "  most (`Pmax` asks for the maximum)",
-        "  cost (`Emax` asks for the maximum)",
+        "  minimum of p, q",
+        "  maximum of most",
+        "  maximum of cost",
         "  help",
     ]
     assert lines[2].endswith("schedulers are not sampled for expected rewards")

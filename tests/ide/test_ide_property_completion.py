@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -127,6 +128,30 @@ def test_the_skeleton_of_a_property_is_complete(folder: Path, pattern: str) -> N
     result = api.check([str(folder / "main.xml")], settings=Settings(), texts={path: changed})
     codes = {d.code for d in result.diagnostics if d.path == path}
     assert codes <= {"port-of-several-clients", "event-false-at-start"}
+
+
+def test_patterns_are_offered_as_sentences_in_each_scope(folder: Path) -> None:
+    """What is inserted is what the sentence says, and needs only its conditions."""
+    for typed in ("<guarantees>|", "<guarantees>when|"):
+        completions, text, _ = offered(folder, "<guarantees>", typed)
+        sentences = {item.label: item for item in completions.items if "…" in item.label}
+        assert len(sentences) == 6 * 11
+        assert "Whenever …, … within …" in sentences
+    path, main = str(folder / "properties.xml"), str(folder / "main.xml")
+    inserted = []
+    for number, item in enumerate(sentences.values()):
+        whole = plain(item.snippet).replace("<event></event>", "<event>measured</event>")
+        inserted.append(re.sub(r'(event|until)=""', r'\1="asked"', whole).replace('id="name"', f'id="new_{number}"'))
+    start, end = completions.span
+    changed = f"{text[:start]}{''.join(inserted)}{text[end:]}"
+    result = api.check([main], settings=Settings(), texts={path: changed})
+    codes = {d.code for d in result.diagnostics if d.path == path}
+    assert codes <= {"port-of-several-clients", "event-false-at-start"}
+    linked = result.snapshot.analysis.linked_properties(path, main)
+    assert linked is not None
+    said = {property_.name: property_.sentence.lower() for property_ in linked.properties}
+    for number, label in enumerate(sentences):
+        assert [word for word in re.findall(r"[a-z]{3,}", label.lower()) if word not in said[f"new_{number}"]] == []
 
 
 def test_the_skeleton_of_a_port_is_complete(folder: Path) -> None:

@@ -46,8 +46,10 @@ class Client(LanguageClient):
         self.refreshed: list[str] = []
         self.news = asyncio.Event()
         self.answers = asyncio.Event()
+        self.parts: dict[str | int, list[object]] = {}
         features = DEFAULT_CLIENT_FEATURES | {types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS: _published}
         features |= {method: _with_news(features[method]) for method in (types.PROGRESS, types.WINDOW_SHOW_MESSAGE)}
+        features[types.PROGRESS] = _parts(features[types.PROGRESS])
         features |= {method: _refresh(method) for method in REFRESHES}
         register_lsp_features(self, features | ({types.WORKSPACE_CONFIGURATION: _late} if is_slow else {}))
 
@@ -165,6 +167,18 @@ def _with_news(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any]
     return take
 
 
+def _parts(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any], None]:
+    """Keep the partial results of a request; leave the progress of work to the feature."""
+
+    def take(client: Client, params: types.ProgressParams) -> None:
+        if params.token in client.progress_reports:
+            feature(client, params)
+        else:
+            client.parts.setdefault(params.token, []).append(params.value)
+
+    return take
+
+
 def _refresh(method: str) -> Callable[[Client, object], None]:
     def note(client: Client, _: object) -> None:
         client.refreshed.append(method)
@@ -268,7 +282,7 @@ async def start_raw(*arguments: str, command: Sequence[str] = ()) -> RawServer:
 
 
 def frame(message: object) -> bytes:
-    """A message as it stands on the wire."""
+    """The bytes of a message."""
     body = json.dumps(message).encode()
     return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
 

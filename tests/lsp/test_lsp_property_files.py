@@ -9,7 +9,7 @@ from client import connect
 from lsprotocol import types
 from test_lsp_verify import QUICK, ask, hints, lenses, verify, why
 
-from as2fm_lsp.handlers.verify import PROPERTIES
+from as2fm_lsp.handlers.results import PROPERTIES
 from fixture import split_files
 from property_robot import ROBOT
 

@@ -17,7 +17,8 @@ from pygls.exceptions import JsonRpcRequestCancelled
 
 import clock
 from as2fm_lsp.cli.main import run
-from as2fm_lsp.handlers.verify import COMMAND, COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import VERIFY as COMMAND
 from stuck_models import hospital
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "assembly_robot"
@@ -254,7 +255,7 @@ async def until_estimate(client: Client, working: asyncio.Future[object]) -> tup
 
 
 def estimates(client: Client) -> Iterator[tuple[str | int, str]]:
-    """The estimates that were told, each with the token of its progress."""
+    """The published estimates, each with the token of its progress."""
     for token, reports in client.progress_reports.items():
         for report in reports:
             if isinstance(report, types.WorkDoneProgressReport) and "traces" in (report.message or ""):

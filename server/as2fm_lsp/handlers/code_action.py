@@ -8,17 +8,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
-from as2fm_lsp.handlers import translate
+from as2fm_lsp.handlers import expectation, translate
+from as2fm_lsp.handlers.workspace_edit import workspace_edit
 from roaml.diagnostics import Diagnostic
 from roaml.facts import Facts, facts_from_json, facts_to_json
 from roaml.ide.code_actions import actions
-from roaml.ide.code_actions.action import FIX_ALL, KINDS, CodeAction, WorkspaceEdit
+from roaml.ide.code_actions.action import FIX_ALL, KINDS, REWRITE, CodeAction
 from roaml.project.workspace import Snapshot
 from roaml.rules import BY_CODE
 from roaml.text import SourceFile, Span
@@ -39,7 +40,7 @@ def register(context: Context) -> None:
         shown = _ClientDiagnostics(context, snapshot, source, params.context.diagnostics)
         offered = [
             _converted(context, snapshot, path, place, shown, action)
-            for action in actions(snapshot, path, place, lambda kind: _is_wanted(kind, only))
+            for action in _all(context, snapshot, path, place, lambda kind: _is_wanted(kind, only))
             if _can(context, action)
         ]
         if _is_wanted(types.CodeActionKind.Source, only):
@@ -57,15 +58,24 @@ def register(context: Context) -> None:
             return action
         path = session.convert.path(uri)
         snapshot = session.moment().snapshot(path)
-        for candidate in actions(snapshot, path, place, lambda kind: kind == action.kind):
+        for candidate in _all(context, snapshot, path, place, lambda kind: kind == action.kind):
             if (candidate.title, candidate.kind, _identity(candidate)) == (
                 action.title,
                 action.kind,
                 data.get("mends"),
             ):
-                action.edit = _edit(context, snapshot, candidate.make())
+                action.edit = workspace_edit(context, snapshot, candidate.make())
                 break
         return action
+
+
+def _all(
+    context: Context, snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]
+) -> Iterator[CodeAction]:
+    """The actions at a place: those of the models, and those of known results."""
+    yield from actions(snapshot, path, place, is_wanted)
+    if is_wanted(REWRITE):
+        yield from expectation.actions(context, snapshot, path, place)
 
 
 def _converted(
@@ -81,7 +91,7 @@ def _converted(
         uri = context.session.convert.uri(path)
         converted.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
     else:
-        converted.edit = _edit(context, snapshot, action.make())
+        converted.edit = workspace_edit(context, snapshot, action.make())
     return converted
 
 
@@ -121,30 +131,6 @@ class _ClientDiagnostics:
         if len(known) == 1:
             return known
         return self._context.diagnostics.converted(self._snapshot, self._source, [diagnostic])
-
-
-def _edit(context: Context, snapshot: Snapshot, change: WorkspaceEdit) -> types.WorkspaceEdit:
-    convert, analysis = context.session.convert, snapshot.analysis
-    edits = {
-        path: [convert.edit(source, edit) for edit in sorted(change.edits[path])]
-        for path in change.edits
-        if (source := analysis.source(path)) is not None
-    }
-    if not change.created and not change.renamed:
-        return types.WorkspaceEdit(changes={convert.uri(path): text_edits for path, text_edits in edits.items()})
-    start = types.Range(types.Position(0, 0), types.Position(0, 0))
-    steps: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
-    for path, text in change.created.items():
-        steps.append(types.CreateFile(convert.uri(path), options=types.CreateFileOptions(ignore_if_exists=True)))
-        steps.append(_document_edit(convert.uri(path), None, [types.TextEdit(start, text)]))
-    versions = context.session.moment().versions
-    steps += [_document_edit(convert.uri(path), versions.get(path), text_edits) for path, text_edits in edits.items()]
-    steps += [types.RenameFile(convert.uri(path), convert.uri(new)) for path, new in change.renamed.items()]
-    return types.WorkspaceEdit(document_changes=steps)
-
-
-def _document_edit(uri: str, version: int | None, edits: list[types.TextEdit]) -> types.TextDocumentEdit:
-    return types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri, version), list(edits))
 
 
 def _resolves(context: Context) -> bool:

@@ -7,7 +7,7 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.display_settings import display_settings
-from as2fm_lsp.handlers import verify
+from as2fm_lsp.handlers import results
 from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import content
@@ -28,7 +28,7 @@ def register(context: Context) -> None:
         hints_here = inlay_hints(on.analysis, on.path, on.span(params.range), display.hints)
         explains = _explains(context)
         hints = [_hint(hint, on.convert.position(on.source, hint.offset), on.path, explains) for hint in hints_here]
-        return [*hints, *(verify.hints(context, on, params.range) if display.results else ())]
+        return [*hints, *(results.hints(context, on, params.range) if display.results else ())]
 
     @context.feature(types.INLAY_HINT_RESOLVE)
     def resolve(hint: types.InlayHint) -> types.InlayHint:

@@ -7,7 +7,7 @@ import asyncio
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -54,6 +54,54 @@ async def answer(
             return verifier.answer(asked, pool, latest, watch=lambda _: pulse(0, 0), pulse=pulse)
 
     return await in_thread(work, checkpoint)
+
+
+async def answer_together(
+    verifier: Verifier,
+    asked: Sequence[CompiledProperty],
+    checkpoint: Callable[[], None],
+    show: Callable[[Sequence[Tally]], None],
+    keep: Callable[[Result], None],
+) -> None:
+    """The results of properties that can share traces.
+
+    Args:
+        checkpoint: see `answer`.
+        show: called on the event loop with the intermediate results.
+        keep: called on the event loop with each result, in their order. If the work is not needed any more, called
+            with those for which enough traces were made; what other schedulers say of them is not known then.
+
+    Raises:
+        Interrupted, WorkersLostError: see `answer`.
+    """
+    loop = asyncio.get_running_loop()
+    tallies = [Tally() for _ in asked]
+    began = time.monotonic()
+    shown_at = began
+
+    def work(checked: Callable[[], None]) -> None:
+        def pulse(_: int, __: int) -> None:
+            nonlocal shown_at
+            checked()
+            now = time.monotonic()
+            if now - shown_at > ESTIMATE_INTERVAL_S and any(tally.traces for tally in tallies):
+                shown_at = now
+                loop.call_soon_threadsafe(show, [replace(tally) for tally in tallies])
+
+        with Pool(_jobs(), start_delay_s=None) as pool:
+            results.extend(verifier.answer_together(asked, pool, tallies, lambda *_: pulse(0, 0), pulse))
+
+    results: list[Result] = []
+    try:
+        await in_thread(work, checkpoint)
+    except Interrupted:
+        seconds = time.monotonic() - began
+        for each, tally in zip(asked, tallies, strict=True):
+            if tally.is_finished:
+                keep(replace(verifier.interrupted(each, tally, seconds), is_interrupted=False))
+        raise
+    for result in results:
+        keep(result)
 
 
 async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callable[[], None]) -> T:

@@ -8,22 +8,57 @@ again when the change is undone.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
-from roaml.ide.verifiable import Texts, fingerprint
+from as2fm_lsp.verification.settings import verification_settings
+from roaml.comparison import Comparison
+from roaml.ide.verifiable import Texts, expected_beside, fingerprint
 from roaml.project.analysis import Analysis
+from roaml.project.workspace import Snapshot
+from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
+from roaml.verification.verifier import judged_again
 
 
 @dataclass(frozen=True, slots=True)
 class KnownResult:
-    """A result, with the model and the texts for which it was computed."""
+    """A result, with the model and the texts for which it was computed. `options` are those of the call, as the client
+    sent them."""
 
     result: Result
     analysis: Analysis
     texts: Texts
+    options: object = None
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedNow:
+    """What is expected of the properties of a system, besides the options of calls.
+
+    Attributes:
+        client_settings: as the client sent them.
+        beside: property -> the expectation in its file.
+        configured: property -> the expectation in the configuration.
+    """
+
+    client_settings: object
+    beside: Mapping[str, Comparison]
+    configured: Mapping[str, Comparison]
+
+    def judge(self, known: KnownResult) -> KnownResult:
+        """A result, compared with what is expected now."""
+        name = known.result.name
+        given = verification_settings(self.client_settings, known.options).expectations
+        written = (self.beside.get(name), self.configured.get(name))
+        more = [expectation_of(name, comparison) for comparison in written if comparison is not None]
+        return replace(known, result=judged_again(known.result, (*given, *more)))
+
+
+def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> ExpectedNow:
+    beside = expected_beside(snapshot.analysis, system)
+    return ExpectedNow(client_settings, beside, snapshot.checker.settings.expectations)
 
 
 @dataclass(slots=True)
@@ -48,6 +83,11 @@ class KnownResults:
         """All results, with their systems."""
         for system, properties in self._known.items():
             yield from ((system, known) for known in properties.values())
+
+    @property
+    def systems(self) -> tuple[str, ...]:
+        """The systems that have results."""
+        return tuple(self._known)
 
     def has(self, system: str) -> bool:
         """Whether there is a result for a system."""

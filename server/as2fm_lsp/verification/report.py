@@ -203,6 +203,7 @@ def row(result: Result) -> dict[str, Any]:
             "certain": verdict.is_certain,
             "under_uniform_choices_only": verdict.is_uniform,
             **({"not_met": verdict.under} if verdict.under else {}),
+            **({"unanimous": verdict.unanimous[0]} if verdict.unanimous is not None and verdict.is_met else {}),
         }
         for verdict in result.verdicts
     ]

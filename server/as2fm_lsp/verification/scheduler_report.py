@@ -19,7 +19,7 @@ def remark(question: Question, choices: Choices | None) -> str:
     if choices.agreement:
         return f"all schedulers agree: {choices.agreement}"
     head = "warning: this is the value under uniform choices"
-    head += f", and `{question.operator}` asks for the {extreme_asked(question)}"
+    head += f", and the property asks for the {extreme_asked(question)} over all schedulers"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
         return f"{head}; schedulers range from {_reached(least)} to {_reached(greatest)}"
@@ -50,7 +50,7 @@ def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
-        lines.append(f"  {', '.join(of)} (`{operator}` asks for the {extreme}): {looked}")
+        lines.append(f"  {extreme} of {', '.join(of)}: {looked}")
     lines.append(
         "  help: use --scheduler uniform for uniform choices, --scheduler lss to sample more schedulers, "
         "or --exhaustive to compute the minimum and the maximum from all states"

@@ -4,7 +4,8 @@
     {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
                 "stuck": "warning"}}
 
-The options of a call have the same form, with `seed` and `silent` in addition, and take precedence. An invalid value is
+The options of a call have the same form, with `seed`, `silent` and `partialResultToken` in addition, and take
+precedence. An invalid value is
 reported, and the default is used.
 """
 
@@ -25,6 +26,7 @@ class VerificationSettings:
     is_silent: whether the results are not shown as messages.
     stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
     problems: the values that are not valid, in sentences.
+    partial_result_token: the token with which the client asks for each result when it is complete.
     """
 
     options: Options
@@ -32,6 +34,7 @@ class VerificationSettings:
     is_silent: bool
     problems: tuple[str, ...]
     stuck: str = WARNING
+    partial_result_token: int | str | None = None
 
 
 def verification_settings(settings: object, options: object = None) -> VerificationSettings:
@@ -71,7 +74,15 @@ def verification_settings(settings: object, options: object = None) -> Verificat
     if level not in LEVELS:
         problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
         level = WARNING
-    return VerificationSettings(chosen, tuple(expectations), values.get("silent") is True, tuple(problems), level)
+    token = values.get("partialResultToken")
+    return VerificationSettings(
+        chosen,
+        tuple(expectations),
+        values.get("silent") is True,
+        tuple(problems),
+        level,
+        token if isinstance(token, (int, str)) and not isinstance(token, bool) else None,
+    )
 
 
 def _mapping(value: object) -> Mapping[str, Any]:

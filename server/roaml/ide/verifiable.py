@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.comparison import Comparison, read_comparison
 from roaml.ide.describe.markdown import plain
 from roaml.ide.navigation.document_symbol import DocumentSymbolKind
 from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind
+from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
-from roaml.text import Span
+from roaml.text import SourceFile, Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
 """Files with the digests of their content."""
@@ -60,7 +62,39 @@ def _in_xml(analysis: Analysis, path: str, system: str) -> Iterator[Verifiable]:
             yield Verifiable(property_.name, plain(property_.sentence), path, span, id_.span)
 
 
+def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
+    """The expectations of the properties in XML of a system, by their names."""
+    expected: dict[str, Comparison] = {}
+    for listed in analysis.listed(system):
+        is_xml = listed.usable and listed.required_kind is FileKind.XML_PROPERTIES
+        linked = analysis.linked_properties(listed.path, system) if is_xml else None
+        for property_ in linked.properties if linked is not None else ():
+            expect = property_.written.expect
+            comparison = read_comparison(expect.value) if expect is not None else None
+            if comparison is not None and not property_.is_assumption:
+                expected.setdefault(property_.name, comparison)
+    return expected
+
+
 def fingerprint(analysis: Analysis, system: str) -> Texts:
-    """The content of the files of a system: the results are valid as long as it is equal."""
+    """The content of the files of a system: the results are valid as long as it is equal. Expectations are no part of
+    it: they judge results and do not change them."""
     sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
-    return tuple((path, source.digest) for path, source in sources if source is not None)
+    return tuple((path, _digest(analysis, path, source)) for path, source in sources if source is not None)
+
+
+def _digest(analysis: Analysis, path: str, source: SourceFile) -> bytes:
+    file = analysis.property_file(path) if analysis.kind(path) is FileKind.XML_PROPERTIES else None
+    if file is None:
+        return source.digest
+    return analysis.memo.get("verified content", path, file, lambda: _without_expectations(file, source))
+
+
+def _without_expectations(file: PropertyFile, source: SourceFile) -> bytes:
+    parts, at = [], 0
+    for written in file.properties:
+        expect = written.element.get("expect")
+        if expect is not None:
+            parts.append(source.text[at : expect.span.start].rstrip())
+            at = expect.span.end
+    return SourceFile(source.path, "".join([*parts, source.text[at:]])).digest

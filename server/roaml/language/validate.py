@@ -279,6 +279,8 @@ _NUMBERS: dict[str, tuple[re.Pattern[str], str, float | None]] = {
 
 def _unmet_number(simple: SimpleType, text: str) -> str:
     form, noun, least = _NUMBERS[simple.base]
+    if simple.least is not None:
+        noun, least = f"{noun}, at least {simple.least:g}", simple.least
     if simple.above is not None:
         noun += f" above {simple.above:g}"
     if simple.most is not None:

@@ -51,13 +51,30 @@ def unwanted_trace(result: Result) -> Seen | None:
     return shortest.get(unwanted_verdict(result)) or shortest.get(UNKNOWN)
 
 
+def witness_trace(result: Result) -> Seen | None:
+    """The shortest trace that speaks for a property: one that is as expected, or in which it holds if nothing is
+    expected."""
+    if result.answer is None:
+        return None
+    return result.answer.tally.shortest.get(FALSE if unwanted_verdict(result) == TRUE else TRUE)
+
+
 def counterexample(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
     """Simulate the shortest trace that contradicts an expectation again; `None` if there is none.
 
     Args:
         place_of: formats a position; the default is `path:line`.
     """
-    seen, traces = unwanted_trace(result), result.traces
+    return _told(result, unwanted_trace(result), place_of)
+
+
+def witness(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
+    """Simulate the trace of `witness_trace` again; `None` if there is none. See `counterexample`."""
+    return _told(result, witness_trace(result), place_of)
+
+
+def _told(result: Result, seen: Seen | None, place_of: Callable[[Location], str] | None) -> Counterexample | None:
+    traces = result.traces
     if seen is None or traces is None:
         return None
     story = traces.story(seen.trace)

@@ -69,6 +69,11 @@ class Verdict:
             return "met under uniform choices" if self.is_uniform else "met"
         return f"NOT MET {self.under}".rstrip()
 
+    @property
+    def unanimous_text(self) -> str:
+        """What the traces say about an expected 0 or 1 that none of them contradicts; "" for other expectations."""
+        return f"no trace against it in {self.unanimous[0]:,}" if self.unanimous is not None and self.is_met else ""
+
     def doubt(self, epsilon: float) -> str:
         """Why the interval leaves the verdict open; "" if it does not.
 
@@ -78,9 +83,8 @@ class Verdict:
         if self.is_certain:
             return ""
         if self.unanimous is not None and self.is_met:
-            traces, bound = self.unanimous
             where = "down" if self.expectation.threshold.is_lower else "up"
-            return f"no trace against it in {traces:,}; the interval reaches {where} to {_rounded(bound):g}"
+            return f"{self.unanimous_text}; the interval reaches {where} to {_rounded(self.unanimous[1]):g}"
         number = f"{self.expectation.threshold.number:g}"
         met, missed = {
             BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
@@ -117,11 +121,16 @@ def check_range(expectation: Expectation, question: Question) -> None:
     Raises:
         RangeError: a probability is compared with a number that is not between 0 and 1.
     """
-    number = expectation.threshold.number
-    if not question.is_reward and not 0 <= number <= 1:
+    if not is_possible(expectation, question):
+        number = expectation.threshold.number
         raise RangeError(
             f"{expectation.name} is a probability and can only be compared with a number from 0 to 1, not {number:g}"
         )
+
+
+def is_possible(expectation: Expectation, question: Question) -> bool:
+    """Whether a value of the property can be near the number."""
+    return question.is_reward or 0 <= expectation.threshold.number <= 1
 
 
 def judge(expectation: Expectation, answer: Answer) -> Verdict:

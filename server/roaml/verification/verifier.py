@@ -19,7 +19,7 @@ from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
-from roaml.verification.expectations import Expectation, Verdict, check_range, judge
+from roaml.verification.expectations import Expectation, Verdict, check_range, is_possible, judge
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
@@ -102,6 +102,32 @@ def verifier_of(
     return Verifier(target, checker, options or Options(), expectations, only_uniform)
 
 
+def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
+    """The expectations of a property: its own, and those of the given ones that are about it."""
+    name, threshold = asked.question.name, asked.question.threshold
+    about_it = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
+    if threshold is None or any(expectation.threshold == threshold for expectation in about_it):
+        return about_it
+    return (Expectation(name, threshold, is_own=True), *about_it)
+
+
+def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
+    """A result of traces with uniform choices, compared with other expectations, without new traces.
+
+    Args:
+        given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
+    """
+    traces, answer = result.traces, result.answer
+    if traces is None or answer is None:
+        return result
+    expectations = [e for e in expectations_of(traces.asked, given) if is_possible(e, answer.question)]
+    return replace(result, verdicts=_verdicts(expectations, answer, result.choices))
+
+
+def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
+    return tuple(under_all_schedulers(judge(each, answer), answer, choices) for each in expectations)
+
+
 @dataclass(frozen=True, slots=True)
 class Verifier:
     """A target with compiled properties, and their expectations; see `verifier_of`."""
@@ -118,7 +144,7 @@ class Verifier:
         return self.checker.names
 
     def question(self, name: str) -> CompiledProperty:
-        """A property, compared with the first expected number, which a sequential test needs.
+        """A property; for a sequential test, compared with the first expected number.
 
         Raises:
             FaultError: it cannot be decided.
@@ -126,7 +152,7 @@ class Verifier:
         if name in self.checker.refused:
             raise self.checker.refused[name]
         asked = next(asked for asked in self.checker.asked if asked.question.name == name)
-        if asked.question.threshold is None:
+        if self.options.method == SPRT and asked.question.threshold is None:
             for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
@@ -134,12 +160,7 @@ class Verifier:
 
     def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
         """The expectations of a property: its own, those in `expectations`, and those of the target."""
-        name, threshold = asked.question.name, asked.question.threshold
-        given = (*self.expectations, *self.target.expectations)
-        own = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
-        if threshold is None or any(expectation.threshold == threshold for expectation in own):
-            return own
-        return (Expectation(name, threshold, is_own=True), *own)
+        return expectations_of(asked, (*self.expectations, *self.target.expectations))
 
     def verify(self, name: str, pool: Pool) -> Result:
         """The result of a property; a refusal if it cannot be decided.
@@ -333,13 +354,10 @@ class Verifier:
         return stuck.look(self.target, self.checker, self.options, level, pulse)
 
     def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:
-        verdicts = tuple(
-            under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in self.expected(asked)
-        )
         return Result(
             asked.question.name,
             answer,
-            verdicts,
+            _verdicts(self.expected(asked), answer, choices),
             seconds,
             stuck=stuck.stuck_in(self.target, self.checker, asked, answer),
             choices=choices,

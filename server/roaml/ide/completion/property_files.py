@@ -19,7 +19,8 @@ from roaml.model.property_file import Port, PortKind, PortVariableKind
 from roaml.model.property_ports import EVENTS, LinkedVariable, names_of, part_of
 from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
-from roaml.observers.properties import Pattern
+from roaml.observers.properties import Pattern, ScopeKind
+from roaml.observers.sentences import Times, pattern_sentence
 from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
@@ -61,20 +62,44 @@ def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[Completi
 
 
 def _properties() -> Iterator[CompletionItem]:
+    """Each pattern by its name, and by what it says in each scope, with and without a time."""
     texts = {choice.value: choice.documentation for choice in _attribute("property", "pattern").simple.choices}
     for pattern in Pattern:
-        snippet = Snippet().text('property id="').stop(["name"]).text(f'" pattern="{pattern.value}">\n\t')
-        if pattern.is_binary:
-            snippet.text("<events>\n\t\t<event>").stop().text("</event>\n\t\t<event>").stop()
-            snippet.text("</event>\n\t</events>")
-        else:
-            snippet.text("<event>").stop().text("</event>")
-        snippet.text('\n\t<scope type="').stop(["globally"]).text('"/>')
-        if pattern is Pattern.RECURRENCE:
-            snippet.text('\n\t<time_interval time="').stop(["1"]).text('" time_unit="').stop(["s"]).text('"/>')
-        insert = str(snippet.text("\n</property>").end())
+        insert = _property(pattern, ScopeKind.GLOBALLY, is_timed=pattern is Pattern.RECURRENCE)
         label = f"property {pattern.value}"
         yield CompletionItem(label, ItemKind.SKELETON, insert, texts[pattern.value], None, Rank.LIKELY)
+    for scope in ScopeKind:
+        rank = Rank.LIKELY if scope is ScopeKind.GLOBALLY else Rank.USUAL
+        for pattern in Pattern:
+            for is_timed in (True,) if pattern is Pattern.RECURRENCE else (False, True):
+                label = pattern_sentence(pattern, scope, {}, Times(within="…" if is_timed else ""))
+                label = label.partition(";")[0].rstrip(".")
+                insert = _property(pattern, scope, is_timed=is_timed)
+                detail = f"{pattern.value}, {scope.value}"
+                yield CompletionItem(
+                    label, ItemKind.SKELETON, insert, detail, None, rank, f"property {detail} {label.lower()}"
+                )
+
+
+def _property(pattern: Pattern, scope: ScopeKind, *, is_timed: bool) -> str:
+    """A whole property, in snippet syntax."""
+    snippet = Snippet().text('property id="').stop(["name"]).text(f'" pattern="{pattern.value}">\n\t')
+    if pattern.is_binary:
+        snippet.text("<events>\n\t\t<event>").stop().text("</event>\n\t\t<event>").stop()
+        snippet.text("</event>\n\t</events>")
+    else:
+        snippet.text("<event>").stop().text("</event>")
+    snippet.text(f'\n\t<scope type="{scope.value}"')
+    if scope.has_event:
+        snippet.text(' event="').stop().text('"')
+    if scope.has_until:
+        snippet.text(' until="').stop().text('"')
+    snippet.text("/>")
+    if is_timed:
+        attribute = "time" if pattern is Pattern.RECURRENCE else "within"
+        snippet.text(f'\n\t<time_interval {attribute}="').stop(["1"]).text('" time_unit="')
+        snippet.stop(["s", "ms", "us", "ns"]).text('"/>')
+    return str(snippet.text("\n</property>").end())
 
 
 def _attribute(element: str, name: str) -> AttributeType:

@@ -36,16 +36,16 @@ from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.steps import (
     EXCEPTION,
     Ask,
-    Branch,
+    Decide,
     Draw,
     Place,
-    Run,
     Step,
+    Update,
     output_steps,
     script_steps,
     update_steps,
 )
-from roaml.lower.programs.values import RESULT, Values, expr, negated
+from roaml.lower.programs.values import RESULT, ProgramValues, expr, negated
 from roaml.scxml.model import (
     Assign,
     Automaton,
@@ -191,7 +191,7 @@ class _Explorer:
         self.declared = dict(program.variables)
         for flag in program.flags:
             self.declared |= {f"{flag}_{i}": False for i in range(len(self.code.children))}
-        self.values = Values(self.code, self.declared)
+        self.values = ProgramValues(self.code, self.declared)
 
     def automaton(self) -> Automaton:
         for variable, value in self.declared.items():
@@ -337,7 +337,7 @@ class _Explorer:
                     return state
                 continue
             instruction = code[index]
-            if isinstance(instruction, (Ask, Run, Branch, Draw)):
+            if isinstance(instruction, (Ask, Update, Decide, Draw)):
                 stop = self.step(instruction, way)
             else:
                 stop = self.execute(instruction, (segment, index + 1), way)
@@ -502,14 +502,14 @@ class _Explorer:
         match step:
             case Ask(entries):
                 return self.ask(entries, (segment, index + 1), way)
-            case Run(assignments, writes):
+            case Update(assignments, writes):
                 for local, value in assignments:
                     way.body.append(Assign(name(local), value, self.code.origin))
                 for entry in writes:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
                     self.write(entry, name(entry.local), way)
                 way.place = (segment, index + 1)
-            case Branch(condition, yes, no):
+            case Decide(condition, yes, no):
                 if not isinstance(condition, bool):
                     return _Decision(condition, yes, no)
                 way.place = yes if condition else no

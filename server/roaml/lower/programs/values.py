@@ -22,7 +22,7 @@ RESULT = "*result"
 
 
 @dataclass(frozen=True, eq=False)
-class Values:
+class ProgramValues:
     """The values of expressions of the program of a node; `declared` are the variables of the automaton."""
 
     code: NodeCode

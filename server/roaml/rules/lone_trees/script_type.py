@@ -47,7 +47,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 def _types(entries: Entries) -> dict[Key, Type]:
     """The types of the entries whose ports all have the same type."""
     types_of: Mapping[Key, set[str]] = {
-        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry().items()
+        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry.items()
     }
     single = {key: next(iter(types)) for key, types in types_of.items() if len(types) == 1}
     return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}

@@ -22,7 +22,7 @@ def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tup
     forest = forest_of(context)
     if forest is None:
         return
-    for tree, node in forest.own_nodes():
+    for tree, node in forest.own_nodes:
         for use in scripts_of(forest, node):
             yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
 

@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The known results of properties: lenses and hints; `as2fm/properties`, the properties with their results;
+`as2fm/counterexample`, why a property fails or holds.
+
+- A result is compared with what is expected now, without new traces.
+- The protocol has no commands that show traces or ask for an expectation. A client that has some names them in its
+  initialization options, as `showCounterexample`, `showWitness`, `debugCounterexample` and `setExpectation`: they are
+  called with the URI of a system and the name of a property.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from functools import partial
+from typing import Any
+
+from lsprotocol import types
+
+from as2fm_lsp.context import Context
+from as2fm_lsp.display_settings import display_settings
+from as2fm_lsp.handlers.parameters import document_uri, string
+from as2fm_lsp.handlers.requested_document import RequestedDocument
+from as2fm_lsp.verification import background
+from as2fm_lsp.verification.known_results import ExpectedNow, KnownResult, expected_now, missed, short
+from as2fm_lsp.verification.report import one_as_text, row
+from roaml.ide.describe import markdown
+from roaml.ide.diagrams import highlights
+from roaml.ide.system_names import system_names
+from roaml.ide.verifiable import Verifiable, verifiable
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.paths import is_on_disk
+from roaml.project.workspace import Snapshot
+from roaml.smc.goal import STUCK_PROPERTY
+from roaml.text import Location
+from roaml.verification.counterexample import counterexample, unwanted_trace, witness, witness_trace
+from roaml.verification.expectations import NO_EXPECTATION
+from roaml.verification.results import Result
+from roaml.verification.target import VerificationTarget
+from roaml.views.story import StoryLine
+
+PROPERTIES = "as2fm/properties"
+COUNTEREXAMPLE = "as2fm/counterexample"
+VERIFY = "as2fm.verify"
+TITLE = "Verify"
+
+Json = dict[str, Any]
+
+
+def register(context: Context) -> None:
+    session = context.session
+
+    @context.feature(PROPERTIES)
+    def properties(_: Any) -> list[Json]:
+        """The systems with their properties, and the known results."""
+        moment = session.moment()
+        systems = []
+        for path in moment.files():
+            snapshot = moment.snapshot(path)
+            analysis = snapshot.analysis
+            if analysis.kind(path) is FileKind.SYSTEM:
+                current = CurrentResults(context, snapshot, path)
+                rows = [_property(current, property_) for property_ in verifiable(analysis, path)]
+                systems.append({"uri": session.convert.uri(path), "properties": rows})
+        return [system for system in systems if system["properties"]]
+
+    @context.feature(COUNTEREXAMPLE)
+    async def explain(params: Any) -> Json | None:
+        """The shortest trace that contradicts a property, or with `witness`, that speaks for it; null if none is
+        known."""
+        path = session.convert.path(document_uri(params))
+        current = CurrentResults(context, session.moment().snapshot(path), path)
+        known = current.get(string(params, "property"))
+        if known is None or known.result.traces is None:
+            return None
+        result, target = known.result, known.result.traces.target
+        tell = witness if getattr(params, "witness", False) is True else counterexample
+        why = await background.in_thread(
+            lambda _: tell(result, partial(place_in_words, target)), context.requests.checkpoint
+        )
+        if why is None:
+            return None
+        return {
+            "property": result.name,
+            "heading": " ".join(filter(None, (markdown.plain(result.comment), why.heading))),
+            "verdict": why.verdict,
+            "trace": why.trace,
+            "expected": missed(result),
+            "stale": current.is_stale(known),
+            "steps": [_step(context, known, path, line) for line in why.lines],
+        }
+
+
+class CurrentResults:
+    """The known results of a system at one moment, compared with what is expected then."""
+
+    def __init__(self, context: Context, snapshot: Snapshot, system: str) -> None:
+        self.context = context
+        self.analysis = snapshot.analysis
+        self.system = system
+        self._snapshot = snapshot
+        self._expected: ExpectedNow | None = None
+
+    def get(self, name: str) -> KnownResult | None:
+        known = self.context.results.get(self.system, name)
+        if known is None:
+            return None
+        if self._expected is None:
+            self._expected = expected_now(self._snapshot, self.system, self.context.session.client_settings)
+        return self._expected.judge(known)
+
+    def is_stale(self, known: KnownResult) -> bool:
+        return self.context.results.is_stale(known, self.analysis, self.system)
+
+
+def verified_row(result: Result) -> Json:
+    """A result for a client."""
+    return {
+        **row(result),
+        "short": short(result),
+        "counterexample": unwanted_trace(result) is not None,
+        "witness": witness_trace(result) is not None,
+    }
+
+
+def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
+    """Lenses for each property of a system that is not in `broken`, and for the system file. Results are shown in the
+    hints after the names, and in the lenses only if no hints are shown."""
+    tells = not _shows_hints(context)
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
+        if system in broken or not is_on_disk(system):
+            continue
+        uri, where = on.convert.uri(system), f" in {name}" if len(systems) > 1 else ""
+        properties = verifiable(on.analysis, system)
+        file, current = on.analysis.system_file(system), CurrentResults(context, on.snapshot, system)
+        if system == on.path and file is not None and properties:
+            command = types.Command("Verify all", VERIFY, arguments=[uri])
+            yield types.CodeLens(on.range(file.element.name_span), command)
+            stuck_known = current.get(STUCK_PROPERTY)
+            if context.client.show_counterexample and stuck_known and stuck_known.result.stuck:
+                stale = ", stale" if current.is_stale(stuck_known) else ""
+                title = f"Gets stuck{stale}: show the waiting automata"
+                show = types.Command(title, context.client.show_counterexample, arguments=[uri, STUCK_PROPERTY])
+                yield types.CodeLens(on.range(file.element.name_span), show)
+        for property_ in properties:
+            if property_.path != on.path:
+                continue
+            known = current.get(property_.name)
+            words = [_words(current, known)] if tells and known is not None else []
+            title = " · ".join([f"{TITLE}{where}", *words])
+            commands = [types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
+            commands += [] if known is None else _commands(context, uri, property_.name, known.result)
+            for command in commands:
+                yield types.CodeLens(on.range(property_.name_span), command)
+
+
+def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
+    """What the client can do with a result."""
+    client, unwanted, wanted = context.client, unwanted_trace(result), witness_trace(result)
+    if client.set_expectation and result.has_no_expectation and result.answer is not None:
+        yield types.Command("Set expectation", client.set_expectation, arguments=[uri, name])
+    if client.show_counterexample and unwanted is not None:
+        yield types.Command("Show counterexample", client.show_counterexample, arguments=[uri, name])
+    if client.debug_counterexample and unwanted is not None and (missed(result) or result.stuck):
+        traces = result.traces
+        run = {} if traces is None else {"seed": traces.options.seed, "trace": unwanted.trace}
+        yield types.Command("Debug counterexample", client.debug_counterexample, arguments=[uri, name, run])
+    if client.show_witness and wanted is not None:
+        yield types.Command("Show witness", client.show_witness, arguments=[uri, name])
+
+
+def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
+    """The known result, after the name of each property."""
+    span = on.span(within)
+    systems = system_names(on.analysis.memberships.get(on.path, ()))
+    for system, name in systems.items():
+        where = f" in {name}" if len(systems) > 1 else ""
+        current = CurrentResults(context, on.snapshot, system)
+        for property_ in verifiable(on.analysis, system) if context.results.has(system) else ():
+            known = current.get(property_.name)
+            if known is None or property_.path != on.path or not span.start <= property_.name_span.end <= span.end:
+                continue
+            is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
+            mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
+            mark = "⚠" if known.result.stuck else mark
+            text = f"{mark} {_words(current, known)}{where}"
+            position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
+            place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
+            tooltip = one_as_text(known.result, place_of)
+            yield types.InlayHint(position, text, tooltip=tooltip, padding_left=True)
+
+
+def _shows_hints(context: Context) -> bool:
+    document = context.client.capabilities.text_document
+    return bool(document and document.inlay_hint) and display_settings(context.session.client_settings).results
+
+
+def _words(current: CurrentResults, known: KnownResult) -> str:
+    result = known.result
+    wrong = missed(result)
+    parts = [short(result), *([f"not {wrong}"] if wrong else [])]
+    parts += dict.fromkeys(verdict.text for verdict in result.verdicts if verdict.is_uniform)
+    parts += dict.fromkeys(verdict.unanimous_text for verdict in result.verdicts if verdict.unanimous_text)
+    parts += [NO_EXPECTATION] if result.has_no_expectation else []
+    if result.stuck is not None:
+        parts.append(f"{result.stuck.count:,} traces got stuck")
+    if current.is_stale(known):
+        parts.append("stale")
+    return ", ".join(parts)
+
+
+def _property(current: CurrentResults, property_: Verifiable) -> Json:
+    where = place(current.context, current.analysis, Location(property_.path, property_.name_span))
+    values: Json = {"name": property_.name, "comment": property_.comment, **where}
+    known = current.get(property_.name)
+    if known is not None:
+        values["stale"] = current.is_stale(known)
+        values["result"] = verified_row(known.result)
+    return values
+
+
+def _step(context: Context, known: KnownResult, system: str, line: StoryLine) -> Json:
+    origin = line.origin
+    nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
+    convert = context.session.convert
+    return {
+        "step": line.step,
+        "time": line.time,
+        "who": line.who,
+        "what": line.what,
+        "place": line.place,
+        "details": list(line.details),
+        **(place(context, known.analysis, origin) if origin is not None else {}),
+        "highlights": [
+            {"kind": highlight.picture, "uri": convert.uri(highlight.path), "node": highlight.node}
+            for highlight in nodes
+        ],
+    }
+
+
+def place_in_words(target: VerificationTarget | None, origin: Location) -> str:
+    position = target.place(origin) if target else None
+    return f"{os.path.basename(position.path)}:{position.line}" if position else ""
+
+
+def place(context: Context, analysis: Analysis, location: Location) -> Json:
+    """`uri` and `range`; empty if the file does not exist."""
+    source = analysis.source(location.path)
+    if source is None:
+        return {}
+    convert = context.session.convert
+    start, end = (convert.position(source, offset) for offset in location.span)
+    return {
+        "uri": convert.uri(location.path),
+        "range": {
+            "start": {"line": start.line, "character": start.character},
+            "end": {"line": end.line, "character": end.character},
+        },
+    }

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sets the expectation of a property: in its XML file, or for JANI in the configuration."""
+
+from __future__ import annotations
+
+from roaml.ide.code_actions.action import WorkspaceEdit
+from roaml.ide.verifiable import Verifiable
+from roaml.model.kinds import FileKind
+from roaml.project.analysis import Analysis
+from roaml.project.expectation_setting import expectation_edit
+from roaml.text import Span, TextEdit
+from roaml.xml_syntax.escapes import escape
+
+
+def is_written_in_file(analysis: Analysis, property_: Verifiable) -> bool:
+    """Whether the expectation is an attribute of the property; otherwise it is in the configuration."""
+    return analysis.kind(property_.path) is FileKind.XML_PROPERTIES
+
+
+def in_property_file(analysis: Analysis, property_: Verifiable, expected: str) -> WorkspaceEdit:
+    """The attribute `expect` of a property in XML.
+
+    Args:
+        expected: such as `>= 0.9`.
+    """
+    file = analysis.property_file(property_.path)
+    written = next((w for w in file.properties if w.id and w.id.span == property_.name_span), None) if file else None
+    if written is None:
+        return WorkspaceEdit()
+    value = escape(expected)
+    if written.expect is not None:
+        edit = TextEdit(written.expect.span, value)
+    else:
+        at = written.element.attributes[-1].span.end
+        edit = TextEdit(Span(at, at), f' expect="{value}"')
+    return WorkspaceEdit({property_.path: (edit,)})
+
+
+def in_configuration(path: str, text: str | None, name: str, expected: str) -> WorkspaceEdit:
+    """The entry of a property in the table `verify.expect` of a configuration file; empty if it cannot be added.
+
+    Args:
+        path: the configuration file.
+        text: its text; `None` if it does not exist.
+    """
+    edit = expectation_edit(path, text or "", name, expected)
+    if edit is None:
+        return WorkspaceEdit()
+    return WorkspaceEdit({path: (edit,)}) if text is not None else WorkspaceEdit(created={path: edit.new_text})
