@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mocks as plugins in HL-SCXML, which answer like the mocks (docs/spec/mocks.md#plugins)."""
+"""Mocks as plugins in HL-SCXML, which answer like the mocks."""
 
 from __future__ import annotations
 
