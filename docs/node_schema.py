@@ -35,19 +35,18 @@ def _elements(known: Library) -> Iterator[str]:
         yield _element(replace(known.nodes[renamed.now], name=renamed.name, text=text), use=renamed.now)
     for absent in known.absent.values():
         if absent.name not in _REGISTERED_BY_PROGRAMS:
-            yield _element(_as_node(absent))
+            yield _element(_as_node(absent), is_translated=False)
 
 
 def _as_node(absent: Absent) -> Node:
     text = f"{absent.reason[0].upper()}{absent.reason[1:]}."
-    return Node(absent.name, absent.kind, (), absent.kind.children, text, not_translated=absent.not_translated)
+    text += f" It cannot be translated{absent.not_translated}."
+    return Node(absent.name, absent.kind, (), absent.kind.children, text)
 
 
-def _element(node: Node, use: str = "") -> str:
+def _element(node: Node, use: str = "", *, is_translated: bool = True) -> str:
     text = f"{node.text} {node.in_systems}".strip()
-    if node.not_translated is not None:
-        text += f" It cannot be translated{node.not_translated}."
-    translated = ' translated="false"' if node.not_translated is not None else ""
+    translated = ' program-only="true"' if node.program_only else "" if is_translated else ' translated="false"'
     deprecated = f'<r:deprecated use="{use}"/>' if use else ""
     lines = [
         f'  <xs:element name="{node.name}">',

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small system without findings, and ways to break it: a clock that counts and tells the count."""
+"""A small system without findings, and ways to break it: a clock that publishes a counter."""
 
 from __future__ import annotations
 

@@ -207,16 +207,19 @@ def test_nodes() -> None:
     described |= {f"Switch{cases}" for cases in range(2, 7)}
     described |= set(words(section("nodes", "decorators").rpartition("|\n")[2]))
     refused = set(words(section("nodes", "differences-from-behaviortree-cpp").rpartition("cannot be translated:")[2]))
+    programs = set(words(section("nodes", "library").partition("make a tree such a tree:")[2].partition("\n\n")[0]))
     for name in nodes.keys() - generic:
-        assert (name in described, name in refused) == (nodes[name].translated, not nodes[name].translated), name
-    assert refused <= nodes.keys()
+        element = nodes[name]
+        kinds = (element.translated and not element.program_only, not element.translated, element.program_only)
+        assert (name in described, name in refused, name in programs) == kinds, name
+    assert refused | programs <= nodes.keys()
 
 
 def test_ports_of_nodes() -> None:
     cells = [cells for anchor in ("control", "decorators") for cells in rows("nodes", anchor) if len(cells) == 4]
     known = {word: (words(type_), default) for first, type_, default, _ in cells for word in words(first)}
     for name, element in BEHAVIOR_TREE.elements.items():
-        for attribute in element.ports if element.node and element.translated else ():
+        for attribute in element.ports if element.node and element.translated and not element.program_only else ():
             if attribute.port is None or name.startswith("Switch") or attribute.name.endswith("_threshold"):
                 continue
             types, default = known[attribute.name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must stay true of the code itself."""
+"""Invariants of the code itself."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api/", "roaml/inte
 READS_RESOURCES = (
     "roaml/explicit/memory.py",
     "roaml/explicit/plain.py",
+    "roaml/figures/themes.py",
     "roaml/language/resources.py",
     "roaml/language/grammar.py",
     "roaml/language/validate.py",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tutorial is true: its steps are taken in a folder, and what it says is printed is what is printed.
+"""The tutorial is correct: the test performs its steps in a folder and compares the output.
 
 What a block means follows from its language:
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How long things take, and how much memory: measured, never asserted.
+"""Measurements of time and memory, without assertions.
 
     .venv/bin/python tests/bench/run.py [NAME...]
 

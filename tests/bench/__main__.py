@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, requests, storm, translate, verify
+from bench import check, debug, growth, requests, scan, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -15,8 +15,10 @@ BENCHMARKS: dict[str, Benchmark] = {
     **debug.BENCHMARKS,
     **growth.BENCHMARKS,
     **requests.BENCHMARKS,
+    **scan.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,
+    **trees.BENCHMARKS,
     **verify.BENCHMARKS,
 }
 
@@ -27,7 +29,7 @@ def main() -> int:
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw how translations grow, as SVG")
     parser.add_argument("--plots", type=Path, metavar="DIR", help="draw how verification grows, as SVG files")
     options = parser.parse_args()
-    names = options.names or list(BENCHMARKS)
+    names = options.names or [name for name in BENCHMARKS if scan.program() or name not in scan.BENCHMARKS]
     unknown = [name for name in names if name not in BENCHMARKS]
     if unknown:
         parser.error(f"there is no benchmark {', '.join(unknown)}")

@@ -7,7 +7,7 @@ character to its last. Before or after every key the text has a mistake, so that
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 WORDS = (
@@ -43,7 +43,7 @@ class Key(NamedTuple):
     text: str
 
     def change(self) -> dict[str, Any]:
-        """The content change that tells of it."""
+        """Its content change."""
         start, end = position(self.before, self.start), position(self.before, self.end)
         return {"range": {"start": start, "end": end}, "text": self.inserted}
 
@@ -56,8 +56,7 @@ def position(text: str, offset: int) -> dict[str, int]:
 def keys(text: str, rounds: int = 3) -> Iterator[Key]:
     """Each word backwards and forwards `rounds` times, at different places; then the statement. The text is as before
     in the end, but for the statement."""
-    for end in places(text, rounds):
-        yield from _retyped(text, end)
+    yield from word_keys(text, rounds)
     at = _place(text, "<assign ", rounds)
     for character in STATEMENT:
         changed = text[:at] + character + text[at:]
@@ -65,9 +64,15 @@ def keys(text: str, rounds: int = 3) -> Iterator[Key]:
         text, at = changed, at + 1
 
 
-def places(text: str, rounds: int = 3) -> list[int]:
-    """Where the words end of which `keys` takes the last character."""
-    return [_place(text, word, number) + len(word) for number in range(rounds) for word in WORDS]
+def word_keys(text: str, rounds: int = 3, words: Sequence[str] = WORDS) -> Iterator[Key]:
+    """Each word backwards and forwards `rounds` times, at different places. The text is as before in the end."""
+    for end in places(text, rounds, words):
+        yield from _retyped(text, end)
+
+
+def places(text: str, rounds: int = 3, words: Sequence[str] = WORDS) -> list[int]:
+    """Where the words end of which `word_keys` takes the last character."""
+    return [_place(text, word, number) + len(word) for number in range(rounds) for word in words]
 
 
 def _place(text: str, word: str, number: int) -> int:

@@ -134,7 +134,7 @@ def is_answer(id_: int) -> Wanted:
 
 
 def is_diagnostics(path: Path, version: int) -> Wanted:
-    """Whether a message tells the diagnostics of a version of a document."""
+    """Whether a message contains the diagnostics of a version of a document."""
     uri = path.as_uri()
 
     def is_it(message: dict[str, Any]) -> bool:

@@ -14,7 +14,9 @@ from bench.keystrokes import keys
 from bench.report import Row, percentile, seconds, table
 from bench.requests import REQUESTS, REST, at_rest
 from bench.server import started
+from bench.trees import NODES, write_tree
 from roaml import api
+from roaml.diagnostics import Severity
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 
@@ -27,6 +29,15 @@ def test_a_generated_system_has_no_findings(tmp_path: Path, files: int, lines: i
     assert len(result.files) == len(list(tmp_path.iterdir())) == files
     written = (tmp_path / FIRST).read_text(encoding="utf-8").count("\n")
     assert abs(written - lines) <= 35
+
+
+def test_a_generated_tree_has_300_nodes_and_no_mistakes(tmp_path: Path) -> None:
+    path = write_tree(tmp_path)
+    result = api.check([str(tmp_path)])
+    assert [d.message for d in result.diagnostics if d.severity >= Severity.WARNING] == []
+    file = result.snapshot.analysis.tree(str(path))
+    assert file is not None
+    assert abs(sum(len(nodes) for nodes in file.nodes_by_tree.values()) - NODES) <= NODES // 10
 
 
 def test_a_generated_system_is_always_the_same(tmp_path: Path) -> None:

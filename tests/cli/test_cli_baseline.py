@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`--baseline`: what was there before is not told."""
+"""`--baseline`: findings of the baseline are not reported."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Disks and pipes that are full, and processes that are killed: what is told, and what is left behind."""
+"""Disks and pipes that are full, and processes that are killed: messages, and files that remain."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`--check --fix`: safe fixes are made, all else is told."""
+"""`--check --fix`: safe fixes are applied, other findings are reported."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FIXED = "".join(
 @pytest.mark.parametrize("line_end", ["\n", "\r\n"])
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
 def test_safe_fixes_are_made(check: Command, tmp_path: Path, line_end: str, mark: bytes) -> None:
-    """And nothing else: a misspelled element is told, for what was meant is a guess."""
+    """Nothing else is changed: a misspelled element is reported, because its correction is a guess."""
     path = tmp_path / "drainer.ascxml"
     path.write_bytes(mark + MACHINE.replace("\n", line_end).encode())
     done = check("drainer.ascxml", "--fix", "--severity", "error")

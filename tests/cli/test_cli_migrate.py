@@ -291,7 +291,7 @@ def test_a_machine_of_a_further_system_is_not_taken_away_from_it(
 
 
 def test_systems_that_share_files_with_each_other_come_along(command: Command, check: Command, tmp_path: Path) -> None:
-    """A shares a machine with B, and B another one with C; D stands alone."""
+    """A shares a machine with B, and B another one with C; D shares none."""
     (tmp_path / ".git").mkdir()
     for name, machines in {"a": "x", "b": "xy", "c": "y", "d": "z"}.items():
         inputs = "".join(f'<input type="ros-scxml" src="{machine}.scxml" />' for machine in machines)

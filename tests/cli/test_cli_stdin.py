@@ -12,7 +12,7 @@ from as2fm_lsp.cli.main import run
 
 
 def test_inside_a_system(check: Command, tmp_path: Path) -> None:
-    """The text is checked as a part of its system, which stands on the disk."""
+    """The text is checked as a part of its system, whose other files are read from the disk."""
     clock.write(tmp_path)
     (tmp_path / ".git").mkdir()
     unheard = check("--stdin-filename", "clock.ascxml", stdin=clock.UNHEARD_CLOCK.encode())

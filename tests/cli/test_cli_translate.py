@@ -325,7 +325,7 @@ def test_same_bytes_whatever_the_hashes(robot: Path) -> None:
 
 
 def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stages are told once the delay is over, and wiped away at the end; a pipe is told nothing."""
+    """The stages are shown after the delay and removed at the end; a pipe does not receive them."""
     leader, follower = pty.openpty()
     monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
     with os.fdopen(follower, "w") as terminal:

@@ -526,7 +526,7 @@ def errors(text: str) -> list[dict[str, Any]]:
 
 
 def place(folder: Path, text: str, name: str = "model.jani") -> int:
-    """The line on which a text stands first."""
+    """The line of the first occurrence of a text."""
     lines = (folder / name).read_text(encoding="utf-8").splitlines()
     return next(number for number, line in enumerate(lines, 1) if text in line)
 

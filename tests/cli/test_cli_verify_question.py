@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify`: what was asked is what is answered, and what cannot be answered is told."""
+"""`as2fm-lsp verify`: the answer states its question, and a question without an answer is reported."""
 
 from __future__ import annotations
 

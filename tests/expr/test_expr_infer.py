@@ -264,7 +264,7 @@ def test_constant(text: str, value: float | None) -> None:
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions(name: str) -> None:
-    """Each is known by its signature, and wrong counts of arguments are told."""
+    """Each has a signature, and wrong numbers of arguments are reported."""
     function = FUNCTIONS[name]
     assert function.documentation
     for count in range(len(function.parameters) + 2):

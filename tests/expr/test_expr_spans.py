@@ -99,7 +99,7 @@ def test_fixes_are_valid(written: str, quote: str, fixed: str) -> None:
 
 @pytest.mark.parametrize(("written", "parts"), SPANS)
 def test_the_same_expression_elsewhere(written: str, parts: list[str]) -> None:
-    """What was read once is taken over; its places are those where it stands now."""
+    """A cached expression is reused with the positions of its new place."""
     texts = [f'<a b="{written}"/>', f'<a  c="&gt;" b="{written}"/>', f'<a b="{" " * 1000}{written}"/>']
     for text in texts:
         document = parse_xml(text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules whose severity depends on the model; what is no error is translated."""
+"""Rules whose severity depends on the model; models without errors are translated."""
 
 from __future__ import annotations
 

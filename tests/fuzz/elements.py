@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The elements of a text of XML and what stands in their places, for those who change texts."""
+"""The elements of an XML text and their texts, for strategies that change texts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def attributes_of(text: str) -> list[Attribute]:
 
 
 def piece(text: str, span: Span) -> str:
-    """What stands there."""
+    """The text at a span."""
     return text[span.start : span.end]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of a system without errors: it is translated, and to a sound model."""
+"""The invariant of systems without errors: they are translated to valid models."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
 
 
 def names_of(model: Model) -> Iterator[str]:
-    """What must be unique in a model and is not."""
+    """Names that are not unique in a model."""
     groups = {"automata": [a.name for a in model.automata], "variables": [v.name for v in model.variables]}
     groups |= {f"locations of {a.name}": [location.name for location in a.locations] for a in model.automata}
     groups |= {f"variables of {a.name}": [variable.name for variable in a.variables] for a in model.automata}

@@ -222,7 +222,7 @@ SYSTEM = (
 
 
 def test_a_new_plugin() -> None:
-    """It takes the ports that the node sets, stands beside the other plugins, and is listed."""
+    """It has the ports that the node sets, is in the folder of the other plugins, and is listed."""
     snapshot, path, place = opened(SYSTEM)
     title = "Create the plugin `GoHome` in `go_home.ascxml`"
     kinds = [action.kind for action in actions(snapshot, path, place, lambda _: True) if action.title == title]

@@ -707,7 +707,7 @@ def snapshot(texts: dict[str, str]) -> Snapshot:
 
 
 def offered(slot: str, text: str) -> list[Completions | None]:
-    """What is offered at each caret of a text that stands in place of a mark."""
+    """The completions at each caret of a text that replaces a mark."""
     name = next(name for name, each in FILES.items() if slot in each)
     new, carets, _ = marked(FILES[name].replace(slot, text))
     moment = snapshot({**FILES, name: new})

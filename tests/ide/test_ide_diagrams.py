@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of machines, trees and systems, with the places that their parts stand for."""
+"""Pictures of machines, trees and systems, with the places of their parts in the text."""
 
 from __future__ import annotations
 
@@ -54,9 +54,11 @@ def _nodes(picture: Picture) -> Iterator[str]:
 
 def _edges(picture: Picture) -> Iterator[str]:
     labels = {node.id: f"{node.parent}/{node.label}" if node.parent else node.label for node in picture.nodes}
+    labels |= {node.id: "?" for node in picture.nodes if node.kind is DiagramNodeKind.CHOICE}
     for edge in picture.edges:
         way = f"{labels[edge.source]} -> {labels[edge.target]}"
-        yield " | ".join((way, edge.kind.value, *edge.labels, *(("by chance",) if edge.probabilistic else ())))
+        marks = [word for word, is_so in (("by chance", edge.probabilistic), ("internal", edge.internal)) if is_so]
+        yield " | ".join((way, edge.kind.value, *edge.labels, *(f"/ {action}" for action in edge.actions), *marks))
 
 
 def text_at(analysis: Analysis, place: Location | None) -> str:
@@ -69,23 +71,27 @@ def test_machine(tmp_path: Path) -> None:
     picture = machine_picture(analysis, str(tmp_path / "robot.ascxml"))
     assert picture is not None
     assert picture.title == "Robot"
-    thread = picture.nodes[2].id
+    thread = picture.nodes[3].id
     assert shown(picture) == [
-        "state | idle | log | initial",
+        "state | idle | initial",
         "state | busy",
+        "choice",
         "thread | walk | 3 threads",
         f"state | idle | in {thread}",
-        "idle -> busy | ros | topic_callback go | [_msg.data && true]",
+        "idle -> busy | ros | /go | [_msg.data && true]",
         "idle -> idle | event | stop",
-        "busy -> idle | eventless | p = 0.25 | by chance",
-        "busy -> busy | eventless | otherwise | by chance",
+        "idle -> idle | event | log | internal",
+        "busy -> ? | eventless",
+        "? -> idle | eventless | 0.25 | by chance",
+        "? -> busy | eventless | otherwise | by chance",
         "busy -> idle | bt | tick",
         f"{thread}/idle -> {thread}/idle | eventless",
     ]
     places = [text_at(analysis, part.place) for part in (*picture.nodes, *picture.edges)]
-    assert [place.split()[0] for place in places[:4]] == ["<state", "<state", "<ros_action_thread", "<state"]
-    assert places[4].startswith('<ros_topic_callback name="go"')
-    assert places[6] == '<target id="idle" prob="0.25"/>'
+    starts = ["<state", "<state", "<transition><target", "<ros_action_thread", "<state"]
+    assert [place.split()[0] for place in places[:5]] == starts
+    assert places[5].startswith('<ros_topic_callback name="go"')
+    assert places[9] == '<target id="idle" prob="0.25"/>'
 
 
 def test_tree(tmp_path: Path) -> None:
@@ -97,19 +103,22 @@ def test_tree(tmp_path: Path) -> None:
         assert shown(picture) == [
             "control | Sequence | initial",
             "action | Walk | goal = {g} | out = {g} | topic =  /a/b ",
+            "subtree | Sub",
             "action | w : Walk | goal = {g} | out = {Sub__own} | topic = /c",
             "variable | g",
             "variable | Sub__own",
             "Sequence -> Walk | child",
-            "Sequence -> w : Walk | child",
+            "Sequence -> Sub | child",
+            "Sub -> w : Walk | child",
             "g -> Walk | reads | goal",
             "Walk -> g | writes | out",
             "g -> w : Walk | reads | goal",
             "w : Walk -> Sub__own | writes | out",
         ]
         assert text_at(analysis, picture.nodes[1].place).startswith('<Walk goal="{g}"')
-        assert text_at(analysis, picture.nodes[2].place).startswith('<Action ID="Walk"')
-        assert text_at(analysis, picture.nodes[3].place) == 'goal="{g}"'
+        assert text_at(analysis, picture.nodes[2].place).startswith('<BehaviorTree ID="Sub"')
+        assert text_at(analysis, picture.nodes[3].place).startswith('<Action ID="Walk"')
+        assert text_at(analysis, picture.nodes[4].place) == 'goal="{g}"'
 
 
 def test_tree_alone(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formatting: what is written stands above `----`, what becomes of it below."""
+"""Formatting: the input is above `----`, the result below."""
 
 from __future__ import annotations
 

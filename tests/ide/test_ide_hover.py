@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is told about the thing under the mouse."""
+"""Hover texts."""
 
 from __future__ import annotations
 

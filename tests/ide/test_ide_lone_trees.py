@@ -54,7 +54,7 @@ def offered(text: str, mark: str = "‸") -> dict[str, str]:
 
 
 def told(text: str, piece: str) -> str:
-    """What is told at a caret `|` in a piece of a text."""
+    """The hover text at a caret `|` in a piece of a text."""
     before, _, after = piece.partition("|")
     clean = text.replace("‸", "").replace('"|"', '""')
     actual_hover = hover(

@@ -105,7 +105,7 @@ def hostile(text: str, suffix: str, pattern: str) -> str:
 
 
 def shown(texts: dict[str, str]) -> Iterator[str]:
-    """All that is told of files, as Markdown."""
+    """All descriptions of the contents of files, as Markdown."""
     workspace = Workspace((), Settings())
     for path, text in texts.items():
         workspace.open(path_of(path), text)
@@ -147,7 +147,7 @@ def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: s
 
 
 def test_analysis_of_hostile_models_is_one() -> None:
-    """The suffix is in what is told: the test above looks at something."""
+    """The suffix is in the descriptions, so that the test above is not empty."""
     texts = {path: hostile(text, "<img>", "id|target") for path, text in split_files(ROBOT).items()}
     assert analysis_of(texts)
     assert any("<img>" in text or "&lt;img>" in text for text in shown(texts))

@@ -44,7 +44,7 @@ from roaml.text import apply_edits
 
 
 def read(expression: str) -> tuple[str, Property]:
-    """The text of a property file with `expression`, in which `'` stands for `"`, and the property in it."""
+    """The text of a property file with `expression`, with `'` in place of `"`, and the property in it."""
     text = f"{{'properties': [{{'name': 'p', 'expression': {expression}}}]}}".replace("'", '"')
     value, findings = parse(text)
     (property_,), more = read_properties(value, "p.jani")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading models: every mistake is told where it stands, and nothing stops the reader.
+"""Reading models: every mistake is reported at its position, and the reader continues.
 
 In the examples, ⟦ ⟧ enclose what a finding is about, `'` stands for `"`, and each example is put into a small sound
 model at the place that its first word names.

@@ -303,7 +303,7 @@ TYPE_ERRORS = ("cannot be applied", "must be", "not an array", "no member", "no 
 
 
 def blames_types(node: Expression) -> bool:
-    """Whether the evaluation of `node` fails for a reason that its types should have told."""
+    """Whether the evaluation of `node` fails for a reason that its types exclude."""
     try:
         evaluate(node, SCOPE_STATE)
     except EvaluationError as error:
@@ -312,7 +312,7 @@ def blames_types(node: Expression) -> bool:
 
 
 def has_value_of(node: Expression, type_: Type) -> bool:
-    """Whether `node` has a value of `type_`, or none at all for reasons that types cannot tell."""
+    """Whether `node` has a value of `type_`, or none for a reason that types do not exclude."""
     try:
         return is_of(evaluate(node, SCOPE_STATE), type_)
     except EvaluationError:

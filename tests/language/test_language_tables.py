@@ -40,7 +40,7 @@ def pairs(grammar: Grammar) -> Iterator[tuple[str, ElementType, Any]]:
 
 
 def particles(element: Any) -> list[Any]:
-    """The named children that may stand in an element."""
+    """The named children that an element may contain."""
     content = element.type.content
     return [c for c in content.iter_elements() if c.name is not None] if hasattr(content, "iter_elements") else []
 
@@ -114,7 +114,7 @@ def test_content(grammar: Grammar) -> None:
 
 
 def occurrence(particle: Any, name: str | None) -> Multiplicity:
-    """How often `name` may stand in a particle; None stands for elements of any name."""
+    """How often `name` may occur in a particle; `None` means elements with any name."""
     least, most = particle.min_occurs, UNBOUNDED if particle.max_occurs is None else particle.max_occurs
     if is_wildcard(particle):
         return Multiplicity(least, most) if name is None else Multiplicity(0, 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of the libraries: complete, consistent, and what the schema of trees has."""
+"""The nodes of the libraries are complete and consistent, and equal those of the schema."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REGISTERED = (
     *("LoopString", "SkipUnlessUpdated", "WaitValueUpdate", "AlwaysSuccess", "AlwaysFailure", "Sleep", "Script"),
     *("ScriptCondition", "SetBlackboard", "UnsetBlackboard", "WasEntryUpdated"),
 )
-"""What BehaviorTree.CPP 4.10 registers, but `SubTree`."""
+"""The nodes that BehaviorTree.CPP 4.10 registers, except `SubTree`."""
 
 
 def test_all_registered_nodes_are_known() -> None:

@@ -282,7 +282,7 @@ async def start_raw(*arguments: str, command: Sequence[str] = ()) -> RawServer:
 
 
 def frame(message: object) -> bytes:
-    """A message as it stands on the wire."""
+    """The bytes of a message."""
     body = json.dumps(message).encode()
     return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
 

@@ -23,7 +23,7 @@ FOLDERS = tuple(dict.fromkeys(path.parent for path in conformance.systems()))
 
 
 async def by_editor(client: Client, folder: Path) -> set[Row]:
-    """What the editor is told about everything that belongs to a folder."""
+    """The diagnostics of all files of a folder."""
     diagnostics_of = await client.pull_all()
     return {row(path, folder, diagnostic) for path, diagnostics in diagnostics_of.items() for diagnostic in diagnostics}
 

@@ -6,10 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
 from client import Client, RawServer, connect, start_raw
 from lsprotocol import types
 
 import clock
+from as2fm_lsp.cli import draw
 from as2fm_lsp.cli.init import template
 
 OLD_MAIN = """\
@@ -82,16 +84,30 @@ async def test_pictures(tmp_path: Path) -> None:
         "source": "/driving",
         "target": "/charging",
         "kind": "ros",
-        "labels": ["topic_callback dock"],
+        "labels": ["/dock", "/ docked := _msg.data"],
         "probabilistic": False,
         "place": {"uri": uri, "range": {"start": {"line": 19, "character": 8}, "end": {"line": 21, "character": 29}}},
     }
+    assert [drawing["scene"].count("data-node=") for drawing in machine["drawings"]] == [2, 2]
+    assert all(box["width"] > 0 for drawing in machine["drawings"] for box in drawing["nodes"])
     (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
     assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "ReactiveFallback", "BatteryAbove"]
     ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
     assert "/hand_over" in [node["label"] for node in ros["nodes"]]
     assert none is None
     assert await asked(tmp_path, "as2fm/picture", "main.xml", kind="cake") == [None]
+
+
+async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file is that of the command line."""
+    write_example(tmp_path)
+    for theme, direction in (("light", "down"), ("dark", "right")):
+        options = {"kind": "machine", "theme": theme, "direction": direction}
+        (file,) = await asked(tmp_path, "as2fm/pictureFile", "nodes/battery.ascxml", **options)
+        arguments = (str(tmp_path / "nodes/battery.ascxml"), "--theme", theme, "--direction", direction)
+        draw.run((*arguments, "-o", "-"))
+        assert file["svg"] == capsys.readouterr().out
+    assert await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="machine") == [None]
 
 
 async def test_plain_scxml(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a server begins and ends, and what it makes of bytes that are no messages."""
+"""Start and end of a server, and its reaction to bytes that are not messages."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ async def test_cancelled_when_it_is_answered() -> None:
 
 @pytest.mark.parametrize(("again", "expected"), [([TOKENS], MODIFIED), (["textDocument/hover"], None), (None, None)])
 async def test_a_text_that_is_about_to_change(again: list[str] | None, expected: int | None) -> None:
-    """Only who says that it asks again is told to."""
+    """Only clients that support it are asked to repeat a request."""
     support = {"cancel": True, "retryOnContentModified": again}
     general = {} if again is None else {"general": {"staleRequestSupport": support}}
     found = await answers(

@@ -97,11 +97,11 @@ async def test_tcp(tmp_path: Path, given: str) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     client = LanguageClient("test", "1")
     published = asyncio.Event()
-    published: list[types.PublishDiagnosticsParams] = []
+    received: list[types.PublishDiagnosticsParams] = []
 
     @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
     def publish(params: types.PublishDiagnosticsParams) -> None:
-        published.append(params)
+        received.append(params)
         published.set()
 
     async with listening("--tcp", "127.0.0.1:0", AS2FM_TOKEN=given) as server:
@@ -117,7 +117,7 @@ async def test_tcp(tmp_path: Path, given: str) -> None:
         )
         client.initialized(types.InitializedParams())
         await asyncio.wait_for(published.wait(), TIMEOUT_S)
-        assert [(Path(p.uri).name, [d.code for d in p.diagnostics]) for p in published] == [
+        assert [(Path(p.uri).name, [d.code for d in p.diagnostics]) for p in received] == [
             ("clock.ascxml", ["undeclared-variable"])
         ]
         await client.shutdown_async(None)
@@ -156,7 +156,7 @@ DISCONNECTED = [
 
 
 async def test_refused_clients(tmp_path: Path) -> None:
-    """Each is told or disconnected, and the client that comes then is served as if they had not been there."""
+    """Each receives an error or is disconnected, and the next client is served."""
     main = clock.write(tmp_path)
     async with listening("--tcp", "127.0.0.1:0", AS2FM_TOKEN=TOKEN) as server:
         for data in REFUSED:

@@ -17,7 +17,7 @@ EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*/mai
 
 @pytest.mark.parametrize("main", EXAMPLES, ids=lambda path: path.parent.name)
 def test_examples(main: Path) -> None:
-    sweep = Sweep(main, (), some_places(1, 40))
+    sweep = Sweep(main, (), some_places(1, 25))
     assert list(sweep.failures()) == []
     assert sweep.asked > 1000
 
@@ -26,7 +26,7 @@ def test_examples(main: Path) -> None:
 def test_models_of_other_tests(tmp_path: Path, written: str) -> None:
     for name, text in split_files(written).items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    sweep = Sweep(tmp_path / "main.xml", (), some_places(2, 40))
+    sweep = Sweep(tmp_path / "main.xml", (), some_places(2, 25))
     assert list(sweep.failures()) == []
 
 

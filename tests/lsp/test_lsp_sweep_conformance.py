@@ -10,7 +10,7 @@ from lsp_sweep import Sweep, some_places
 import conformance
 
 SEED = 4
-SYSTEMS = 6
+SYSTEMS = 4
 PLACES = 6
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models typed from nothing, character by character, with everything asked that an editor asks after each."""
+"""Models typed from nothing, character by character, with everything asked that an editor asks after each. A new line
+comes with its indentation, as from an editor."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -34,17 +36,21 @@ def test_typed(name: str) -> None:
         server.open(path, "")
         line = column = 0
         last: dict[str, object] = {}
-        for number, character in enumerate(text):
+        typed_text = ""
+        for number, typed_key in enumerate(re.findall(r"\n[ \t]*|.", text)):
             start = {"line": line, "character": column}
-            server.change(path, number + 2, {"range": {"start": start, "end": start}, "text": character})
-            line, column = (line + 1, 0) if character == "\n" else (line, column + 1)
+            server.change(path, number + 2, {"range": {"start": start, "end": start}, "text": typed_key})
+            typed_text += typed_key
+            is_new_line = typed_key.startswith("\n")
+            line, column = (line + 1, len(typed_key) - 1) if is_new_line else (line, column + 1)
             ids = range(10 + number * 10, 10 + number * 10 + len(asked))
             for id_, method in zip(ids, asked, strict=True):
                 params = {"textDocument": {"uri": uri}, "position": {"line": line, "character": column}}
                 server.tell(method, params, id_)
             for _, answer in server.wait_for_all(*map(is_answer, ids)):
-                assert "error" not in answer, (text[: number + 1][-80:], answer["error"])
+                assert "error" not in answer, (typed_text[-80:], answer["error"])
                 last[asked[answer["id"] - ids.start]] = answer["result"]
+        assert typed_text == text
         typed = last["textDocument/diagnostic"]
         server.change(path, len(text) + 2, {"text": text})
         server.tell("textDocument/diagnostic", {"textDocument": {"uri": uri}}, 1)

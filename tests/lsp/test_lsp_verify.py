@@ -255,7 +255,7 @@ async def until_estimate(client: Client, working: asyncio.Future[object]) -> tup
 
 
 def estimates(client: Client) -> Iterator[tuple[str | int, str]]:
-    """The estimates that were told, each with the token of its progress."""
+    """The published estimates, each with the token of its progress."""
     for token, reports in client.progress_reports.items():
         for report in reports:
             if isinstance(report, types.WorkDoneProgressReport) and "traces" in (report.message or ""):

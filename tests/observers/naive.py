@@ -53,7 +53,7 @@ class Owed:
 
 
 def verdict(property_: Property, trace: Sequence[Letter], end: End) -> Verdict:
-    """UNDECIDED stands for every trace that was cut before it was violated."""
+    """UNDECIDED means that the trace ended before a violation."""
     now = trace[-1].time
     if isinstance(property_, PatternProperty):
         obligations = [

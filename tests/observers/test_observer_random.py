@@ -8,9 +8,10 @@ from dataclasses import replace
 import naive
 import pytest
 from drawn import CONDITIONS, final_state, observed
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from examples import examples
 from roaml.observers.build import observer_of
 from roaml.observers.program import State
 from roaml.observers.properties import (
@@ -86,6 +87,7 @@ def test_patterns(property_: PatternProperty, trace: tuple[naive.Letter, ...], e
 
 @pytest.mark.parametrize("pattern", Pattern)
 @pytest.mark.parametrize("scope", ScopeKind)
+@settings(max_examples=examples(40))
 @given(data=st.data())
 def test_each_pattern_and_scope(pattern: Pattern, scope: ScopeKind, data: st.DataObject) -> None:
     window = Window(0, 2) if pattern is Pattern.RECURRENCE else data.draw(windows())

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -25,7 +26,13 @@ def run(*command: str, cwd: Path) -> str:
     return done.stdout
 
 
-def build(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def c_code(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What Cython makes of the sources in the first test; the others do not translate them again."""
+    return tmp_path_factory.mktemp("cython")
+
+
+def build(tmp_path: Path, c_code: Path) -> Path:
     """The wheel, unpacked."""
     source = tmp_path / "source"
     source.mkdir()
@@ -35,8 +42,11 @@ def build(tmp_path: Path) -> Path:
             shutil.copytree(ROOT / name, copy_to, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info", "*.so"))
         else:
             shutil.copy(ROOT / name, copy_to)
+    if any(c_code.iterdir()):
+        shutil.copytree(c_code, source / "build/cython")
     pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet")
     run(*pip, "--no-deps", "--no-build-isolation", "--wheel-dir", str(tmp_path), str(source), cwd=tmp_path)
+    shutil.copytree(source / "build/cython", c_code, dirs_exist_ok=True)
     (wheel,) = tmp_path.glob("*.whl")
     installed = tmp_path / "installed"
     zipfile.ZipFile(wheel).extractall(installed)
@@ -50,9 +60,9 @@ def hasty_compiler(path: Path) -> Path:
     return path
 
 
-def test_wheel_checks_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", str(hasty_compiler(tmp_path / "cc")))
-    installed = build(tmp_path)
+    installed = build(tmp_path, c_code)
     assert len(kernels(installed)) == len(PLAIN) + len(MODULES) * kernel.compiled()
     for schema in (ROOT / "schemas").iterdir():
         assert (installed / "roaml/schemas" / schema.name).read_bytes() == schema.read_bytes()
@@ -66,7 +76,10 @@ def test_wheel_checks_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 MODULES = ("elimination", "kernel", "search", "solver")
 PLAIN = [f"{module}.{ending}" for module in MODULES for ending in ("pxd", "py")]
 VERIFY = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"
-BUILD = "import sys; sys.path.insert(0, sys.argv[1]); from as2fm_lsp.cli.build_kernel import main; sys.exit(main())"
+BUILD = (
+    "import sys, sysconfig; sys.path.insert(0, sys.argv[1]); sysconfig.get_config_vars()['LDSHARED'] = sys.argv.pop(); "
+)
+BUILD += "from as2fm_lsp.cli.build_kernel import main; sys.exit(main())"
 IS_COMPILED = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.kernel import compiled; print(compiled())"
 
 
@@ -84,23 +97,25 @@ def kernels(installed: Path) -> list[str]:
     return sorted(path.name for pattern in patterns for path in (installed / "roaml").glob(pattern))
 
 
-def test_wheel_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The kernel of the model checker is there as Python, and verifies."""
     monkeypatch.setenv("CC", "false")
-    installed = build(tmp_path)
+    installed = build(tmp_path, c_code)
     assert kernels(installed) == PLAIN
     assert verified(installed).startswith("never_empty: 1 in ")
 
 
-def test_wheel_for_every_platform(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wheel_for_every_platform(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It carries the kernel as Python and as C, which can be compiled where it is installed."""
     monkeypatch.setenv("AS2FM_PURE_PYTHON", "1")
-    installed = build(tmp_path)
+    installed = build(tmp_path, c_code)
     assert list(tmp_path.glob("*-py3-none-any.whl"))
     carried = sorted([*PLAIN, *(f"{module}.c" for module in MODULES)])
     assert kernels(installed) == carried
     slow = verified(installed)
-    isolated = (sys.executable, "-I", "-c", BUILD, str(installed))
+    _, *flags = shlex.split(sysconfig.get_config_var("LDSHARED"))
+    linker = shlex.join((str(hasty_compiler(tmp_path / "cc")), *flags))
+    isolated = (sys.executable, "-I", "-c", BUILD, str(installed), linker)
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     # The environment of the tests was made in the same way: what could be compiled there can be compiled here.
     assert (done.returncode == 0) is kernel.compiled()

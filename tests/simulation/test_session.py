@@ -15,7 +15,7 @@ from roaml import api
 from roaml.smc.record import VERDICTS, Recorder, Recording
 
 ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
-TRACES = 20
+TRACES = 5
 """Traces of each property that are replayed."""
 
 

@@ -93,7 +93,7 @@ def test_reasons_are_counted_with_their_shortest_traces() -> None:
 
 
 def test_goals_decided_early_keep_their_end(tmp_path: Path) -> None:
-    """Whether the system would have got stuck later is not known of such a trace."""
+    """It is not known whether the system would have got stuck later in these traces."""
     checker = of_system(tmp_path, hospital())
     actual_answer = answer(checker, traces=300)
     assert counts(actual_answer)[End.DECIDED] == actual_answer.tally.successes

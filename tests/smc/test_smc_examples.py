@@ -56,7 +56,7 @@ def test_the_grid_world_exact_values() -> None:
 
 
 def test_the_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """A line `…` stands for what is not shown."""
+    """A line `…` replaces lines that are not shown."""
     monkeypatch.chdir(ROOT)
     page = (ROOT / "docs/verification.md").read_text(encoding="utf-8")
     commands = re.findall(r"^\$ (.*)\n((?:(?!\$ |```).*\n)*)", page, re.MULTILINE)

@@ -160,7 +160,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
 
 
 def states_of(actual_model: Model, limit: int) -> set[tuple[Any, ...]]:
-    """All reachable states by the engine, as the slow explorer tells them."""
+    """All reachable states of the engine, in the form of the slow explorer."""
     checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     layout = checker.legend.layout

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
 from functools import cache
 
 import pytest
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 
 from roaml.smc.run import FIRST_BATCH, GROWTH, LARGEST_BATCH, PEEKING
 from roaml.smc.statistics import (
+    Bounds,
     Mean,
     Ratio,
     beta_quantile,
@@ -218,6 +220,10 @@ def test_undecided_traces_widen_a_confidence_sequence() -> None:
     assert unsure.upper == confidence_sequence(70, 100, 0.95).upper
 
 
+def covers(interval: Bounds, p: float) -> bool:
+    return interval.lower <= p <= interval.upper
+
+
 @pytest.mark.parametrize("p", [0.03, 0.2, 0.5, 0.9])
 def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float) -> None:
     """Exactly, over all runs: not even who looks after each trace and waits for a miss finds more of them than
@@ -229,16 +235,23 @@ def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float)
             for k, weight in open_.items():
                 after[k] = after.get(k, 0.0) + weight * (1 - p)
                 after[k + 1] = after.get(k + 1, 0.0) + weight * p
-            open_ = {}
-            for k, weight in after.items():
-                if weight < 1e-12:
-                    continue
-                lower, upper = method(k, n, confidence)
-                if lower <= p <= upper:
-                    open_[k] = weight
-                else:
-                    missed += weight
+            likely = {k: weight for k, weight in after.items() if weight >= 1e-12}
+            # Both bounds grow with the number of successes: it suffices to look from both ends.
+            counts = sorted(likely)
+            while counts and not covers(method(counts[0], n, confidence), p):
+                missed += likely[counts.pop(0)]
+            while counts and not covers(method(counts[-1], n, confidence), p):
+                missed += likely[counts.pop()]
+            open_ = {k: likely[k] for k in counts}
         assert (missed <= 1 - confidence) is keeps
+
+
+@pytest.mark.parametrize("method", [confidence_sequence, clopper_pearson])
+def test_bounds_grow_with_the_number_of_successes(method: Callable[[int, int, float], Bounds]) -> None:
+    for n in (1, 2, 17, 100, 399):
+        intervals = [method(k, n, 0.9) for k in range(n + 1)]
+        assert [i.lower for i in intervals] == sorted(i.lower for i in intervals)
+        assert [i.upper for i in intervals] == sorted(i.upper for i in intervals)
 
 
 @pytest.mark.parametrize("p", [0.62, 0.65, 0.68, 0.7, 0.73, 0.75, 0.8])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which name is meant (`roaml.suggest`)."""
+"""Suggestions for misspelled names (`roaml.suggest`)."""
 
 from __future__ import annotations
 

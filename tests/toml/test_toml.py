@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Places in TOML: what stands at the place of a value means that value."""
+"""Places in TOML: the text at the position of a value is that value."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavior trees executed in plain Python: what the built-in nodes of docs/spec/nodes.md do, said a second time.
+"""Behavior trees executed in plain Python: a second implementation of the built-in nodes of docs/spec/nodes.md.
 
 - Nothing here knows how the nodes are translated; each class is a paragraph of the specification.
 - A node is ticked and halted by its parent only. Both, and the answers, are logged in the order in which they happen.

@@ -24,7 +24,7 @@ _WORDS = {"tick": "tick", "halt": "halt", "halt_response": "halted"}
 
 
 def step(event: str, status: int) -> Step | None:
-    """What `event` tells of a node; `status` is that of a response."""
+    """The step of a node that `event` describes; `status` is that of a response."""
     match = _EVENT.fullmatch(event)
     if match is None:
         return None

@@ -110,7 +110,7 @@ def main(plugins: Iterable[str], setup: Setup) -> dict[str, str]:
 
 
 def tree_file(tree: Tree) -> str:
-    """The parts that stand apart know the variables by other names than the tree around them."""
+    """The parts in subtrees of their own use other names for the variables."""
     trees: list[str] = []
 
     def written(part: Tree, names: Mapping[str, str]) -> str:

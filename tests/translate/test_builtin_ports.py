@@ -164,17 +164,6 @@ def test_written_otherwise(text: str, tree: Tree) -> None:
     same_steps({**system(tree, SETUP), "tree.xml": written}, tree)
 
 
-SCRIPTS = [a.name for a in BEHAVIOR_TREE.elements["Sequence"].attributes.values() if a.value == "script"]
-
-
-@pytest.mark.parametrize("script", SCRIPTS)
-def test_script(script: str) -> None:
-    files = system(node("Sequence", leaf("S"), **{script: "x := 1"}), SETUP)
-    diagnostics = errors(files)
-    assert [d.code for d in diagnostics] == ["untranslatable-script"]
-    assert in_tree(diagnostics, files["tree.xml"])[0].startswith(script)
-
-
 @pytest.mark.parametrize("kind", [e.name for e in BEHAVIOR_TREE.elements.values() if e.node and not e.translated])
 def test_node_that_cannot_be_translated(kind: str) -> None:
     element = BEHAVIOR_TREE.elements[kind]

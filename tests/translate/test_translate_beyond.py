@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the reference cannot translate and we can (docs/spec/differences.md#accepted): Storm finds what must come out of
+"""Models that only this tool translates (docs/spec/differences.md#accepted): Storm finds what must come out of
 it.
 
 The systems stand in `beyond.txt`. The property of each is written as `VARIABLE = VALUE`: sooner or later this holds,

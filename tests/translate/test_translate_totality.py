@@ -35,7 +35,7 @@ def is_sound(result: api.CheckResult, model: Model) -> bool:
     return True
 
 
-@settings(max_examples=examples(300), suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(150), suppress_health_check=[HealthCheck.too_slow])
 @given(st.deferred(lambda: st.sampled_from(sound())), st.randoms(use_true_random=False))
 def test_changed_models_are_refused_or_translated(model: Model, random: Random) -> None:
     texts = varied(random, model.texts)

@@ -143,7 +143,7 @@ def change_type(random: Random, text: str) -> str:
 
 
 def add_condition(random: Random, text: str) -> str:
-    """A condition that stands somewhere in the file, on a transition that has none."""
+    """A condition of another element, on a transition without one."""
     conditions = [piece(text, a.value_span) for _, a in _attributes(text, "cond")] or ["false", "1 &lt; 2"]
     handlers = [e for e in elements_of(text) if e.get("target") is not None and e.get("cond") is None]
     if not handlers:

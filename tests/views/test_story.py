@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stories of traces: as a whole for a robot and its bug, and what is told of models that nobody has translated."""
+"""Stories of traces: as a whole for a robot and its bug, and of models that were not translated."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
 
 
 def test_forwarding_steps_are_omitted() -> None:
-    """Between a client and its server stands a handler, and the answer holds a text with its length."""
+    """A handler is between a client and its server, and the answer contains a text with its length."""
     folder = ROBOT.parent / "delivery_robot"
     texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
     subject = api.as_target(api.load(str(folder / "main.xml"), texts=texts))

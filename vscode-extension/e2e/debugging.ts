@@ -3,7 +3,8 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Stage } from "./support/stage";
 import type { Window } from "./support/window";
-import { ROOT, temporaryFolder, write } from "./support/workbench";
+import { ROOT } from "./support/paths";
+import { temporaryFolder, write } from "./support/workbench";
 
 const PROPERTY = "never_placed_empty";
 

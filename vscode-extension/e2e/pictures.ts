@@ -4,7 +4,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
-import { OUTPUT } from "./support/workbench";
+import { OUTPUT } from "./support/paths";
 
 export function pictures(stage: Stage): void {
     stage.use();
@@ -20,16 +20,19 @@ export function pictures(stage: Stage): void {
             assert.deepEqual(await labels(picture), ["driving", "charging"]);
             assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
             assert.equal(await picture.locator(".dot").count(), 1);
+            assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
+            const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
+            assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
             await picture.locator('.node[data-label="charging"]').click();
             await window.statusItem("Ln 25, Col 5").waitFor();
             await picture.locator('.node.here[data-label="charging"]').waitFor();
             await window.screenshot("machine");
             await window.goBehind("nodes/battery.ascxml", "Math.max(");
-            await picture.locator(".edge.here").waitFor();
+            await picture.locator(".edge.here").first().waitFor();
             // Another machine is drawn as soon as it is looked at, and edits show before they are saved.
             await window.openFile("building.ascxml");
             await picture.locator('.node[data-label="open"]').waitFor();
-            assert.equal(await picture.locator(".scene .edge.chance").count(), 2);
+            assert.equal(await picture.locator(".scene .edge.is-chance").count(), 2);
             await window.goBehind("nodes/building.ascxml", '<state id="open');
             await window.type("ed");
             await picture.locator('.node[data-label="opened"]').waitFor();
@@ -47,7 +50,7 @@ export function pictures(stage: Stage): void {
             const names = ["ReactiveSequence", "ReactiveFallback", "BatteryAbove", "Charge", "Deliver"];
             assert.deepEqual(await labels(picture), names);
             assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
-            assert.equal(await picture.locator(".edge.is-child").count(), 4);
+            assert.equal(await picture.locator(".link.is-child").count(), 4);
             await picture.locator('.node[data-label="Deliver"]').click();
             await window.statusItem("Ln 10, Col 13").waitFor();
             await window.screenshot("tree");
@@ -98,6 +101,8 @@ export function pictures(stage: Stage): void {
             const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");
             assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
             assert.match(svg, />\/hand_over</);
+            const theme = svg.replace(/^.*<style>/s, "").replace(/<\/style>.*$/s, "");
+            assert.match(theme, /-card \{ fill: #/);
             assert.doesNotMatch(svg, /var\(--/);
             const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
             assert.equal(png.subarray(1, 4).toString(), "PNG");

@@ -32,7 +32,9 @@ await esbuild.build({
     format: "iife",
     target: "es2022",
 });
-fs.copyFileSync(path.join(here, "src/pictures/view/view.css"), path.join(dist, "view.css"));
+// The pictures have the same style in the editor and in the files of the command line.
+const styles = [path.join(root, "server/roaml/figures/figure.css"), path.join(here, "src/pictures/view/view.css")];
+fs.writeFileSync(path.join(dist, "view.css"), styles.map((file) => fs.readFileSync(file, "utf8")).join(""));
 
 // The schemas, with a catalog under whose names the XML extension finds them.
 fs.cpSync(path.join(root, "schemas"), path.join(dist, "schemas"), {

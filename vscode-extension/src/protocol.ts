@@ -3,7 +3,7 @@
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
-import type { Picture, PictureKind, Place } from "./pictures/contract";
+import type { Direction, Picture, PictureKind, Place, Theme } from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
@@ -21,6 +21,16 @@ export interface DocumentParams {
 
 export interface PictureParams extends DocumentParams {
     readonly kind: PictureKind;
+}
+
+export interface PictureFileParams extends PictureParams {
+    readonly direction: Direction;
+    readonly theme: Theme;
+}
+
+/** The text of an SVG file. */
+export interface PictureFile {
+    readonly svg: string;
 }
 
 /** A line of the plain form, and the place in the models from which it was generated. */
@@ -53,6 +63,7 @@ export interface Migration {
 
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
+export const pictureFile = new RequestType<PictureFileParams, PictureFile | null, void>("as2fm/pictureFile");
 export const plainScxml = new RequestType<DocumentParams, PlainScxml, void>("as2fm/plainScxml");
 export const janiView = new RequestType<DocumentParams, JaniText, void>("as2fm/janiView");
 export const migrate = new RequestType<DocumentParams, Migration, void>("as2fm/migrate");

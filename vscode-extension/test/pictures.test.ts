@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import ELK from "elkjs/lib/elk.bundled.js";
-import type { Picture, PictureEdge, PictureNode, Place } from "../src/pictures/contract";
+import type { Picture, PictureEdge, PictureNode, Place, Words } from "../src/pictures/contract";
 import { partAt } from "../src/pictures/partAt";
-import { fit, neighbour, reveal, search, zoom } from "../src/pictures/view/find";
-import { drawingOf, graphOf, pathOf, type Drawing } from "../src/pictures/view/layout";
+import { bestDrawing, fit, fitLegibly, neighbour, pan, reveal, search, zoom } from "../src/pictures/view/find";
+import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
 
 const URI = "file:///m.ascxml";
 
@@ -42,6 +41,7 @@ const MACHINE: Picture = {
         edge("t/b", "t/a", { labels: ["done"] }),
         edge("t/b", "t/b", { kind: "eventless" }),
     ],
+    drawings: [],
 };
 
 const TREE: Picture = {
@@ -59,60 +59,31 @@ const TREE: Picture = {
         edge("2", "{v}", { kind: "writes" }),
         edge("{v}", "3", { kind: "reads" }),
     ],
+    drawings: [],
 };
 
-async function layout(picture: Picture): Promise<Drawing> {
-    const measure = (text: string, size: number) => text.length * size * 0.6;
-    return drawingOf(picture, await new ELK().layout(graphOf(picture, measure, ({ kind }) => kind)));
-}
+const ROS: Picture = {
+    kind: "ros",
+    title: "main.xml",
+    nodes: [
+        node("A", { kind: "node" }),
+        node("B", { kind: "plugin" }),
+        node("C", { kind: "node" }),
+        node("topic", { kind: "topic", label: "/level", details: ["std_msgs/Int32"] }),
+        node("service", { kind: "service", label: "/ask", details: ["std_srvs/Trigger"] }),
+    ],
+    edges: [
+        edge("A", "topic", { kind: "publishes", place: place(4, 0, 4, 9) }),
+        edge("topic", "B", { kind: "subscribes" }),
+        edge("topic", "C", { kind: "subscribes" }),
+        edge("C", "service", { kind: "calls" }),
+        edge("A", "B", { kind: "sends", labels: ["go"] }),
+    ],
+    drawings: [],
+};
 
-function box(drawing: Drawing, index: number) {
-    const found = drawing.nodes.find((each) => each.index === index);
-    assert.ok(found);
-    return found;
-}
-
-test("initial nodes are at the top, frames contain their nodes", async () => {
-    const drawing = await layout(MACHINE);
-    assert.ok(box(drawing, 0).y < box(drawing, 1).y);
-    assert.ok(box(drawing, 3).y < box(drawing, 4).y);
-    const [frame, inside] = [box(drawing, 2), box(drawing, 4)];
-    assert.ok(inside.x > frame.x && inside.x + inside.width < frame.x + frame.width);
-    assert.ok(inside.y > frame.y && inside.y + inside.height < frame.y + frame.height);
-    assert.equal(drawing.nodes.filter(({ index }) => index === -1).length, 2);
-    for (const each of drawing.nodes) assert.ok(each.x >= 0 && each.x + each.width <= drawing.width);
-});
-
-test("edges end at their nodes, in frames as well", async () => {
-    for (const picture of [MACHINE, TREE]) {
-        const drawing = await layout(picture);
-        for (const drawn of drawing.edges) {
-            const written = picture.edges[drawn.index];
-            if (!written) continue;
-            const at = (id: string) =>
-                box(
-                    drawing,
-                    picture.nodes.findIndex((each) => each.id === id),
-                );
-            const [first, last] = [drawn.points[0], drawn.points.at(-1)];
-            assert.ok(first && last && touches(at(written.source), first) && touches(at(written.target), last));
-            assert.equal(drawn.label !== undefined, written.labels.length > 0);
-        }
-    }
-});
-
-function touches(rect: { x: number; y: number; width: number; height: number }, { x, y }: { x: number; y: number }) {
-    const near = 0.5;
-    const across = x >= rect.x - near && x <= rect.x + rect.width + near;
-    return across && y >= rect.y - near && y <= rect.y + rect.height + near;
-}
-
-test("children of the tree keep their order, variables are below", async () => {
-    const drawing = await layout(TREE);
-    assert.ok(box(drawing, 1).x < box(drawing, 2).x);
-    assert.ok(box(drawing, 0).y < box(drawing, 1).y);
-    assert.ok(box(drawing, 3).y > box(drawing, 1).y);
-});
+/** Words that are their own keys. */
+const WORDS = { byChance: "random", kinds: new Proxy({}, { get: (_, kind) => kind }) } as Words;
 
 test("the caret is in the narrowest part", () => {
     const at = (line: number, character: number, uri = URI) => partAt(MACHINE, uri, { line, character });
@@ -127,7 +98,7 @@ test("the caret is in the narrowest part", () => {
 
 test("arrow keys go to the nearest node in their direction", () => {
     const at = (index: number, x: number, y: number) => ({ index, x, y, width: 10, height: 10 });
-    const nodes = [at(0, 0, 0), at(1, 100, 0), at(2, 0, 100), at(3, 60, 60), at(-1, 20, 0)];
+    const nodes = [at(0, 0, 0), at(1, 100, 0), at(2, 0, 100), at(3, 60, 60)];
     assert.equal(neighbour(nodes, 0, "ArrowRight"), 1);
     assert.equal(neighbour(nodes, 0, "ArrowDown"), 2);
     assert.equal(neighbour(nodes, 3, "ArrowLeft"), 2);
@@ -139,6 +110,7 @@ test("arrow keys go to the nearest node in their direction", () => {
 test("searching finds all words, in any case, in labels, kinds and details", () => {
     assert.deepEqual(search(TREE, "ACTION p"), [1]);
     assert.deepEqual(search(MACHINE, "log"), [1]);
+    assert.deepEqual(search(MACHINE, "again"), [0]);
     assert.deepEqual(search(MACHINE, "  "), []);
     assert.deepEqual(search(MACHINE, "nothing"), []);
 });
@@ -157,19 +129,45 @@ test("fitting, zooming and revealing", () => {
     assert.ok(moved.x > 120 && moved.x < 200 && moved.y === 0);
 });
 
-test("lines have round corners that fit between their points", () => {
-    assert.equal(pathOf([]), "");
-    assert.equal(
-        pathOf([
-            { x: 0, y: 0 },
-            { x: 5, y: 0 },
-        ]),
-        "M 0 0 L 5 0",
-    );
-    const corner = [
-        { x: 0, y: 0 },
-        { x: 10, y: 0 },
-        { x: 10, y: 4 },
+test("a picture is legible at first, and drawn in the direction that suits the window", () => {
+    const [tall, wide] = [
+        { width: 300, height: 900 },
+        { width: 1200, height: 300 },
     ];
-    assert.equal(pathOf(corner), "M 0 0 L 8 0 Q 10 0 10 2 L 10 4");
+    assert.equal(bestDrawing([tall, wide], 400, 1000), 0);
+    assert.equal(bestDrawing([tall, wide], 1400, 400), 1);
+    // Neither fits: the one whose width fits, so that it can be read from above to below.
+    assert.equal(bestDrawing([tall, wide], 500, 500), 0);
+    assert.equal(bestDrawing([tall, wide], 2000, 2000), 0);
+    const view = fitLegibly({ width: 3000, height: 400 }, 1000, 800);
+    assert.equal(view.scale, 11 / 12);
+    assert.ok(view.x < 0 && view.x > -50 && view.y < -200);
+    assert.equal(fitLegibly({ width: 300, height: 400 }, 1000, 800).scale, 1);
+    assert.deepEqual(pan({ x: 10, y: 20, scale: 2 }, 8, -4), { x: 14, y: 18, scale: 2 });
+});
+
+test("a hover over an edge of the ROS graph says senders, interface, receivers, type and line", () => {
+    const hints = ROS.edges.map((each) => edgeHint(ROS, each));
+    assert.deepEqual(hints, [
+        "A → /level → B, C\nstd_msgs/Int32\nm.ascxml:5",
+        "A → /level → B\nstd_msgs/Int32",
+        "A → /level → C\nstd_msgs/Int32",
+        "C → /ask\nstd_srvs/Trigger",
+        "A → B\ngo",
+    ]);
+});
+
+test("parts have names for readers of the screen", () => {
+    const [first, second] = MACHINE.edges;
+    assert.ok(first && second && MACHINE.nodes[1]);
+    assert.equal(edgeWords(MACHINE, first, WORDS), "a → b, event, go, [x > 1]");
+    assert.equal(edgeWords(MACHINE, { ...second, probabilistic: true }, WORDS), "a → a, event, again, random");
+    assert.equal(nodeWords(MACHINE.nodes[1], WORDS), "state, b, log");
+});
+
+test("the legend has one entry for each color", () => {
+    const entries = (picture: Picture) => legendOf(picture, WORDS).map(({ tone, text }) => `${tone}: ${text}`);
+    assert.deepEqual(entries(MACHINE), ["event: event", "plain: eventless"]);
+    assert.deepEqual(entries(TREE), ["control: control", "action: action", "blackboard: variable"]);
+    assert.deepEqual(entries(ROS), ["topic: topic", "service: service", "event: event"]);
 });

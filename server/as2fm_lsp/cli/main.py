@@ -29,6 +29,7 @@ COMMANDS = {
     "migrate": "move systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "estimate the probabilities of properties",
+    "draw": "draw a state machine, a tree or a ROS graph",
     "simulate": "run a system step by step",
     "debug": "serve a debugger: the debug adapter",
     "init": "write a small working system",
@@ -46,6 +47,7 @@ examples:
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
+  as2fm-lsp draw main.xml                 the ROS graph as SVG; see draw --help
   as2fm-lsp simulate main.xml             one run as a story; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help

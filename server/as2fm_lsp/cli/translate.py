@@ -26,7 +26,9 @@ from roaml.jani.writer import write as jani_text
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
+from roaml.scxml.lowered_properties import FILE_NAME, NOBODY_TEXT, lowered_properties
 from roaml.scxml.model import Network
+from roaml.scxml.writer import NOBODY
 from roaml.scxml.writer import write as scxml_texts
 from roaml.text import SourceFile
 from roaml.views.machine import machine_graph
@@ -111,7 +113,9 @@ def parser() -> ArgumentParser:
     result.add_argument(
         "--map", metavar="FILE", help="write the place in the models of each automaton, edge and variable"
     )
-    result.add_argument("--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton")
+    result.add_argument(
+        "--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton, and the properties in XML"
+    )
     for notation in NOTATIONS.values():
         help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
         result.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
@@ -144,7 +148,7 @@ def _size(text: str) -> int:
 def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, network: Network, model: Model) -> None:
     """Write the requested files; the JANI file is last, so that a failure leaves it unchanged."""
     if options.scxml_dir is not None:
-        _write_folder(options.scxml_dir, ((f"{name}.scxml", text) for name, text in scxml_texts(network)))
+        _write_folder(options.scxml_dir, _scxml_files(options, system, network))
     for notation in NOTATIONS.values():
         folder = getattr(options, notation.name)
         if folder is not None:
@@ -153,6 +157,20 @@ def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, n
         text = json.dumps(api.source_map(system, model), ensure_ascii=False, indent=1) + "\n"
         _write_text(options.map, [text])
     _write_text(output, (*jani_text(model, options.indent), "\n"))
+
+
+def _scxml_files(options: argparse.Namespace, system: api.LoadedSystem, network: Network) -> Iterator[tuple[str, str]]:
+    """File name and text of each machine, and of the properties in XML."""
+    for name, text in scxml_texts(network):
+        yield f"{name}.scxml", text
+    chosen = [p for p in system.observed if not options.property or p.name in options.property]
+    lowered = lowered_properties(network, chosen)
+    if lowered.text:
+        yield FILE_NAME, lowered.text
+    if lowered.names_nobody:
+        yield f"{NOBODY}.scxml", NOBODY_TEXT
+    for property_, reason in lowered.left_out:
+        complain(f"the property `{property_.name}` is not written to {FILE_NAME}: {reason}")
 
 
 def _diagrams(system: api.LoadedSystem, model: Model, notation: Notation) -> Iterator[tuple[str, str]]:

@@ -17,10 +17,10 @@ from as2fm_lsp.debug.breakpoints import BreakpointRequests
 from as2fm_lsp.debug.by_hand import ByHandRequests
 from as2fm_lsp.debug.capabilities import CAPABILITIES
 from as2fm_lsp.debug.choices import ChoiceRequests
-from as2fm_lsp.debug.framing import Inbox, Message
+from as2fm_lsp.debug.framing import Message, PendingMessages
 from as2fm_lsp.debug.launch import Launch, launch_of, load, warm_up
 from as2fm_lsp.debug.movement import MovementRequests
-from as2fm_lsp.debug.session import Body, ClientFormat, Connection, DebugSession, Handler
+from as2fm_lsp.debug.session import Body, ClientFormat, DebugSession, Handler, MessageWriter
 from as2fm_lsp.debug.state import StateRequests
 from roaml.debugging.debugger import Unit
 from roaml.debugging.evaluate import WatchError
@@ -35,9 +35,9 @@ class Adapter:
         output: receives responses and events.
     """
 
-    def __init__(self, inbox: Inbox, output: BinaryIO) -> None:
+    def __init__(self, inbox: PendingMessages, output: BinaryIO) -> None:
         self._inbox = inbox
-        self._connection = Connection(output)
+        self._connection = MessageWriter(output)
         self._session = session = DebugSession(self._connection)
         self._breakpoints = BreakpointRequests(session)
         by_hand = ByHandRequests(session)

@@ -71,7 +71,7 @@ def write_message(stream: BinaryIO, message: Mapping[str, Any]) -> None:
     stream.flush()
 
 
-class Inbox(Protocol):
+class PendingMessages(Protocol):
     """Messages that have arrived and are not handled yet."""
 
     def take(self, *, waits: bool) -> Message | None:

@@ -22,7 +22,7 @@ Body = Mapping[str, Any] | None
 Handler = Callable[[Arguments], Body]
 
 
-class Connection:
+class MessageWriter:
     """Numbers and sends messages."""
 
     def __init__(self, output: BinaryIO) -> None:
@@ -86,7 +86,7 @@ class DebugSession:
         after: what is done after the response to the current request.
     """
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: MessageWriter) -> None:
         self.connection = connection
         self.client = ClientFormat()
         self.debugger: Debugger | None = None

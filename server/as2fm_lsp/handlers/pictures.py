@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/picture`: a machine, the behavior tree or the ROS graph as a diagram."""
+"""`as2fm/picture`: a machine, the behavior tree or the ROS graph as a diagram; `as2fm/pictureFile`: as a file."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from typing import Any
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri, string
-from roaml.ide.diagrams import Picture, machine_picture, ros_picture, tree_picture
+from roaml.figures.drawing import Drawing
+from roaml.figures.layout import LayoutDirection
+from roaml.figures.svg import svg_file, svg_scene
+from roaml.figures.themes import THEMES
+from roaml.ide.diagrams import DiagramKind, Picture, draw, picture_of
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
 METHOD = "as2fm/picture"
-
-_PICTURES = {"machine": machine_picture, "tree": tree_picture, "ros": ros_picture}
+FILE_METHOD = "as2fm/pictureFile"
 
 
 def register(context: Context) -> None:
@@ -32,9 +35,9 @@ def register(context: Context) -> None:
             },
         }
 
-    def convert(analysis: Analysis, kind: str, picture: Picture) -> dict[str, object]:
+    def convert(analysis: Analysis, kind: DiagramKind, picture: Picture) -> dict[str, object]:
         return {
-            "kind": kind,
+            "kind": kind.value,
             "title": picture.title,
             "nodes": [
                 {
@@ -53,20 +56,49 @@ def register(context: Context) -> None:
                     "source": edge.source,
                     "target": edge.target,
                     "kind": edge.kind.value,
-                    "labels": list(edge.labels),
+                    "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
                     "probabilistic": edge.probabilistic,
                     "place": place(analysis, edge.place),
                 }
                 for edge in picture.edges
             ],
+            "drawings": [_drawing(draw(kind, picture, direction)) for direction in LayoutDirection],
         }
+
+    def asked(params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
+        kind = next((kind for kind in DiagramKind if kind.value == string(params, "kind")), None)
+        path = session.convert.path(document_uri(params))
+        analysis = session.moment().snapshot(path).analysis
+        picture = picture_of(kind, analysis, path) if kind else None
+        return (analysis, kind, picture) if kind and picture else None
 
     @context.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
-        """The diagram; null if the file has no diagram of this kind."""
-        kind = string(params, "kind")
-        make = _PICTURES.get(kind)
-        path = session.convert.path(document_uri(params))
-        analysis = session.moment().snapshot(path).analysis
-        drawn = make(analysis, path) if make else None
-        return None if drawn is None else convert(analysis, kind, drawn)
+        """The diagram, drawn in each direction; null if the file has no diagram of this kind."""
+        shown = asked(params)
+        return convert(*shown) if shown else None
+
+    @context.feature(FILE_METHOD)
+    def picture_file(params: Any) -> dict[str, object] | None:
+        """The diagram as the text of an SVG file, in the direction and the theme that the client shows."""
+        shown = asked(params)
+        if shown is None:
+            return None
+        _, kind, diagram = shown
+        is_wide = string(params, "direction") == LayoutDirection.RIGHT.value
+        theme = string(params, "theme")
+        drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
+        return {"svg": svg_file(drawing, diagram.title, theme if theme in THEMES else "light")}
+
+
+def _drawing(drawing: Drawing) -> dict[str, object]:
+    """The drawing for a view: its size, its SVG, and the boxes of nodes by their indexes."""
+    return {
+        "width": drawing.size.width,
+        "height": drawing.size.height,
+        "scene": svg_scene(drawing),
+        "nodes": [
+            {"index": index, "x": box.x, "y": box.y, "width": box.width, "height": box.height}
+            for index, box in drawing.nodes.items()
+        ],
+    }

@@ -19,7 +19,7 @@ from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
 from roaml.jani.expressions import Integer, Name
 from roaml.jani.node import Origin
-from roaml.scxml.names import STATUSES, TREE_EVENT, received_by, sent_by
+from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
 from roaml.smc.record import AutomatonStep, TraceStep
@@ -260,8 +260,8 @@ class Matcher:
                     for line in self._places.of_part(part):
                         hits += ((each, part.instance) for each in self._statements.get(line, ()))
         event = received_by(step.action or "")
-        if self._nodes and (match := TREE_EVENT.fullmatch(event)) and match[2] == "tick":
-            hits += ((each, first) for each in self._nodes.get(int(match[1]), ()))
+        if self._nodes and (tree := read_tree_event(event)) and tree.kind is TreeEventKind.TICK:
+            hits += ((each, first) for each in self._nodes.get(tree.number, ()))
         if self._events:
             hits += ((each, first) for each in self._events.get(sent_by(step.action or ""), ()))
             if actors:
@@ -311,10 +311,11 @@ class Matcher:
 
 def _fails(step: TraceStep) -> bool:
     """Whether a node of the tree answers its tick with FAILURE."""
-    match = TREE_EVENT.fullmatch(sent_by(step.action or ""))
-    if match is None or match[2] != "response":
+    event = sent_by(step.action or "")
+    tree = read_tree_event(event)
+    if tree is None or tree.kind is not TreeEventKind.RESPONSE:
         return False
-    variable = f"{match[0]}{SEPARATOR}status"
+    variable = f"{event}{SEPARATOR}status"
     changed = [change.after for change in step.changes if change.variable.name == variable]
     assigned = [
         assignment.value.value

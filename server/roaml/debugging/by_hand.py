@@ -18,8 +18,8 @@ from roaml.scxml.names import (
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
-    TREE_EVENT,
     is_timer,
+    read_tree_event,
     sent_by,
 )
 from roaml.simulation.intervention import Intervention
@@ -70,7 +70,7 @@ def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
 
 def _is_internal(event: str) -> bool:
     is_blackboard = event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX)
-    return is_blackboard or is_timer(event) or TREE_EVENT.fullmatch(event) is not None
+    return is_blackboard or is_timer(event) or read_tree_event(event) is not None
 
 
 def sending(session: Session, sources: Sources, name: str, fields: Value) -> Intervention:

@@ -12,7 +12,7 @@ from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.model.expand import PortConstant
-from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, TREE_EVENT, is_length, is_timer, received_by
+from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length, is_timer, read_tree_event, received_by
 from roaml.simulation.session import Session
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import STATUS_NAMES
@@ -214,7 +214,7 @@ def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
 
 def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:
     handle = {name: parameters.pop(name) for name in ("goal_id",) if name in parameters}
-    if TREE_EVENT.fullmatch(event):
+    if read_tree_event(event):
         status = parameters.get("status")
         return {"_bt": {"status": STATUS_NAMES.get(status, "")}} if isinstance(status, int) else {}
     if event.startswith("topic_"):

@@ -12,15 +12,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 from roaml.forest.cpp_types import ANY, SCRIPT
 from roaml.forest.forest import Forest, port_type
 from roaml.forest.ports import ports_of
-from roaml.forest.scripts import names_in, scripts_of
+from roaml.forest.scripts import scripts_of
 from roaml.libraries import Node
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.roles import Direction
+from roaml.script.names import names_in
 from roaml.text import Span
 
 ROOT = ""
@@ -95,6 +97,7 @@ class Entries:
         """Whether a wrong value of an output port is probably intended to write an entry."""
         return (tree, name) in self.intended or (tree, "") in self.intended
 
+    @cached_property
     def by_entry(self) -> Mapping[Key, list[Use]]:
         uses: dict[Key, list[Use]] = {}
         for use in self.uses:
@@ -134,7 +137,7 @@ def _intended(forest: Forest, uses: tuple[Use, ...]) -> Iterator[Key]:
             name = setting.attribute.name
             if (inner, name) not in names and (model is None or model.port(name) is None):
                 yield inner, ""
-    for _, tree, node in forest.all_nodes():
+    for _, tree, node in forest.all_nodes:
         known = forest.declaration(node)
         for setting in ports_of(node) if known else ():
             port = known.port(setting.attribute.name) if known else None
@@ -144,7 +147,7 @@ def _intended(forest: Forest, uses: tuple[Use, ...]) -> Iterator[Key]:
 
 
 def _uses(forest: Forest) -> Iterator[Use]:
-    for path, tree, node in forest.all_nodes():
+    for path, tree, node in forest.all_nodes:
         own = tree.id.value if tree.id else ""
         for use in scripts_of(forest, node):
             span = use.attribute.value_span
@@ -258,7 +261,7 @@ def _taken_over(calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str
 
 def _calls(forest: Forest) -> Iterator[tuple[str, str, TreeNode]]:
     """The uses of known trees, as outer tree, inner tree and node."""
-    for _, tree, node in forest.all_nodes():
+    for _, tree, node in forest.all_nodes:
         is_call = node.is_subtree or forest.names_tree(node)
         if is_call and node.plugin is not None and node.plugin.value in forest.trees:
             yield _name(tree), node.plugin.value, node

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -203,24 +203,27 @@ class Forest:
         """The blackboard entries set by the program that executes the trees."""
         return frozenset(entry for known in self.libraries for entry in known.entries)
 
-    def all_nodes(self) -> Iterator[tuple[str, Tree, TreeNode]]:
+    @cached_property
+    def all_nodes(self) -> tuple[tuple[str, Tree, TreeNode], ...]:
         """The nodes of all files, each with the path of its file and its tree."""
-        for path, file in self.files:
-            for tree in file.trees:
-                for node in nodes(tree):
-                    yield path, tree, node
+        return tuple((path, tree, node) for path, file in self.files for tree in file.trees for node in nodes(tree))
 
-    def own_nodes(self) -> Iterator[tuple[Tree, TreeNode]]:
+    @cached_property
+    def own_nodes(self) -> tuple[tuple[Tree, TreeNode], ...]:
         """The nodes of the file that is analysed."""
-        for tree in self.file.trees:
-            for node in nodes(tree):
-                yield tree, node
+        return tuple((tree, node) for path, tree, node in self.all_nodes if path == self.path)
 
     def known_node(self, node: TreeNode) -> Node | None:
         """The declaration of the type of a node; `None` if there is none, and for subtrees."""
-        if node.is_subtree or node.plugin is None or self.names_tree(node):
-            return None
-        return self.node(node.plugin.value)
+        if node not in self._known_nodes:
+            is_tree = node.is_subtree or node.plugin is None or self.names_tree(node)
+            self._known_nodes[node] = None if is_tree or node.plugin is None else self.node(node.plugin.value)
+        return self._known_nodes[node]
+
+    @cached_property
+    def _known_nodes(self) -> dict[TreeNode, Node | None]:
+        """The results of `known_node`, which many rules need."""
+        return {}
 
     def declaration(self, node: TreeNode) -> Node | None:
         """The declaration of the type of a node, also of a subtree that a model describes; `None` if there is none."""

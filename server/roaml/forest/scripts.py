@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import probable_ports
 from roaml.model.tree import TreeNode
 from roaml.script.parse import ScriptProblem, parse
-from roaml.script.tree import Assignment, Name, Script, walk
+from roaml.script.tree import Script
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
@@ -22,7 +21,6 @@ CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """The attributes with scripts that are executed after a node has ended."""
 
-_CREATED = re.compile(r"(@?[A-Za-z_]\w*)\s*:=", re.ASCII)
 _CONDITION_PORTS = ("Precondition", "ScriptCondition")
 _SCRIPT_PORTS = {
     name: ports
@@ -72,21 +70,3 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
 def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text; cached, because many rules read it."""
     return parse(source)
-
-
-@functools.lru_cache(maxsize=2048)
-def names_in(text: str) -> tuple[tuple[str, str], ...]:
-    """The names in a script, each with `read` or with the operator that assigns to it. A statement with a syntax error
-    creates its entry as well."""
-    script, problems = parse(Decoded(text, 0))
-    names: list[tuple[str, str]] = []
-    targets: set[int] = set()
-    for expr in walk(script):
-        if isinstance(expr, Assignment):
-            targets.add(id(expr.target))
-            names.append((expr.target.name, expr.operator))
-        elif isinstance(expr, Name) and id(expr) not in targets:
-            names.append((expr.name, "read"))
-    if problems:
-        names += [(name, ":=") for name in _CREATED.findall(text)]
-    return tuple(names)

@@ -124,6 +124,7 @@ class ElementType:
         use: the successor, if the element is deprecated.
         node: the kind of a node of a tree.
         translated: false for tree nodes that are known but cannot be translated.
+        program_only: whether a tree node can be translated only as a program (docs/spec/nodes.md#library).
     """
 
     name: str
@@ -146,6 +147,7 @@ class ElementType:
     use: str = ""
     node: NodeKind | None = None
     translated: bool = True
+    program_only: bool = False
 
     @property
     def ports(self) -> tuple[AttributeType, ...]:
@@ -296,6 +298,7 @@ class _Reader:
             use=deprecated["use"] if deprecated else "",
             node=NodeKind(kind) if (kind := tree_node.get("kind")) else None,
             translated=tree_node.get("translated") != "false",
+            program_only=tree_node.get("program-only") == "true",
         )
 
     def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:

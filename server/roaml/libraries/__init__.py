@@ -72,7 +72,7 @@ def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
         element.get("since", ""),
         element.get("until", ""),
         None if running is None else running == "true",
-        element.get("not-translated"),
+        element.get("program-only") == "true",
         element.get("in-systems", ""),
         element.get("succeeds") == "true",
     )

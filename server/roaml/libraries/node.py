@@ -45,7 +45,8 @@ class Node:
         until: the first version that no longer has it, or "".
         succeeds: whether it always returns SUCCESS in trees that set its ports as the library's own trees do.
         running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
-        not_translated: why it cannot be translated into a model of a system (may be ""); `None` if it can.
+        program_only: whether its translation exists only for trees whose nodes are executed as by the library
+            (docs/spec/nodes.md#library).
         in_systems: how it differs in trees of systems, or "".
     """
 
@@ -58,7 +59,7 @@ class Node:
     since: str = ""
     until: str = ""
     running: bool | None = None
-    not_translated: str | None = None
+    program_only: bool = False
     in_systems: str = ""
     succeeds: bool = False
 
@@ -85,7 +86,7 @@ class Absent:
     Attributes:
         reason: what the name is, as the end of a sentence.
         instead: the name of the node that is probably intended, or "".
-        not_translated: see `Node`.
+        not_translated: which other node can be translated into a model of a system, as the end of a sentence.
     """
 
     name: str

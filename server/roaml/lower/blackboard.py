@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
-from roaml.lower.build import event_data, name
+from roaml.lower.build import event_data, integer, name
 from roaml.lower.program import TranslatableSystem
+from roaml.model.expand import ROOT_NUMBER
 from roaml.scxml.model import (
     Assign,
     Automaton,
@@ -23,6 +26,10 @@ from roaml.scxml.model import (
 from roaml.scxml.names import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.text import Location
 
+if TYPE_CHECKING:
+    from roaml.lower.programs.board import Board
+    from roaml.lower.programs.entries import BoardEntry
+
 REQUEST = ScxmlEvent(BLACKBOARD_REQUEST, EventRole.BLACKBOARD_READ)
 ANSWER = ScxmlEvent(BLACKBOARD_ANSWER)
 
@@ -34,6 +41,8 @@ def blackboard_write(variable: str) -> ScxmlEvent:
 def blackboard(program: TranslatableSystem) -> Automaton | None:
     """The automaton; `None` if the tree uses no variables."""
     system = program.system
+    if program.library is not None:
+        return board_automaton(program.library.board, program.node(ROOT_NUMBER))
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:
         return None
@@ -53,6 +62,36 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
     asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
     idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
+
+
+def board_automaton(board: Board, origin: Location) -> Automaton | None:
+    """The automaton for the entries of a tree that is executed as by the library."""
+    entries = [*board.entries.values(), *board.flag_of.values()]
+    if not entries:
+        return None
+    data = tuple(Data(entry.variable, BASE_TYPES[entry.type_name], entry.start, origin) for entry in entries)
+    writes = [
+        Transition(
+            blackboard_write(entry.variable),
+            None,
+            (Target("idle", 1.0, _stored(board, entry, origin), origin),),
+            origin,
+        )
+        for entry in entries
+    ]
+    answer = Send(ANSWER, tuple(Param(entry.variable, name(entry.variable), origin) for entry in entries), origin)
+    asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
+    idle = State("idle", (), (), (*writes, asked), origin)
+    return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
+
+
+def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, ...]:
+    """What the blackboard does when an entry is written: its observers see that it was."""
+    flags = board.flags.get(entry.variable, ())
+    return (
+        Assign(name(entry.variable), event_data("value"), origin),
+        *(Assign(name(flag.variable), integer(1), origin) for flag in flags),
+    )
 
 
 def _place(program: TranslatableSystem, variable: str) -> Location:

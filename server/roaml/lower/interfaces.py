@@ -20,8 +20,11 @@ def topic_event(topic: str) -> ScxmlEvent:
     return ScxmlEvent(f"topic_{sanitise(topic)}_msg")
 
 
-def tree_event(node: int, kind: str) -> ScxmlEvent:
-    """The tick or halt of a node of the tree, or its answer: `tick`, `halt`, `response` or `halt_response`."""
+def tree_event(node: int | str, kind: str) -> ScxmlEvent:
+    """The tick or halt of a node of the tree, or its answer: `tick`, `halt`, `response` or `halt_response`.
+
+    `node` is its number, or the address of a node behind conditions (`roaml.lower.library_tree`).
+    """
     return ScxmlEvent(f"bt_{node}_{kind}", EventRole.BLOCKING)
 
 

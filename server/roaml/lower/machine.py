@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 
+from roaml.exhaustive import assert_never
 from roaml.expr.tree import Boolean, Expr
 from roaml.expr.types import Type
 from roaml.lower.blackboard import ANSWER, REQUEST
@@ -259,7 +260,7 @@ class _ChartLowering:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
             case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return tree_event(self.statements.number, trigger.value.removeprefix("bt-"))
+                return tree_event(self.statements.address, trigger.value.removeprefix("bt-"))
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:
@@ -281,7 +282,22 @@ class _ChartLowering:
                 return action.thread_start
             case ProtocolPart.THREAD_FREE:
                 return action.thread_free
-        raise AssertionError(f"unknown trigger {trigger}")
+            case (
+                ProtocolPart.BLACKBOARD
+                | ProtocolPart.BT_HALTED
+                | ProtocolPart.BT_STATUS
+                | ProtocolPart.CHILD_HALT
+                | ProtocolPart.CHILD_HALTED
+                | ProtocolPart.CHILD_STATUS
+                | ProtocolPart.CHILD_TICK
+                | ProtocolPart.GOAL_ACCEPTED
+                | ProtocolPart.GOAL_REJECTED
+                | ProtocolPart.GOAL_RESPONSE
+                | ProtocolPart.START
+            ):
+                raise AssertionError(f"not the trigger of a single transition: {trigger}")
+            case _:
+                return assert_never(trigger)
 
 
 def values_in(statement: hl.Statement) -> Iterator[Value | None]:

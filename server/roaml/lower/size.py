@@ -98,8 +98,8 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
         path = source.path if source else ""
         yield Share(most ** len(unwrap(variable.type)[1]), words, path, source)  # lengths are separate variables
     system = program.system
-    for variable_name in system.blackboard:
-        type_ = BASE_TYPES[system.variable_type(variable_name)]
+    for variable_name, type_name in system.variables.items():
+        type_ = BASE_TYPES[type_name]
         yield Share(cells_of(type_, most), f"the blackboard variable `{variable_name}`", "")
     channels: list[tuple[Channel, tuple[ProtocolPart, ...], str]] = []
     channels += [
@@ -118,6 +118,8 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
 
 def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Machine]]:
     for automaton in program.system.automata:
+        if not automaton.path and program.system.is_library_tree:
+            continue  # programs have few variables; the size of a tree is limited anyway
         machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
         if machine is not None:
             yield automaton, machine

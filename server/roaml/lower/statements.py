@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
@@ -72,9 +73,9 @@ class StatementLowering:
             case RosSend():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
-                yield Send(tree_event(self.number, "response"), (self.status(statement, scope, origin),), origin)
+                yield Send(tree_event(self.address, "response"), (self.status(statement, scope, origin),), origin)
             case ReturnHalted():
-                yield Send(tree_event(self.number, "halt_response"), (), origin)
+                yield Send(tree_event(self.address, "halt_response"), (), origin)
             case CallChild():
                 yield from self.call_child(statement, origin)
             case SetOutput():
@@ -83,10 +84,11 @@ class StatementLowering:
                 return
 
     @property
-    def number(self) -> int:
+    def address(self) -> str:
+        """The address of the node in events of the tree."""
         instance = self.context.automaton.instance
         assert instance is not None
-        return instance.number
+        return self.context.program.address(instance.number)
 
     # ------------------------------------------------------------- assignments
 
@@ -243,7 +245,24 @@ class StatementLowering:
                 return action.thread_start
             case ProtocolPart.THREAD_FREE:
                 return action.thread_free
-        raise AssertionError(f"unknown part {part}")
+            case (
+                ProtocolPart.BLACKBOARD
+                | ProtocolPart.BT_HALT
+                | ProtocolPart.BT_HALTED
+                | ProtocolPart.BT_STATUS
+                | ProtocolPart.BT_TICK
+                | ProtocolPart.CHILD_HALT
+                | ProtocolPart.CHILD_HALTED
+                | ProtocolPart.CHILD_STATUS
+                | ProtocolPart.CHILD_TICK
+                | ProtocolPart.EVENT
+                | ProtocolPart.GOAL_RESPONSE
+                | ProtocolPart.TICK
+                | ProtocolPart.START
+            ):
+                raise AssertionError(f"not sent on a channel: {part}")
+            case _:
+                return assert_never(part)
 
     # ------------------------------------------------------------------- trees
 

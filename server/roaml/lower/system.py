@@ -21,7 +21,11 @@ from roaml.scxml.model import Network
 
 def lower(program: TranslatableSystem) -> Network:
     """The plain automata of a system without errors."""
-    members = [(automaton, _machine(automaton, program)) for automaton in program.system.automata]
+    members = [
+        (automaton, _machine(automaton, program))
+        for automaton in program.system.automata
+        if automaton.path or program.library is None
+    ]
     timers = timers_of(program, members)
     events = {(timer.user, timer.handle): timer.event for timer in timers if timer.event is not None}
     automata = list(_automata(program, members, events))
@@ -45,9 +49,12 @@ def _automata(
             yield from lower_machine(automaton, machine, program, timers)
     if system.instances:
         yield tree_root(program, timers[tick_timer(program)])
-    for automaton, machine in members:
-        if automaton.instance is not None:
-            yield from lower_machine(automaton, machine, program, timers)
+    machines = {automaton.instance.number: (automaton, machine) for automaton, machine in members if automaton.instance}
+    for instance in system.instances:
+        if program.library is not None:
+            yield from program.library.automata[instance.number]
+        if instance.number in machines:
+            yield from lower_machine(*machines[instance.number], program, timers)
     if (board := blackboard(program)) is not None:
         yield board
     for service in system.services.values():

@@ -36,11 +36,17 @@ def tree_root(program: TranslatableSystem, tick: ScxmlEvent) -> Automaton:
         on(tick, "wait_tick_res", None, Send(tree_event(ROOT_NUMBER, "tick"), (), origin)),
         on(ANSWER, "error"),
     )
-    if program.parameters.tick_if_not_running:
-        waiting: tuple[Transition, ...] = (on(ANSWER, "idle"),)
+    running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
+    transitions: dict[str, tuple[Transition, ...]] = {"idle": idle}
+    if program.parameters.tick_if_not_running and program.library is not None:
+        # The library resets a tree that has ended.
+        reset = Send(tree_event(ROOT_NUMBER, "halt"), (), origin)
+        transitions["wait_tick_res"] = (on(ANSWER, "idle", running), on(ANSWER, "wait_reset", None, reset))
+        transitions["wait_reset"] = (on(tree_event(ROOT_NUMBER, "halt_response"), "idle"),)
+    elif program.parameters.tick_if_not_running:
+        transitions["wait_tick_res"] = (on(ANSWER, "idle"),)
     else:
-        running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
-        waiting = (on(ANSWER, "idle", running), on(ANSWER, TREE_HAS_FINISHED))
-    transitions = {"idle": idle, "wait_tick_res": waiting, TREE_HAS_FINISHED: (), "error": ()}
+        transitions["wait_tick_res"] = (on(ANSWER, "idle", running), on(ANSWER, TREE_HAS_FINISHED))
+    transitions |= {TREE_HAS_FINISHED: (), "error": ()}
     states = tuple(State(name, (), (), known, origin) for name, known in transitions.items())
     return Automaton(tick_timer(program)[0], Role.TREE_ROOT, "idle", (), states, origin)

@@ -10,13 +10,13 @@ from fractions import Fraction
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
-from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
+from roaml.lower.blackboard import board_automaton
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board
-from roaml.lower.programs.code import RUNNING, TYPES, Child, Known, NodeCode
+from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
@@ -34,7 +34,6 @@ from roaml.scxml.model import (
     Data,
     EventRole,
     Network,
-    Param,
     Role,
     ScxmlEvent,
     Send,
@@ -43,7 +42,7 @@ from roaml.scxml.model import (
     Target,
     Transition,
 )
-from roaml.scxml.names import BLACKBOARD, TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
+from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 from roaml.text import Location
 
 DEFAULT_RATE = Fraction(10)
@@ -159,7 +158,7 @@ class _Builder:
         root = _root(self.tree, tick, children[ROOT_NUMBER].answers, origin, self.options.counts)
         timer = Timer(root.name, f"{self.tree.name}_tick", tick, period(self.options.rate), origin)
         members = [root, *(automata[node.number] for node in self.tree.nodes)]
-        blackboard = _blackboard(board, origin)
+        blackboard = board_automaton(board, origin)
         if blackboard is not None:
             members.append(blackboard)
         members.append(clock([timer], self.options.max_time, origin))
@@ -182,7 +181,7 @@ class _Builder:
         if asks_world(program):
             values.known["event"] = self.event(node)
         return NodeCode(
-            node.number,
+            str(node.number),
             node.automaton,
             program,
             children,
@@ -268,33 +267,3 @@ def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin:
         State(TREE_HAS_FINISHED, (), (), (), origin),
     )
     return Automaton(f"{TREE_ROOT_PREFIX}{tree.name}", Role.TREE_ROOT, "idle", data, states, origin)
-
-
-def _blackboard(board: Board, origin: Location) -> Automaton | None:
-    entries = [*board.entries.values(), *board.flag_of.values()]
-    if not entries:
-        return None
-    data = tuple(Data(entry.variable, TYPES[entry.kind], entry.start, origin) for entry in entries)
-    writes = [
-        Transition(
-            blackboard_write(entry.variable),
-            None,
-            (Target("idle", 1.0, _stored(board, entry, origin), origin),),
-            origin,
-        )
-        for entry in entries
-    ]
-    answer = Send(ANSWER, tuple(Param(entry.variable, name(entry.variable), origin) for entry in entries), origin)
-    asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
-    return Automaton(
-        BLACKBOARD, Role.BLACKBOARD, "idle", data, (State("idle", (), (), (*writes, asked), origin),), origin
-    )
-
-
-def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, ...]:
-    """What the blackboard does when an entry is written: its observers see that it was."""
-    flags = board.flags.get(entry.variable, ())
-    return (
-        Assign(name(entry.variable), event_data("value"), origin),
-        *(Assign(name(flag.variable), integer(1), origin) for flag in flags),
-    )

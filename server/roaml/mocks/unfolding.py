@@ -68,7 +68,7 @@ def _main_tree(forest: Forest) -> Tree:
         raise TreeRefusal(Location(forest.path, file.main.span), f"there is no tree `{file.main.value}`")
     used = {
         node.plugin.value
-        for _, _, node in forest.all_nodes()
+        for _, _, node in forest.all_nodes
         if node.plugin is not None and (node.is_subtree or forest.names_tree(node))
     }
     candidates = named if len(named) == 1 else [tree for tree in named if tree.id and tree.id.value not in used]

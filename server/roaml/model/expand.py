@@ -17,6 +17,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
+from roaml.script.names import names_in
 from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
@@ -97,11 +98,15 @@ class TreeUse:
         name: the name of the `<SubTree>`; the ID of the tree if it has none.
         tree: the ID of the tree.
         outer: the index of the use around it; `None` for the executed tree.
+        frame: the meaning of its names.
+        scripts: the conditions and scripts of the `<SubTree>`, by attribute.
     """
 
     name: str
     tree: str
     outer: int | None
+    frame: Frame = field(compare=False, repr=False)
+    scripts: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +120,7 @@ class Instance:
         children: the numbers of its children.
         condition: whether it is written or modelled as `<Condition>`.
         use: the index of the `TreeUse` that the node is in.
+        scripts: its conditions and scripts (docs/spec/trees.md#scripts), by attribute.
     """
 
     number: int
@@ -126,6 +132,7 @@ class Instance:
     source: NodeSource
     condition: bool = False
     use: int = 0
+    scripts: tuple[tuple[str, str], ...] = ()
 
     @property
     def automaton(self) -> str:
@@ -346,6 +353,7 @@ class Frame:
         outer: the enclosing instance.
         names: the variables that the nodes of the tree refer to.
         inside: the trees around the instance and its own.
+        scripts: the conditions and scripts of that node.
         looked_up: a cache of resolved names.
     """
 
@@ -360,6 +368,7 @@ class Frame:
     outer: Frame | None
     names: frozenset[str]
     inside: frozenset[str]
+    scripts: tuple[tuple[str, str], ...] = ()
     looked_up: dict[str, PortValue | None] = field(default_factory=dict, repr=False)
 
     def resolve(self, name: str) -> PortValue:
@@ -383,9 +392,10 @@ class Frame:
             frame.looked_up[name] = value
         return value
 
-    def value(self, text: str) -> PortValue:
+    def value(self, key: str, text: str) -> PortValue:
+        """The value of the attribute `key`; `{=}` refers to the variable of its name."""
         variable = blackboard_variable(text)
-        return PortConstant(text) if variable is None else self.resolve(variable)
+        return PortConstant(text) if variable is None else self.resolve(key if variable == "=" else variable)
 
 
 @dataclass(frozen=True, slots=True)
@@ -407,7 +417,13 @@ class Expansion:
         """The uses of trees, in the order of `frames`."""
         indices = {id(frame): index for index, frame in enumerate(self.frames)}
         return tuple(
-            TreeUse(frame.name, frame.tree.id, None if frame.outer is None else indices[id(frame.outer)])
+            TreeUse(
+                frame.name,
+                frame.tree.id,
+                None if frame.outer is None else indices[id(frame.outer)],
+                frame,
+                frame.scripts,
+            )
             for frame in self.frames
         )
 
@@ -431,6 +447,7 @@ class _Placed:
     source: NodeSource
     condition: bool
     children: list[int]
+    scripts: tuple[tuple[str, str], ...]
 
 
 class _Expander:
@@ -476,6 +493,7 @@ class _Expander:
                 placed.source,
                 placed.condition,
                 indices[id(self.frame_of[number])],
+                placed.scripts,
             )
             for number, placed in enumerate(self.placed, ROOT_NUMBER)
         )
@@ -485,10 +503,11 @@ class _Expander:
         """The number of a new instance of a node."""
         number = ROOT_NUMBER + len(self.placed)
         settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
-        ports = tuple((key, frame.value(text)) for key, text in settings.items())
+        ports = tuple((key, frame.value(key, text)) for key, text in settings.items())
         source = NodeSource(frame.tree.path, frame.tree.id, node.position)
         condition = node.condition or node.plugin in self.conditions
-        self.placed.append(_Placed(node.plugin, node.name or node.plugin, ports, parent, source, condition, []))
+        name = node.name or node.plugin
+        self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, [], _scripts(node)))
         self.frame_of[number] = frame
         if parent is not None:
             self.placed[parent - ROOT_NUMBER].children.append(number)
@@ -507,7 +526,7 @@ class _Expander:
         remapped: dict[str, PortValue] = {}
         for name, text in {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}.items():
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
-                remapped[name] = frame.value("{" + name + "}") if text.strip() == "{=}" else frame.value(text)
+                remapped[name] = frame.value(name, text)
         autoremap = _is_autoremapped(node)
         use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
         entered = Frame(
@@ -522,6 +541,7 @@ class _Expander:
             frame,
             self.names_in(inner),
             inside,
+            _scripts(node),
         )
         self.frames.append(entered)
         return entered
@@ -536,14 +556,26 @@ _OWN_ATTRIBUTES = frozenset(("ID", "name"))
 _AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
 
 
+SCRIPTS = ("_failureIf", "_successIf", "_skipIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
+"""The attributes with conditions and scripts of any node."""
+_SCRIPT_PORTS = {"Script": "code", "ScriptCondition": "code", "Precondition": "if"}
+
+
+def _scripts(node: NodeOutline) -> tuple[tuple[str, str], ...]:
+    own = None if node.is_subtree else _SCRIPT_PORTS.get(node.plugin)
+    return tuple((key, text) for key, text in node.attributes if key in SCRIPTS or key == own)
+
+
 def _names(tree: TreeOutline) -> frozenset[str]:
     """The variables that the nodes of a tree use."""
-    return frozenset(
-        variable
-        for node in _walk(tree.root)
-        for _, text in node.attributes
-        if (variable := blackboard_variable(text)) is not None
-    )
+    names: set[str] = set()
+    for node in _walk(tree.root):
+        for key, text in node.attributes:
+            if (variable := blackboard_variable(text)) is not None:
+                names.add(key if variable == "=" else variable)
+        for _, text in _scripts(node):
+            names |= {name for name, _ in names_in(text)}
+    return frozenset(names)
 
 
 # ------------------------------------------------------------------- remappings

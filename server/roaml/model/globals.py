@@ -201,9 +201,9 @@ def _calls(parent: SystemAutomaton, number: int) -> bool:
 
 
 def _blackboard(system: System) -> Iterator[_Event]:
-    variables: Mapping[str, Type] = {name: BASE_TYPES[system.variable_type(name)] for name in system.blackboard}
-    for name, ports in system.blackboard.items():
-        if any(bound.port.written for bound in ports):
+    variables: Mapping[str, Type] = {name: BASE_TYPES[type_] for name, type_ in system.variables.items()}
+    for name in variables:
+        if system.writes_variable(name):
             yield f"{BLACKBOARD_WRITE_PREFIX}{name}", None, [("value", variables[name])]
     if system.reads_blackboard:
         yield BLACKBOARD_REQUEST, None, []

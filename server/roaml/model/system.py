@@ -19,6 +19,7 @@ from roaml.diagnostics import Symbol
 from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
 from roaml.language import BEHAVIOR_TREE, ElementType
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
@@ -31,7 +32,7 @@ from roaml.model.outline import (
 )
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
-from roaml.roles import SymbolKind
+from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.scxml.names import CANCEL_PREFIX
 from roaml.suggest import close_names
 
@@ -142,6 +143,15 @@ class BoundPort:
         return self.automaton.instance.source
 
 
+@dataclass(frozen=True, slots=True)
+class EntryOutline:
+    """A variable of the blackboard of a tree that is executed as by the library; `type` is the name of its type."""
+
+    type: str
+    read: bool
+    written: bool
+
+
 _BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAct.PARAMETER)
 """The acts of gaps that do not affect which events a machine handles and sends."""
 
@@ -162,6 +172,8 @@ class System:
             contain. Those of unreadable parts of a machine are in its outline.
         plugins_known: whether every plugin that the system lists could be read and has a name.
         observed: the names of variables that the properties mention.
+        entries: the blackboard of a tree that is executed as by the library (`is_library_tree`), by name; empty for
+            other trees.
     """
 
     path: str
@@ -176,6 +188,21 @@ class System:
     gaps: frozenset[Gap]
     plugins_known: bool
     observed: frozenset[str] = frozenset()
+    entries: Mapping[str, EntryOutline] = field(default_factory=dict)
+
+    @cached_property
+    def is_library_tree(self) -> bool:
+        """Whether the nodes of the tree are executed as by BehaviorTree.CPP, because a node, a condition or a script
+        needs it (docs/spec/nodes.md#library)."""
+        if any(use.scripts for use in self.tree_uses):
+            return True
+        return any(i.scripts or self._needs_library(i.plugin) for i in self.instances)
+
+    def _needs_library(self, plugin: str) -> bool:
+        element = BEHAVIOR_TREE.elements.get(plugin)
+        if element is not None and element.node:
+            return element.program_only
+        return plugin in library_plugins() and plugin not in self._plugins
 
     @cached_property
     def automata(self) -> tuple[SystemAutomaton, ...]:
@@ -324,8 +351,8 @@ class System:
     def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
         """File and outline of the plugin with this name; the nodes of BehaviorTree.CPP take precedence
         (docs/spec/trees.md#nodes)."""
-        builtin = builtin_plugins().get(name)
-        if builtin is not None:
+        builtin = (library_plugins() if self.is_library_tree else builtin_plugins()).get(name)
+        if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in self._plugins):
             return "", builtin
         return self._plugins.get(name, ("", None))
 
@@ -427,9 +454,24 @@ class System:
                     bound_ports.setdefault(value.variable, []).append(BoundPort(automaton, port))
         return {name: tuple(ports) for name, ports in bound_ports.items()}
 
+    @cached_property
+    def variables(self) -> Mapping[str, str]:
+        """The variables of the blackboard with the names of their types."""
+        if self.is_library_tree:
+            return {name: entry.type for name, entry in self.entries.items()}
+        return {name: self.variable_type(name) for name in self.blackboard}
+
+    def writes_variable(self, name: str) -> bool:
+        """Whether something writes a variable of the blackboard."""
+        if self.is_library_tree:
+            return name in self.entries and self.entries[name].written
+        return any(bound.port.written for bound in self.blackboard.get(name, ()))
+
     @property
     def reads_blackboard(self) -> bool:
         """Whether a node reads a variable of the blackboard."""
+        if any(entry.read for entry in self.entries.values()):
+            return True
         return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
 
     def variable_type(self, variable: str) -> str:
@@ -519,8 +561,52 @@ def builtin_plugins() -> Mapping[str, MachineOutline]:
     return {
         element.name: _builtin(element)
         for element in BEHAVIOR_TREE.elements.values()
-        if element.node and element.translated and element.name not in (*EXPLICIT, *SUBTREES)
+        if element.node
+        and element.translated
+        and not element.program_only
+        and element.name not in (*EXPLICIT, *SUBTREES)
     }
+
+
+@functools.cache
+def library_plugins() -> Mapping[str, MachineOutline]:
+    """The nodes of libraries that can be executed as by BehaviorTree.CPP (docs/spec/nodes.md#library)."""
+    cpp = library(BEHAVIORTREE_CPP)
+    known = dict(cpp.nodes)
+    known |= {renamed.name: cpp.nodes[renamed.now] for renamed in cpp.renamed.values()}
+    for name in LIBRARIES:
+        nodes = library(name).nodes.items()
+        known |= {node: of for node, of in nodes if of.kind in (NodeKind.CONTROL, NodeKind.DECORATOR)}
+    return {name: _library_outline(name, node) for name, node in known.items()}
+
+
+def _library_outline(name: str, node: Node) -> MachineOutline:
+    ports = tuple(_library_port(name, port) for port in node.ports if not port.alias_of)
+    has_children = node.kind in (NodeKind.CONTROL, NodeKind.DECORATOR)
+    plugin = PluginOutline(True, True, True, True, 0, has_children, None, has_children)
+    return MachineOutline(name, "ascxml", False, frozenset(), ports, (), (), (), (), (), plugin)
+
+
+def optional_ports(name: str) -> frozenset[str]:
+    """The ports of a node of a library that need not be set."""
+    element = BEHAVIOR_TREE.elements.get(name)
+    if element is not None and element.node:
+        return frozenset(a.name for a in element.ports if a.port and not a.port.required)
+    declared = (library(known).nodes.get(name) for known in LIBRARIES)
+    return frozenset(port.name for node in declared if node for port in node.ports if not port.required)
+
+
+_NAMES_ENTRY = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard")
+"""The nodes with a port that names an entry, which is neither read nor written by it."""
+
+
+def _library_port(node: str, port: Port) -> PortOutline:
+    if port.name in ("entry", "key") and node in _NAMES_ENTRY:
+        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, False)
+    if node == "SetBlackboard" and port.name == "output_key":
+        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, True)
+    direction = Direction.OUT if port.direction is Direction.OUT else Direction.IN
+    return PortOutline(port.name, ANY_TYPE, direction, port.direction.reads, port.direction.writes)
 
 
 def _builtin(element: ElementType) -> MachineOutline:

@@ -14,7 +14,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
@@ -59,6 +59,9 @@ from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
 from roaml.xml_syntax import parse as parse_xml
+
+if TYPE_CHECKING:
+    from roaml.lower.library_tree import LibraryTree
 
 T = TypeVar("T")
 
@@ -597,7 +600,27 @@ class Analysis:
         paths = tuple(tree.path for tree in trees)
         expansion = expand(trees)
         instances, uses = expansion.instances, expansion.uses
-        return System(path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known)
+        system = System(
+            path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known
+        )
+        if not system.is_library_tree:
+            return system
+        from roaml.lower.library_tree import entry_outlines  # noqa: PLC0415 - most trees do not need it
+
+        return replace(system, entries=entry_outlines(system, self._tree_files(system)))
+
+    def _tree_files(self, system: System) -> dict[str, TreeFile]:
+        return {path: file for path in system.tree_paths if (file := self.tree(path)) is not None}
+
+    def library_tree(self, path: str) -> LibraryTree | None:
+        """The translated tree of a system if it is executed as by the library; `None` for other trees."""
+        system = self.system(path)
+        if system is None or not system.is_library_tree:
+            return None
+        from roaml.lower.library_tree import library_tree  # noqa: PLC0415 - most trees do not need it
+
+        files = self._tree_files(system)
+        return self.memo.get("library tree", path, (system, tuple(files.values())), lambda: library_tree(system, files))
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""

@@ -412,7 +412,14 @@ class _Run:
         return TreeContext(
             *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest),
             self._unknown_packages(),
+            self._refusals(),
         )
+
+    def _refusals(self) -> tuple[tuple[Span, str], ...]:
+        """Why nodes of this file cannot be translated, if the tree is executed as by the library."""
+        tree = self.analysis.library_tree(self.system_path) if self.system_path else None
+        refusals = () if tree is None else tree.refusals
+        return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees with which this file is checked: those of its system, or those that it includes and that include

@@ -83,8 +83,9 @@ def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
         if source.position < len(written[key]):
             nodes[instance.number] = Location(source.path, written[key][source.position].element.span)
     place = Location(path, file.element.name_span)
+    library = analysis.library_tree(path)
     return TranslatableSystem(
-        system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters
+        system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters, library
     )
 
 

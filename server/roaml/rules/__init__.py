@@ -73,7 +73,6 @@ from roaml.rules.expressions import (
     unknown_function,
     unknown_member,
     unsupported_expression,
-    untranslatable_script,
 )
 from roaml.rules.files import (
     file_too_large,
@@ -190,6 +189,7 @@ from roaml.rules.trees import (
     unknown_plugin,
     unknown_port,
     unknown_remap,
+    untranslatable_tree,
     unused_plugin,
     unused_port,
 )
@@ -404,7 +404,7 @@ RULES: tuple[Rule, ...] = (
     unsupported_expression.RULE,
     unsupported_property.RULE,
     unsupported_scxml_element.RULE,
-    untranslatable_script.RULE,
+    untranslatable_tree.RULE,
     unused_handle.RULE,
     unused_plugin.RULE,
     unused_port.RULE,

@@ -87,7 +87,8 @@ class MachineContext:
 class TreeContext:
     """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` are the
     facts that unreadable parts of this file may contain. `forest` is given if the file belongs to no system.
-    `unknown_packages` are the ROS packages of includes that no folder around the file has."""
+    `unknown_packages` are the ROS packages of includes that no folder around the file has. `refusals` are places and
+    reasons why nodes of a tree that is executed as by the library cannot be translated."""
 
     source: SourceFile
     document: Document
@@ -100,6 +101,7 @@ class TreeContext:
     older: bool = False
     forest: Forest | None = None
     unknown_packages: frozenset[str] = frozenset()
+    refusals: tuple[tuple[Span, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

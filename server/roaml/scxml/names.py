@@ -9,7 +9,9 @@ event that the user has named, `role_of` is the one function that derives the ro
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary
 from roaml.scxml.model import EventRole, Role, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
@@ -26,6 +28,28 @@ SERVICE_HANDLER_PREFIX = "srv_handler_"
 ACTION_HANDLER_PREFIX = "action_handler_"
 
 
+class TreeEventKind(Vocabulary):
+    """The kind of an event between nodes of a tree."""
+
+    TICK = "tick"
+    RESPONSE = "response"
+    HALT = "halt"
+    HALT_RESPONSE = "halt_response"
+
+
+class TreeEvent(NamedTuple):
+    """An event between a node of a tree and its parent; `number` is that of the node."""
+
+    number: int
+    kind: TreeEventKind
+
+
+def read_tree_event(event: str) -> TreeEvent | None:
+    """The event of the tree with this name; `None` for other events."""
+    match = _TREE_EVENT.fullmatch(event)
+    return TreeEvent(int(match[1]), TreeEventKind(match[2])) if match else None
+
+
 def is_generated(automaton: str) -> bool:
     """Whether the translation added this automaton. (The buffers of events have the names of their events.)"""
     return automaton.startswith(_GENERATED)
@@ -34,7 +58,10 @@ def is_generated(automaton: str) -> bool:
 WAITING, RECEIVED = "waiting", "received"
 """The buffer of an event: it has the name of its event, and has one of these locations."""
 
-_GENERATED = (SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
+CONDITIONS_PREFIX = "bt_conditions_"
+"""The automaton of the conditions of a node that is a machine, or of a `<SubTree>`."""
+
+_GENERATED = (CONDITIONS_PREFIX, SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
 
 
 def automaton_role(automaton: str) -> Role:
@@ -59,8 +86,7 @@ TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
-TREE_EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
-"""The pattern of events between nodes of a tree: the number of the child, and the kind of the event."""
+_TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
 OBSERVER_SUFFIX = "__observer"
 """Ends the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
@@ -99,7 +125,7 @@ def is_synchronising(event: str) -> bool:
 
 
 _BLOCKING = re.compile(
-    r"bt_[0-9]+_(?:tick|halt|response|halt_response)\Z"
+    r"bt_[0-9]+(?:_inner[0-9]*)?_(?:tick|halt|response|halt_response)\Z"
     r"|action_.+_goal_.+\Z"
     r"|action_.+_result"
     r"|action_.+_thread_(?:start|free)\Z"

@@ -44,12 +44,12 @@ def write(network: Network) -> Iterator[tuple[str, str]]:
 
 def write_lines(network: Network) -> Iterator[tuple[Automaton, Lines]]:
     """The documents line by line, each line with its origin."""
-    receivers = _receivers(network)
+    receivers = receivers_of(network)
     for automaton in network.automata:
         yield automaton, _Writer(automaton, receivers).document()
 
 
-def _receivers(network: Network) -> dict[str, list[str]]:
+def receivers_of(network: Network) -> dict[str, list[str]]:
     """Event -> names of the automata that wait for it somewhere, in order."""
     receivers: dict[str, dict[str, None]] = {}
     for automaton in network.automata:

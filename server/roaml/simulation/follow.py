@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterator, Mapping, Sequence
 
+from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.scxml.names import (
@@ -13,10 +14,11 @@ from roaml.scxml.names import (
     CLOCK,
     NODE_AUTOMATON,
     RECEIVED,
-    TREE_EVENT,
+    TreeEventKind,
     is_generated,
     is_length,
     is_timer,
+    read_tree_event,
     received_by,
     sent_by,
 )
@@ -103,19 +105,22 @@ class Follower:
             self._follow_tree(event)
 
     def _follow_tree(self, event: str) -> None:
-        match = TREE_EVENT.fullmatch(event)
-        if match is None:
+        tree = read_tree_event(event)
+        if tree is None:
             return
-        node = int(match[1])
-        match match[2]:
-            case "tick":
-                self._status[node] = NodeStatus.TICKED
-            case "response":
+        match tree.kind:
+            case TreeEventKind.TICK:
+                self._status[tree.number] = NodeStatus.TICKED
+            case TreeEventKind.RESPONSE:
                 status = self.events.parameters(event).get("status")
                 name = STATUS_NAMES.get(status, "") if isinstance(status, int) else ""
-                self._status[node] = NodeStatus.__members__.get(name, NodeStatus.IDLE)
-            case "halt_response":
-                self._status[node] = NodeStatus.IDLE
+                self._status[tree.number] = NodeStatus.__members__.get(name, NodeStatus.IDLE)
+            case TreeEventKind.HALT_RESPONSE:
+                self._status[tree.number] = NodeStatus.IDLE
+            case TreeEventKind.HALT:
+                pass
+            case _:
+                assert_never(tree.kind)
 
     def state(
         self,
@@ -178,7 +183,7 @@ class Follower:
 
     def _events(self, locations: Sequence[str]) -> Iterator[EventState]:
         for event, (step, sender, parameters) in self._sent.items():
-            if sender == CLOCK or is_timer(event) or TREE_EVENT.fullmatch(event):
+            if sender == CLOCK or is_timer(event) or read_tree_event(event):
                 continue
             holder = self._holders.get(event)
             yield EventState(

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
 from roaml.scxml.model import Role
-from roaml.scxml.names import CLOCK_ACTION, STATUSES, TREE_EVENT, automaton_role, received_by
+from roaml.scxml.names import CLOCK_ACTION, STATUSES, TreeEventKind, automaton_role, read_tree_event, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
@@ -52,26 +52,25 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
         actor: the name of the node in messages.
         parameters: the parameters of the event; empty if it has not been sent yet.
     """
-    match = TREE_EVENT.fullmatch(event)
-    if match is None:
+    tree = read_tree_event(event)
+    if tree is None:
         return ""
-    child = next((who(name) for name in automata if name.startswith(f"BT_plugin_{match[1]}_")), f"bt_{match[1]}")
-    match match[2], is_sent:
-        case "tick", True:
-            return f"{actor} ticks {child}"
-        case "tick", False:
-            return f"{actor} is ticked"
-        case "halt", True:
-            return f"{actor} halts {child}"
-        case "halt", False:
-            return f"{actor} is halted"
-        case "response", True:
+    prefix = f"BT_plugin_{tree.number}_"
+    child = next((who(name) for name in automata if name.startswith(prefix)), f"bt_{tree.number}")
+    match tree.kind:
+        case TreeEventKind.TICK:
+            return f"{actor} ticks {child}" if is_sent else f"{actor} is ticked"
+        case TreeEventKind.HALT:
+            return f"{actor} halts {child}" if is_sent else f"{actor} is halted"
+        case TreeEventKind.RESPONSE if is_sent:
             return f"{actor} answers its tick"
-        case "response", False:
+        case TreeEventKind.RESPONSE:
             status = parameters.get("status")
             answer = STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
             return f"{actor} receives {answer} from {child}"
-        case _, True:
+        case TreeEventKind.HALT_RESPONSE if is_sent:
             return f"{actor} answers that it has halted"
-        case _:
+        case TreeEventKind.HALT_RESPONSE:
             return f"{actor} receives from {child} that it has halted"
+        case _:
+            return assert_never(tree.kind)

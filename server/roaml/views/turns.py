@@ -18,9 +18,10 @@ from roaml.scxml.names import (
     NODE_AUTOMATON,
     OBSERVER_SUFFIX,
     STATUSES,
-    TREE_EVENT,
+    TreeEventKind,
     is_generated,
     is_length,
+    read_tree_event,
     received_by,
     sent_by,
 )
@@ -85,16 +86,16 @@ class Turn:
 
     @property
     def is_ticked(self) -> bool:
-        return self._hears("tick")
+        return self._hears(TreeEventKind.TICK)
 
     @property
     def is_halted(self) -> bool:
-        return self._hears("halt")
+        return self._hears(TreeEventKind.HALT)
 
     @property
     def is_answered(self) -> bool:
         """Whether it begins with the answer of a child to an inner node."""
-        return self.heard is not None and _said(self.heard.event) in ("response", "halt_response")
+        return self.heard is not None and _kind(self.heard.event) in _ANSWERS
 
     @property
     def sent(self) -> Iterator[Message]:
@@ -116,8 +117,8 @@ class Turn:
     def _answers(self, message: Message) -> bool:
         return bool(self.protocol) and message.event in (f"{self.protocol}response", f"{self.protocol}halt_response")
 
-    def _hears(self, kind: str) -> bool:
-        return self.heard is not None and bool(self.protocol) and self.heard.event == self.protocol + kind
+    def _hears(self, kind: TreeEventKind) -> bool:
+        return self.heard is not None and bool(self.protocol) and self.heard.event == f"{self.protocol}{kind}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,16 +229,20 @@ def is_inner(automaton: Automaton) -> bool:
     """Whether an automaton only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
     node = NODE_AUTOMATON.fullmatch(automaton.name)
     comes_along = _is_builtin(node[2]) if node else is_generated(automaton.name)
-    return comes_along and any(_said(sent_by(edge.action or "")) in ("tick", "halt") for edge in automaton.edges)
+    return comes_along and any(_kind(sent_by(edge.action or "")) in _CALLS for edge in automaton.edges)
 
 
 def _is_builtin(plugin: str) -> bool:
-    from roaml.model.system import builtin_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
+    from roaml.model.system import library_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
 
-    return plugin in builtin_plugins()
+    return plugin in library_plugins()
 
 
-def _said(event: str) -> str:
-    """The kind of an event of the tree, such as `tick`; "" for other events."""
-    match = TREE_EVENT.fullmatch(event)
-    return match[2] if match else ""
+_ANSWERS = (TreeEventKind.RESPONSE, TreeEventKind.HALT_RESPONSE)
+_CALLS = (TreeEventKind.TICK, TreeEventKind.HALT)
+
+
+def _kind(event: str) -> TreeEventKind | None:
+    """The kind of an event of the tree; `None` for other events."""
+    read = read_tree_event(event)
+    return read.kind if read else None

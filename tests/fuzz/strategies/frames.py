@@ -62,6 +62,7 @@ REQUESTS = (
     "as2fm/about",
     "as2fm/plainScxml",
     "as2fm/picture",
+    "as2fm/pictureFile",
     "as2fm/migrate",
     "as2fm/counterexample",
 )
@@ -323,7 +324,7 @@ def _bomb(random: Random, message: Message) -> bytes:
 
 
 def _noise(random: Random, message: Message) -> bytes:
-    """Something that is no message before one that is."""
+    """Bytes that are not a message before a message."""
     noise = [
         b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
         b"\r\n" * 5,

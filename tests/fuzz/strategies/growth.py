@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bombs: small inputs that stand for enormous ones. What is too large is refused, everything else takes linear time.
+"""Bombs: small inputs with enormous results. Too large ones are refused, the others take linear time.
 
 The limits are a hundredth of the real ones, so that what is just below them takes as long as a case may take.
 """

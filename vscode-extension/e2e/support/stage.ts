@@ -3,7 +3,8 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { Window } from "./window";
-import { EXTENSION, temporaryFolder, Workbench, type Options } from "./workbench";
+import { EXTENSION } from "./paths";
+import { temporaryFolder, Workbench, type Options } from "./workbench";
 
 /** A workbench that the groups of tests share, with the server's environment that the first group has created. */
 export class Stage {

@@ -4,7 +4,7 @@
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator, Page } from "playwright-core";
-import { OUTPUT } from "./workbench";
+import { OUTPUT } from "./paths";
 
 export class Window {
     constructor(

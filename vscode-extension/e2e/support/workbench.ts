@@ -7,13 +7,11 @@ import * as net from "node:net";
 import * as os from "node:os";
 import * as path from "node:path";
 import { chromium, type Browser } from "playwright-core";
+import { EXTENSION, ROOT } from "./paths";
 import { TIMEOUT_MS, Window } from "./window";
 
-export const EXTENSION = path.resolve(import.meta.dirname, "..", "..");
-export const ROOT = path.resolve(EXTENSION, "..");
 const VSCODE = path.join(ROOT, ".cache/workbench/node_modules/code-server/lib/vscode");
 const MAIN = path.join(VSCODE, "out/server-main.js");
-export const OUTPUT = path.join(EXTENSION, "out", "e2e-output");
 
 export interface Options {
     /** The home folder; a new one if not given. That of an earlier workbench contains what it has installed. */

@@ -23,6 +23,14 @@ interface Choice {
     readonly line?: number;
 }
 
+/** An event that can be sent by hand, of the answer to the request `events`. */
+interface Sendable {
+    readonly event: string;
+    readonly text: string;
+    readonly fields: string;
+    readonly isFree: boolean;
+}
+
 /** The answer to the request `choices` (docs/debugging.md). */
 interface Choices {
     readonly step: number;
@@ -30,6 +38,7 @@ interface Choices {
     readonly end: string | null;
     readonly fault: string | null;
     readonly isByHand: boolean;
+    readonly isChanged: boolean;
     readonly property: string;
     readonly verdicts: Readonly<Record<string, "passed" | "failed" | "undecided">>;
     readonly choices: readonly Choice[];
@@ -57,6 +66,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
             this.view,
             vscode.commands.registerCommand(CHOOSE, (entry: Entry) => this.choose(entry)),
             vscode.commands.registerCommand("as2fm.goToStep", () => this.goToStep()),
+            vscode.commands.registerCommand("as2fm.publish", () => this.publish()),
             vscode.debug.registerDebugAdapterTrackerFactory(DEBUG_TYPE, {
                 createDebugAdapterTracker: (session) => ({
                     onDidSendMessage: (message: { event?: string }) => {
@@ -102,7 +112,8 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         try {
             const choices = (await session.customRequest("choices")) as Choices;
             const time = choices.time === null ? "" : `, ${choices.time.toFixed(3)} s`;
-            const hand = choices.isByHand ? `, ${vscode.l10n.t("chosen by hand")}` : "";
+            const byHand = choices.isChanged ? vscode.l10n.t("changed by hand") : vscode.l10n.t("chosen by hand");
+            const hand = choices.isByHand ? `, ${byHand}` : "";
             const description = `${vscode.l10n.t("step {0}", choices.step)}${time}${hand}`;
             const entries = choices.choices.map((choice) => ({ choice }));
             const end = choices.end === null ? "" : vscode.l10n.t("The run has ended: {0}.", choices.end);
@@ -147,13 +158,33 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         if (text !== undefined) await this.request("goToStep", { step: Number(text) });
     }
 
-    private async request(command: string, options: object): Promise<void> {
+    /** Asks for an event and its fields, and sends it by hand. */
+    private async publish(): Promise<void> {
+        const answer = (await this.request("events", {})) as { readonly events: readonly Sendable[] } | undefined;
+        if (!answer) return;
+        const items = answer.events.map((sendable) => ({
+            label: sendable.text,
+            description: sendable.isFree ? sendable.fields : vscode.l10n.t("the last one has not been received yet"),
+            sendable,
+        }));
+        const placeHolder = vscode.l10n.t("Publish a message, or call a service");
+        const picked = await vscode.window.showQuickPick(items, { placeHolder, matchOnDescription: true });
+        if (!picked) return;
+        const { event, fields, text } = picked.sendable;
+        const prompt = vscode.l10n.t("The fields of {0}; then the run says nothing about the model", text);
+        const written = fields === "{}" ? fields : await vscode.window.showInputBox({ prompt, value: fields });
+        if (written !== undefined) await this.request("publish", { event, fields: written });
+    }
+
+    /** The answer to a request; errors are shown. */
+    private async request(command: string, options: object): Promise<unknown> {
         const session = this.session ?? vscode.debug.activeDebugSession;
-        if (session?.type !== DEBUG_TYPE) return;
+        if (session?.type !== DEBUG_TYPE) return undefined;
         try {
-            await session.customRequest(command, options);
+            return await session.customRequest(command, options);
         } catch (error) {
             void vscode.window.showErrorMessage(error instanceof Error ? error.message : String(error));
+            return undefined;
         }
     }
 }

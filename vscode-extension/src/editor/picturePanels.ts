@@ -5,7 +5,7 @@ import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
-import { picture as pictureRequest, type Highlight } from "../protocol";
+import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
 
 const DELAY_MS = 200;
@@ -191,7 +191,10 @@ class PicturePanel implements vscode.Disposable {
                 await jump(message.place, message.beside);
                 break;
             case "save":
-                await this.save(message.format, message.data);
+                await this.save(message);
+                break;
+            case "png":
+                await this.write("png", Buffer.from(message.data, "base64"));
                 break;
             case "drawn":
                 this.log.debug(`Drawn: ${message.nodes} nodes, ${message.edges} edges`);
@@ -199,7 +202,17 @@ class PicturePanel implements vscode.Disposable {
         }
     }
 
-    private async save(format: "svg" | "png", data: string): Promise<void> {
+    /** Ask the server for the file; the view converts it to PNG. */
+    private async save({ format, direction, theme }: Extract<FromView, { type: "save" }>): Promise<void> {
+        if (!this.uri) return;
+        const textDocument = { uri: this.uri.toString() };
+        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, direction, theme });
+        if (!file) return;
+        if (format === "svg") await this.write("svg", Buffer.from(file.svg, "utf8"));
+        else this.post({ type: "rasterize", svg: file.svg });
+    }
+
+    private async write(format: "svg" | "png", data: Uint8Array): Promise<void> {
         const name = (this.picture?.title ?? this.kind).replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "_");
         const folder = this.uri?.scheme === "file" ? vscode.Uri.joinPath(this.uri, "..") : undefined;
         const file = `${name}.${this.kind}.${format}`;
@@ -207,8 +220,7 @@ class PicturePanel implements vscode.Disposable {
             ...(folder && { defaultUri: vscode.Uri.joinPath(folder, file) }),
             filters: format === "svg" ? { SVG: ["svg"] } : { PNG: ["png"] },
         });
-        if (target)
-            await vscode.workspace.fs.writeFile(target, Buffer.from(data, format === "svg" ? "utf8" : "base64"));
+        if (target) await vscode.workspace.fs.writeFile(target, data);
     }
 }
 
@@ -264,11 +276,13 @@ function words(): Words {
         byChance: vscode.l10n.t("random"),
         kinds: {
             state: vscode.l10n.t("state"),
+            choice: vscode.l10n.t("random choice"),
             thread: vscode.l10n.t("action thread"),
             control: vscode.l10n.t("control"),
             decorator: vscode.l10n.t("decorator"),
             action: vscode.l10n.t("action"),
             condition: vscode.l10n.t("condition"),
+            subtree: vscode.l10n.t("subtree"),
             variable: vscode.l10n.t("blackboard"),
             node: vscode.l10n.t("node"),
             plugin: vscode.l10n.t("plugin"),

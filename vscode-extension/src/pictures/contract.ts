@@ -19,11 +19,13 @@ export interface Place {
 
 export const NODE_KINDS = [
     "state",
+    "choice",
     "thread",
     "control",
     "decorator",
     "action",
     "condition",
+    "subtree",
     "variable",
     "node",
     "plugin",
@@ -51,6 +53,32 @@ export const EDGE_KINDS = [
 
 export type EdgeKind = (typeof EDGE_KINDS)[number];
 
+export interface Point {
+    readonly x: number;
+    readonly y: number;
+}
+
+export interface Box extends Point {
+    readonly width: number;
+    readonly height: number;
+}
+
+/** The place of a node; `index` is its index in the picture. */
+export interface DrawnNode extends Box {
+    readonly index: number;
+}
+
+/**
+ * A drawing of the server. `scene` is an SVG group without a namespace, whose colors come from the style sheet. In it,
+ * nodes have the attribute `data-node`, edges `data-edges`: the indexes in the picture.
+ */
+export interface Drawing {
+    readonly width: number;
+    readonly height: number;
+    readonly scene: string;
+    readonly nodes: readonly DrawnNode[];
+}
+
 /** `parent` is the id of the node that contains it in the drawing, "" if none. */
 export interface PictureNode {
     readonly id: string;
@@ -76,7 +104,15 @@ export interface Picture {
     readonly title: string;
     readonly nodes: readonly PictureNode[];
     readonly edges: readonly PictureEdge[];
+    /** The drawings in the directions of `DIRECTIONS`. */
+    readonly drawings: readonly Drawing[];
 }
+
+export const DIRECTIONS = ["down", "right"] as const;
+export type Direction = (typeof DIRECTIONS)[number];
+
+export const THEMES = ["light", "dark", "high-contrast", "high-contrast-light"] as const;
+export type Theme = (typeof THEMES)[number];
 
 /** A node or an edge by its index in the picture. */
 export type Part = { readonly node: number } | { readonly edge: number };
@@ -101,11 +137,15 @@ export type ToView =
     | { readonly type: "here"; readonly here: Part | null }
     /** Highlight a node by its id; "" for none. */
     | { readonly type: "highlight"; readonly node: string }
+    /** Ask for the text of an SVG file as PNG. */
+    | { readonly type: "rasterize"; readonly svg: string }
     | { readonly type: "none"; readonly reason: string };
 
 export type FromView =
     | { readonly type: "ready" }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
-    | { readonly type: "save"; readonly format: "svg" | "png"; readonly data: string }
+    | { readonly type: "save"; readonly format: "svg" | "png"; readonly direction: Direction; readonly theme: Theme }
+    /** The answer to `rasterize`: base64. */
+    | { readonly type: "png"; readonly data: string }
     /** Sent when the picture is drawn. */
     | { readonly type: "drawn"; readonly nodes: number; readonly edges: number };

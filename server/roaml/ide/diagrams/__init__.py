@@ -1,24 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interactive diagrams of models, whose parts have positions in the files: an editor draws them.
+"""Interactive diagrams of models, whose parts have positions in the files, and their drawings.
 
-`roaml.views` contains diagrams for documents, without positions.
+`roaml.views` contains diagrams for other tools, without positions.
 """
 
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
+from roaml.project.analysis import Analysis
 
 __all__ = [
+    "PAGE",
     "DiagramEdge",
     "DiagramHighlight",
+    "DiagramKind",
     "DiagramNode",
     "DiagramNodeKind",
     "EdgeKind",
     "Picture",
+    "draw",
+    "draw_for",
     "highlights",
     "machine_picture",
+    "picture_of",
     "ros_picture",
     "tree_picture",
 ]
+
+_MAKERS: Mapping[DiagramKind, Callable[[Analysis, str], Picture | None]] = {
+    DiagramKind.MACHINE: machine_picture,
+    DiagramKind.TREE: tree_picture,
+    DiagramKind.ROS: ros_picture,
+}
+
+
+def picture_of(kind: DiagramKind, analysis: Analysis, path: str) -> Picture | None:
+    """The diagram of a file; `None` if the file has no diagram of this kind."""
+    return _MAKERS[kind](analysis, path)

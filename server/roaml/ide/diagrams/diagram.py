@@ -13,13 +13,23 @@ from dataclasses import dataclass
 from roaml.text import Location
 
 
+class DiagramKind(enum.Enum):
+    """What a diagram shows."""
+
+    MACHINE = "machine"
+    TREE = "tree"
+    ROS = "ros"
+
+
 class DiagramNodeKind(enum.Enum):
     STATE = "state"
+    CHOICE = "choice"
     THREAD = "thread"
     CONTROL = "control"
     DECORATOR = "decorator"
     ACTION = "action"
     CONDITION = "condition"
+    SUBTREE = "subtree"
     VARIABLE = "variable"
     ROS_NODE = "node"
     PLUGIN = "plugin"
@@ -65,13 +75,21 @@ class DiagramNode:
 
 @dataclass(frozen=True, slots=True)
 class DiagramEdge:
-    """`probabilistic` means that it is one of several randomly chosen edges."""
+    """
+    Attributes:
+        labels: lines of text: of a transition, the trigger, the condition in brackets, and the probability.
+        actions: what a transition executes.
+        probabilistic: whether it is one of several randomly chosen edges; such edges leave a choice.
+        internal: whether it is a transition without a target, which does not leave its state.
+    """
 
     source: str
     target: str
     kind: EdgeKind
     labels: tuple[str, ...] = ()
+    actions: tuple[str, ...] = ()
     probabilistic: bool = False
+    internal: bool = False
     place: Location | None = None
 
 

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagram of a state machine: its states and transitions; each action thread in a separate frame."""
+"""The diagram of a state machine: its states and transitions; each action thread in a separate frame.
+
+A transition by chance leads to a choice, from which an edge leads to each target.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from roaml.ide.diagrams.actions import Wording, guard, outcome
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
-from roaml.model.machine import Chart, Handler, State, Thread
+from roaml.model.machine import Body, Chart, Handler, Machine, State, Target, Thread
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart
 from roaml.text import Location
-from roaml.views.machine import chance_label, trigger_label
 
 _BT = ("bt-", "child-")
 
@@ -24,15 +27,18 @@ def machine_picture(analysis: Analysis, path: str) -> Picture | None:
     edges: list[DiagramEdge] = []
     frames = {thread.chart: _frame(thread, path) for thread in machine.threads}
     for chart in machine.charts:
-        frame = frames[chart].id if chart in frames else ""
+        frame = frames.get(chart)
         if frame:
-            nodes.append(frames[chart])
-        # If states have the same name, transitions lead to the first.
-        states = {state.id.value: state for state in reversed(chart.states) if state.id}
-        shown = [state for state in chart.states if state.id and states[state.id.value] is state]
-        nodes += [_node(chart, state, frame, path) for state in shown]
-        edges += [edge for state in shown for edge in _edges(chart, state, states, path)]
+            nodes.append(frame)
+        drawn = _Chart(machine, chart, frame.id if frame else "", path)
+        nodes += drawn.nodes()
+        edges += drawn.edges()
     return Picture(machine.name.value if machine.name else "", tuple(nodes), tuple(edges))
+
+
+def state_id(chart: Chart, name: str) -> str:
+    """The id of a state in the diagram."""
+    return f"{chart.scope}/{name}"
 
 
 def _frame(thread: Thread, path: str) -> DiagramNode:
@@ -43,43 +49,87 @@ def _frame(thread: Thread, path: str) -> DiagramNode:
     )
 
 
-def state_id(chart: Chart, name: str) -> str:
-    """The id of a state in the diagram."""
-    return f"{chart.scope}/{name}"
+class _Chart:
+    """The nodes and edges of a chart. If states have the same name, transitions lead to the first, and only it is
+    drawn."""
 
+    def __init__(self, machine: Machine, chart: Chart, frame: str, path: str) -> None:
+        self._wording = Wording(machine)
+        self._chart = chart
+        self._frame = frame
+        self._path = path
+        self._states: Mapping[str, State] = {s.id.value: s for s in reversed(chart.states) if s.id}
+        self._shown = [s for s in chart.states if s.id and self._states[s.id.value] is s]
 
-def _node(chart: Chart, state: State, frame: str, path: str) -> DiagramNode:
-    assert state.id is not None
-    staying = [
-        " ".join(trigger_label(handler))
-        for handler in state.handlers
-        if handler.effective and all(target.state is None for target in handler.targets)
-    ]
-    initial = chart.initial is not None and chart.initial.value == state.id.value
-    place = Location(path, state.element.span)
-    return DiagramNode(
-        state_id(chart, state.id.value), DiagramNodeKind.STATE, state.id.value, tuple(staying), frame, initial, place
-    )
-
-
-def _edges(chart: Chart, state: State, states: dict[str, State], path: str) -> Iterator[DiagramEdge]:
-    assert state.id is not None
-    for handler in state.handlers:
-        if not handler.effective:
-            continue
-        for target in handler.targets:
-            if target.state is None or target.state.value not in states:
-                continue
-            labels = (*trigger_label(handler), *chance_label(handler, target))
-            element = target.element or handler.element
-            yield DiagramEdge(
-                state_id(chart, state.id.value),
-                state_id(chart, target.state.value),
-                _kind(handler),
-                labels,
-                handler.is_probabilistic,
-                Location(path, element.span),
+    def nodes(self) -> Iterator[DiagramNode]:
+        for state in self._shown:
+            assert state.id is not None
+            name = state.id.value
+            initial = self._chart.initial is not None and self._chart.initial.value == name
+            place = Location(self._path, state.element.span)
+            yield DiagramNode(
+                self._id(state), DiagramNodeKind.STATE, name, tuple(self._bodies(state)), self._frame, initial, place
             )
+            for index, handler in enumerate(state.handlers):
+                if handler.effective and handler.is_probabilistic:
+                    where = Location(self._path, handler.element.span)
+                    choice = self._choice(state, index)
+                    yield DiagramNode(choice, DiagramNodeKind.CHOICE, "", (), self._frame, place=where)
+
+    def edges(self) -> Iterator[DiagramEdge]:
+        for state in self._shown:
+            for index, handler in enumerate(state.handlers):
+                if not handler.effective:
+                    continue
+                if handler.is_probabilistic:
+                    yield from self._by_chance(state, index, handler)
+                    continue
+                labels = tuple(filter(None, (self._wording.trigger(handler), guard(handler))))
+                for target in handler.targets:
+                    yield from self._edge(state, self._id(state), handler, target, labels)
+
+    def _by_chance(self, state: State, index: int, handler: Handler) -> Iterator[DiagramEdge]:
+        choice = self._choice(state, index)
+        labels = tuple(filter(None, (self._wording.trigger(handler), guard(handler))))
+        place = Location(self._path, handler.element.span)
+        yield DiagramEdge(self._id(state), choice, _kind(handler), labels, place=place)
+        for target in handler.targets:
+            yield from self._edge(state, choice, handler, target, ())
+
+    def _edge(
+        self, state: State, source: str, handler: Handler, target: Target, labels: tuple[str, ...]
+    ) -> Iterator[DiagramEdge]:
+        if target.state is not None and target.state.value not in self._states:
+            return
+        reached = self._states[target.state.value] if target.state else state
+        result = outcome(handler, target)
+        element = target.element or handler.element
+        yield DiagramEdge(
+            source,
+            self._id(reached),
+            _kind(handler),
+            (*labels, result) if result else labels,
+            self._wording.actions(target.body),
+            handler.is_probabilistic,
+            target.state is None,
+            Location(self._path, element.span),
+        )
+
+    def _bodies(self, state: State) -> Iterator[str]:
+        for word, body in (("entry", state.entry), ("exit", state.exit)):
+            yield from self._body(word, body)
+
+    def _body(self, word: str, body: Body | None) -> Iterator[str]:
+        actions = self._wording.actions(body.statements) if body else ()
+        if actions:
+            yield f"{word} / {'; '.join(actions)}"
+
+    def _id(self, state: State) -> str:
+        assert state.id is not None
+        return state_id(self._chart, state.id.value)
+
+    def _choice(self, state: State, index: int) -> str:
+        return f"choice {index} {self._id(state)}"
 
 
 def _kind(handler: Handler) -> EdgeKind:

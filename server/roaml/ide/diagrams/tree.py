@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed behavior tree with its ports, and the variables of the blackboard that connect them.
+"""The executed behavior tree with its ports and subtrees, and the variables of the blackboard that connect them.
 
 A tree file that no system lists is drawn alone; only a system determines which ports are written.
 """
@@ -7,9 +7,10 @@ A tree file that no system lists is drawn alone; only a system determines which 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
-from roaml.model.expand import Instance, Reference, expand, node_at
+from roaml.model.expand import Instance, Reference, TreeUse, expand, node_at, tree_called
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
 from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
@@ -30,22 +31,30 @@ def tree_picture(analysis: Analysis, path: str) -> Picture | None:
     """The tree of a system, given by its system file or any other of its files; `None` if there is none."""
     system = next((owner for s in analysis.systems_of(path) if s and (owner := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
-        paths, instances = system.tree_paths, system.instances
+        paths, instances, uses = system.tree_paths, system.instances, system.tree_uses
     else:
         paths = analysis.trees_from(path)
-        instances = expand(analysis.outlines_from(path)).instances
+        expansion = expand(analysis.outlines_from(path))
+        instances, uses = expansion.instances, expansion.uses
     if not paths:
         return None
-    drawn = _Tree(analysis, paths, instances, system)
+    drawn = _Tree(analysis, paths, instances, uses, system)
     title = paths[0].replace("\\", "/").rpartition("/")[2]
     return Picture(title, tuple(drawn.nodes()), tuple(drawn.edges()))
 
 
 class _Tree:
     def __init__(
-        self, analysis: Analysis, paths: tuple[str, ...], instances: tuple[Instance, ...], system: System | None
+        self,
+        analysis: Analysis,
+        paths: tuple[str, ...],
+        instances: tuple[Instance, ...],
+        uses: tuple[TreeUse, ...],
+        system: System | None,
     ) -> None:
         self.instances = instances
+        self.uses = uses
+        self.use_of = {instance.number: instance.use for instance in instances}
         self.system = system
         self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
@@ -57,6 +66,7 @@ class _Tree:
 
     def nodes(self) -> Iterator[DiagramNode]:
         for instance in self.instances:
+            yield from map(self.subtree, self.entered(instance))
             node = self.written[instance.number]
             place = Location(instance.source.path, node.element.span) if node else None
             initial = instance.parent is None
@@ -68,10 +78,32 @@ class _Tree:
         for variable, place in variables.items():
             yield DiagramNode(f"{{{variable}}}", DiagramNodeKind.VARIABLE, variable, place=place)
 
+    def entered(self, instance: Instance) -> list[int]:
+        """The uses of subtrees between a node and its parent, the outermost first."""
+        around = self.use_of[instance.parent] if instance.parent is not None else 0
+        entered: list[int] = []
+        use: int | None = instance.use
+        while use is not None and use != around and use < len(self.uses):
+            entered.append(use)
+            use = self.uses[use].outer
+        return entered[::-1]
+
+    def subtree(self, use: int) -> DiagramNode:
+        name, tree = self.uses[use].name, self.uses[use].tree
+        places = (
+            Location(path, written.element.span)
+            for path, file in self.files.items()
+            if (written := tree_called(file, tree)) is not None
+        )
+        label = name if name == tree else f"{name} : {tree}"
+        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, place=next(places, None))
+
     def edges(self) -> Iterator[DiagramEdge]:
         for instance in self.instances:
-            for child in instance.children:
-                yield DiagramEdge(str(instance.number), str(child), EdgeKind.CHILD)
+            ends = [f"subtree {use}" for use in self.entered(instance)] + [str(instance.number)]
+            if instance.parent is not None:
+                ends.insert(0, str(instance.parent))
+            yield from (DiagramEdge(above, below, EdgeKind.CHILD) for above, below in pairwise(ends))
         for instance, key, variable in self.bound():
             node, name = str(instance.number), f"{{{variable}}}"
             place = self.place(instance, key)

@@ -19,7 +19,7 @@ def of_library(place: Place) -> tuple[Span, str] | None:
     forest, offset = place.analysis.forest(place.path) if is_lone else None, place.offset
     if forest is None:
         return None
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         element = node.element
         tag = next((s for s in (element.name_span, element.close_name_span) if s and s.contains(offset)), None)
         if tag is None and not element.span.contains(offset):

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
-from roaml.forest.scripts import names_in as names_in_script
 from roaml.forest.scripts import script_attributes
 from roaml.ide.names.occurrence import Form, tree_node
 from roaml.model import expand
@@ -22,6 +21,7 @@ from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+from roaml.script.names import names_in as names_in_script
 
 Piece = tuple[str, Symbol | None, Form]
 """A part of a name in the translation: its text and the symbol that it comes from, if any."""

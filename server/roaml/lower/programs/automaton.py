@@ -36,16 +36,16 @@ from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.steps import (
     EXCEPTION,
     Ask,
-    Branch,
+    Decide,
     Draw,
     Place,
-    Run,
     Step,
+    Update,
     output_steps,
     script_steps,
     update_steps,
 )
-from roaml.lower.programs.values import RESULT, Values, expr, negated
+from roaml.lower.programs.values import RESULT, ProgramValues, expr, negated
 from roaml.scxml.model import (
     Assign,
     Automaton,
@@ -62,6 +62,11 @@ from roaml.scxml.model import (
 
 MAX_STATES = 20_000
 """The maximum number of states of one node."""
+
+
+MACHINE = "machine"
+"""The program that evaluates the conditions of a node that is a machine. Machines are also halted after they have ended
+(docs/spec/nodes.md#library)."""
 
 
 class NodeTooLargeError(Exception):
@@ -85,8 +90,8 @@ def node_automaton(code: NodeCode) -> NodeAutomaton:
     explorer = _Explorer(code)
     automaton = explorer.automaton()
     conditions = {name for name in code.scripts if name.startswith("_")}
-    stateless = code.program.is_stateless and not conditions
-    return NodeAutomaton(automaton, Child(code.number, frozenset(explorer.answers), stateless))
+    stateless = code.program.is_stateless and not conditions and not code.is_halted_always
+    return NodeAutomaton(automaton, Child(code.address, frozenset(explorer.answers), stateless))
 
 
 Fixed: TypeAlias = "tuple[tuple[str, Known], ...]"
@@ -94,6 +99,7 @@ Fixed: TypeAlias = "tuple[tuple[str, Known], ...]"
 
 _TOUCHED = "*touched"
 _SKIPS = "*skips"
+_ENDED = "*ended"
 
 
 class _Rest(NamedTuple):
@@ -185,7 +191,7 @@ class _Explorer:
         self.declared = dict(program.variables)
         for flag in program.flags:
             self.declared |= {f"{flag}_{i}": False for i in range(len(self.code.children))}
-        self.values = Values(self.code, self.declared)
+        self.values = ProgramValues(self.code, self.declared)
 
     def automaton(self) -> Automaton:
         for variable, value in self.declared.items():
@@ -225,24 +231,24 @@ class _Explorer:
         match key:
             case _Rest(fixed):
                 transitions += self.on(self.event("tick"), ("before", 0), dict(fixed))
-                if not self.code.program.is_stateless or self.has_conditions:
+                if not self.code.program.is_stateless or self.has_conditions or self.code.is_halted_always:
                     transitions += self.on_halt(dict(fixed))
             case _Ticking(place, fixed, number, target):
                 child = self.code.children[number]
-                answer = tree_event(child.number, "response")
+                answer = tree_event(child.address, "response")
                 for status in sorted(child.answers):
                     after = {**dict(fixed), target: status}
                     touched = int(after[_TOUCHED])
                     after[_TOUCHED] = touched & ~(1 << number) if status == SKIPPED else touched | (1 << number)
                     transitions += self.on(answer, place, after, equal(event_data("status"), integer(status)))
             case _Halting(place, fixed, number):
-                event = tree_event(self.code.children[number].number, "halt_response")
+                event = tree_event(self.code.children[number].address, "halt_response")
                 transitions += self.on(event, place, dict(fixed))
             case _Asking(place, fixed, entries):
                 body = []
                 for entry in entries:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
-                    body.append(Assign(name(entry.local), event_data(entry.variable), self.code.origin))
+                    body.append(Assign(name(entry.local), entry.read(event_data(entry.variable)), self.code.origin))
                 transitions += self.on(ANSWER, place, dict(fixed), body=body)
             case _Deciding(place, fixed):
                 transitions += self.on(None, place, dict(fixed))
@@ -255,11 +261,13 @@ class _Explorer:
         return any(script.startswith("_") for script in self.code.scripts)
 
     def event(self, what: str) -> ScxmlEvent:
-        return tree_event(self.code.number, what)
+        return tree_event(self.code.address, what)
 
     def on_halt(self, fixed: dict[str, Known]) -> list[Transition]:
         if fixed["status"] == RUNNING:
             return self.on(self.event("halt"), ("halt", 0), fixed)
+        if self.code.program.name == MACHINE and fixed[_TOUCHED]:
+            return self.on(self.event("halt"), ("halt", 0), {**fixed, _ENDED: True})
         target = self.rest({**fixed, "status": IDLE})
         answer = Send(self.event("halt_response"), (), self.code.origin)
         return [
@@ -329,7 +337,7 @@ class _Explorer:
                     return state
                 continue
             instruction = code[index]
-            if isinstance(instruction, (Ask, Run, Branch, Draw)):
+            if isinstance(instruction, (Ask, Update, Decide, Draw)):
                 stop = self.step(instruction, way)
             else:
                 stop = self.execute(instruction, (segment, index + 1), way)
@@ -343,6 +351,9 @@ class _Explorer:
                 way.place = ("tick", 0)
             case "halt":
                 way.fixed["status"] = IDLE
+                if way.fixed.pop(_ENDED, False):
+                    way.body.append(Send(self.event("halt_response"), (), self.code.origin))
+                    return self.rest(way.fixed)
                 way.place = ("halted", 0)
             case "halted":
                 if way.fixed.pop(_SKIPS, False):
@@ -441,7 +452,7 @@ class _Explorer:
 
     def tick(self, number: int, target: str, following: Place, way: _Way) -> str:
         child = self.code.children[number]
-        way.body.append(Send(tree_event(child.number, "tick"), (), self.code.origin))
+        way.body.append(Send(tree_event(child.address, "tick"), (), self.code.origin))
         return self.state("ticking", _Ticking(following, _frozen(way.fixed), number, target))
 
     def reset(self, number: int, following: Place, way: _Way) -> str | None:
@@ -450,7 +461,7 @@ class _Explorer:
         way.fixed[_TOUCHED] = touched & ~(1 << number)
         if child.is_stateless or not touched & (1 << number):
             return None
-        way.body.append(Send(tree_event(child.number, "halt"), (), self.code.origin))
+        way.body.append(Send(tree_event(child.address, "halt"), (), self.code.origin))
         return self.state("halting", _Halting(following, _frozen(way.fixed), number))
 
     # -------------------------------------------------------------- blackboard
@@ -461,7 +472,7 @@ class _Explorer:
 
     def write(self, entry: BoardEntry, value: Expr, way: _Way) -> None:
         origin = self.code.origin
-        way.body.append(Send(blackboard_write(entry.variable), (Param("value", value, origin),), origin))
+        way.body.append(Send(blackboard_write(entry.variable), (Param("value", entry.written(value), origin),), origin))
 
     def write_port(self, port: str, value: Value, way: _Way) -> None:
         if port in self.code.bound:
@@ -491,14 +502,14 @@ class _Explorer:
         match step:
             case Ask(entries):
                 return self.ask(entries, (segment, index + 1), way)
-            case Run(assignments, writes):
+            case Update(assignments, writes):
                 for local, value in assignments:
                     way.body.append(Assign(name(local), value, self.code.origin))
                 for entry in writes:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
                     self.write(entry, name(entry.local), way)
                 way.place = (segment, index + 1)
-            case Branch(condition, yes, no):
+            case Decide(condition, yes, no):
                 if not isinstance(condition, bool):
                     return _Decision(condition, yes, no)
                 way.place = yes if condition else no

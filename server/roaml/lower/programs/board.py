@@ -38,15 +38,22 @@ class Board:
     flags: observed entry -> for each observer the entry that states whether it was written.
     flag_of: number of an observer -> its flag.
     values: what mocks write to an entry.
+    read, written: the entries that programs and scripts read, and those that something writes.
+    in_system: whether the tree belongs to a system.
     """
 
     entries: Mapping[str, BoardEntry]
     flags: Mapping[str, tuple[BoardEntry, ...]]
     flag_of: Mapping[int, BoardEntry]
     values: Mapping[str, tuple[int | float | str, ...]]
+    read: frozenset[str]
+    written: frozenset[str]
+    in_system: bool
 
     def unset(self, name: str) -> str:
         """Why an entry that nothing sets cannot be read."""
+        if self.in_system:
+            return f"nothing writes `{name}`: no script, port or `<SubTree>` of the tree"
         return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
 
 
@@ -69,13 +76,29 @@ def _text(attribute: Attribute) -> Decoded:
 _CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 
 
-def build_board(tree: ExecutedTree, given: Mapping[str, str], used: Mapping[int, NodeProgram | None]) -> Board:
+def build_board(
+    tree: ExecutedTree,
+    given: Mapping[str, str],
+    used: Mapping[int, NodeProgram | None],
+    typed: Mapping[str, str] | None = None,
+) -> Board:
     """
     Args:
         given: entry of the root blackboard -> the text that the host sets.
-        used: number of a node -> its program; `None` for mocks.
+        used: number of a node -> its program; `None` for mocks and machines.
+        typed: in a system, entry -> the name of the type that machines give it; all of them are needed.
     """
-    return _Reader(tree, given, used).board()
+    reader = _Reader(tree, given, used, typed)
+    for entry, type_ in (typed or {}).items():
+        reader.kinds[entry] = _kind_of_type(type_)
+    return reader.board()
+
+
+def _kind_of_type(name: str) -> EntryKind:
+    """The kind of the values of a type of a port of a machine."""
+    if name == "string":
+        return EntryKind.TEXT
+    return EntryKind.REAL if name.startswith("float") else EntryKind.INTEGER
 
 
 @dataclass
@@ -83,6 +106,7 @@ class _Reader:
     tree: ExecutedTree
     given: Mapping[str, str]
     used: Mapping[int, NodeProgram | None]
+    typed: Mapping[str, str] | None
     kinds: dict[str, EntryKind] = field(default_factory=dict)
     readers: set[str] = field(default_factory=set)
     writers: set[str] = field(default_factory=set)
@@ -109,7 +133,7 @@ class _Reader:
 
     def add(self, entry: str, kind: EntryKind | None) -> None:
         """A use of an entry with values of a kind."""
-        if kind is None:
+        if kind is None or entry in (self.typed or {}):
             return
         known = self.kinds.get(entry)
         self.kinds[entry] = EntryKind.REAL if {known, kind} == {EntryKind.INTEGER, EntryKind.REAL} else known or kind
@@ -123,8 +147,8 @@ class _Reader:
                 self.observed[node.number] = entry or node.frame.entry(text.strip())
                 continue
             if node.type == "SetBlackboard" and port == "output_key":
-                if entry is None:
-                    self.writers.add(node.frame.entry(text.strip()))
+                if entry is None or self.typed is not None:
+                    self.writers.add(entry or node.frame.entry(text.strip()))
                 continue
             if node.type == "SetBlackboard" and port == "value":
                 self.set_value(node, entry, text)
@@ -142,10 +166,9 @@ class _Reader:
             self.switch(node)
 
     def set_value(self, node: ExecutedNode, entry: str | None, text: str) -> None:
-        key = next((t.strip() for port, bound, t, _ in node.ports() if port == "output_key" and bound is None), None)
-        if key is None:
+        target = set_entry(node, in_system=self.typed is not None)
+        if target is None:
             return
-        target = node.frame.entry(key)
         if entry is None:
             self.texts.setdefault(target, []).append(text)
         else:
@@ -172,7 +195,7 @@ class _Reader:
 
     def copied(self) -> None:
         for target, source in self.copies:
-            if target in self.readers:
+            if target in self.readers or target in (self.typed or {}):
                 self.readers.add(source)
             for one, other in ((target, source), (source, target)):
                 if other in self.kinds:
@@ -219,19 +242,22 @@ class _Reader:
             for text in texts:
                 kind = read_literal(text)[0]
                 known = self.kinds.get(entry)
+                if entry in (self.typed or {}):
+                    continue
                 widens = kind is EntryKind.REAL and known is EntryKind.INTEGER
                 if known is None or widens or (kind is EntryKind.TEXT and not self.mentioned.get(entry)):
                     self.kinds[entry] = kind
 
     def result(self) -> Board:
         entries: dict[str, BoardEntry] = {}
-        for name in sorted(self.readers):
+        typed = self.typed or {}
+        for name in sorted(self.readers | typed.keys()):
             initial = self.given.get(name, self.tree.initial.get(name))
-            if name not in self.writers and initial is None:
+            if name not in self.writers and name not in typed and initial is None:
                 continue
             kind = self.kinds.get(name, EntryKind.INTEGER)
             literal = None if initial is None else read_literal(initial)[1] if kind is not EntryKind.TEXT else initial
-            entries[name] = BoardEntry(name, kind, literal)
+            entries[name] = BoardEntry(name, kind, literal, typed.get(name, ""))
         flags: dict[str, list[BoardEntry]] = {}
         flag_of: dict[int, BoardEntry] = {}
         for number, name in self.observed.items():
@@ -240,7 +266,9 @@ class _Reader:
                 flag_of[number] = BoardEntry(f"{name}__updated_{number}", EntryKind.INTEGER, int(is_set))
                 flags.setdefault(name, []).append(flag_of[number])
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
-        return Board(entries, {name: tuple(known) for name, known in flags.items()}, flag_of, values)
+        observers = {name: tuple(known) for name, known in flags.items()}
+        read, written = frozenset(self.readers), frozenset(self.writers)
+        return Board(entries, observers, flag_of, values, read, written, self.typed is not None)
 
     def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
         """What a mock writes to an entry: the values with which the tree compares it, and one other."""
@@ -248,6 +276,15 @@ class _Reader:
         mentioned = self.mentioned.get(name, [])
         fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
         return tuple(dict.fromkeys((*fitting, *other)))[:MAX_VALUES]
+
+
+def set_entry(node: ExecutedNode, *, in_system: bool) -> str | None:
+    """The entry that a `SetBlackboard` writes; `None` if it is only known when the tree runs. In a system, `{v}` is the
+    variable itself (docs/spec/nodes.md#library)."""
+    for port, entry, text, _ in node.ports():
+        if port in ("output_key", "key"):
+            return node.frame.entry(text.strip()) if entry is None else entry if in_system else None
+    return None
 
 
 def _ports_of(program: NodeProgram) -> tuple[set[str], set[str]]:

@@ -42,12 +42,12 @@ class Child:
     """What a node knows of a child.
 
     Attributes:
-        number: of the child in the tree.
+        address: of the child in events: its number, or another word.
         answers: the codes with which it can answer.
         is_stateless: whether a reset has no effect on it.
     """
 
-    number: int
+    address: str
     answers: frozenset[int]
     is_stateless: bool
 
@@ -60,6 +60,7 @@ class NodeCode:
         known: the values of ports and parameters that are constants.
         bound: the ports that are bound to entries of the blackboard.
         scripts: by attribute or port.
+        address: of the node in events: its number, or another word.
         updated: the entry that states whether the observed one was written; `None` if nothing writes it.
         outputs: what a mock writes when it succeeds: entries, each with its possible values.
         elements: of the queue of a loop.
@@ -67,9 +68,10 @@ class NodeCode:
             was written.
         rate: of the tree, in Hz.
         counts: whether counters for measurements are included.
+        is_halted_always: whether the node is halted even if that has no effect: its parent may be a machine.
     """
 
-    number: int
+    address: str
     name: str
     program: NodeProgram
     children: tuple[Child, ...]
@@ -83,3 +85,4 @@ class NodeCode:
     rate: Fraction
     counts: bool
     origin: Location
+    is_halted_always: bool = False

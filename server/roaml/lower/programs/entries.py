@@ -6,8 +6,9 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from roaml.expr.operators import UnaryOperator
-from roaml.expr.tree import Expr, Number, String, Unary
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
+from roaml.lower.build import binary, integer
 from roaml.lower.program import NOWHERE
 
 
@@ -44,7 +45,23 @@ class BoardEntry:
 
     @property
     def start(self) -> Expr:
-        return self.zero if self.initial is None else constant(self.kind, self.initial)
+        """The first value of the variable of the blackboard."""
+        value = self.zero if self.initial is None else constant(self.kind, self.initial)
+        return Boolean(NOWHERE, bool(self.initial)) if self.type == "bool" else value
+
+    def read(self, value: Expr) -> Expr:
+        """The value of the variable of the blackboard as one of the kind: booleans are numbers."""
+        return Conditional(NOWHERE, value, integer(1), integer(0)) if self.type == "bool" else value
+
+    def written(self, value: Expr) -> Expr:
+        """A value of the kind as one of the variable of the blackboard."""
+        return binary(value, Operator.NOT_EQUAL, integer(0)) if self.type == "bool" else value
+
+    @property
+    def type_name(self) -> str:
+        """The name of the type of the variable of the blackboard."""
+        names = {EntryKind.INTEGER: "int64", EntryKind.REAL: "float64", EntryKind.TEXT: "string"}
+        return self.type or names[self.kind]
 
 
 def constant(kind: EntryKind, value: int | float | str) -> Expr:

@@ -57,7 +57,7 @@ class ExecutedNode:
         for setting in ports_of(self.node):
             bound = entry_of(setting)
             entry = None if bound is None else self.frame.entry(bound)
-            yield setting.attribute.name, entry, setting.value.value, setting.value.span
+            yield setting.key.value, entry, setting.value.value, setting.value.span
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,7 +10,7 @@ from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
 from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram, programs
-from roaml.lower.programs.board import Board, node_scripts
+from roaml.lower.programs.board import Board, node_scripts, set_entry
 from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
@@ -145,7 +145,7 @@ class _Reader:
             if program.name.startswith("Switch"):
                 known[port.name] = _case(text, kinds)
             elif type_ == "NodeStatus":
-                known[port.name] = STATUS_CODES.get(text.strip(), RUNNING)
+                known[port.name] = _status(text)
             else:
                 known[port.name] = self.literal(node, type_, text)
         missing = [port for port in _needed(program) if port not in known and port not in bound]
@@ -155,7 +155,7 @@ class _Reader:
             program.name.startswith("Switch")
         ):
             raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to a text")
-        for port_name in ("else", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
+        for port_name in ("else", "return_on_mismatch", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
             if port_name in bound:
                 raise TreeRefusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
 
@@ -176,16 +176,14 @@ class _Reader:
     def set_blackboard(
         self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, BoardEntry]
     ) -> None:
-        target: str | None = None
-        for port, entry, text, span in node.ports():
-            if port in ("output_key", "key"):
-                if entry is not None:
-                    reason = (
-                        f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
-                        f'the tree runs; write `{port}="{entry}"` for the entry itself'
-                    )
-                    raise TreeRefusal(Location(node.origin.path, span), reason)
-                target = node.frame.entry(text.strip())
+        target = set_entry(node, in_system=board.in_system)
+        for port, entry, _, span in node.ports():
+            if port in ("output_key", "key") and target is None:
+                reason = (
+                    f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
+                    f'the tree runs; write `{port}="{entry}"` for the entry itself'
+                )
+                raise TreeRefusal(Location(node.origin.path, span), reason)
         if target is None or target not in board.entries:
             known["value"] = 0
             return
@@ -238,6 +236,11 @@ def _needed(program: NodeProgram) -> set[str]:
         if isinstance(instruction, assembly.Read):
             names.update(instruction.ports)
     return names
+
+
+def _status(text: str) -> int:
+    """The code of a status that is written as a word or, in trees of systems, as a number."""
+    return int(text) if text.strip() in ("1", "2", "3") else STATUS_CODES.get(text.strip(), RUNNING)
 
 
 def _case(text: str, kinds: set[EntryKind]) -> Known:

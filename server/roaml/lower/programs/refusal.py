@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from roaml.text import Location
 
+INVALID_SCRIPT = "the script is not valid"
+"""The reason for a script with a syntax error, which other checks report."""
+
 
 class TreeRefusal(Exception):  # noqa: N818 - the tree may be correct
     """A tree cannot be translated; `origin` is the place of the reason."""

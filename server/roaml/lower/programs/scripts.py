@@ -19,6 +19,7 @@ from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, integer, name
 from roaml.lower.program import NOWHERE
 from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
+from roaml.lower.programs.refusal import INVALID_SCRIPT
 from roaml.script import tree as syntax
 from roaml.text import Span
 
@@ -134,7 +135,7 @@ class _Compiler:
             case syntax.Assignment():
                 return self.assignment(expr)
             case syntax.ErrorExpr():
-                raise ScriptRefusal(expr.span, "the script is not valid")
+                raise ScriptRefusal(expr.span, INVALID_SCRIPT)
 
     def unary(self, expr: syntax.Unary) -> _Value:
         operand = self.value(expr.operand)

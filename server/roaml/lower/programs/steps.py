@@ -26,14 +26,14 @@ class Ask(NamedTuple):
     entries: tuple[BoardEntry, ...]
 
 
-class Run(NamedTuple):
+class Update(NamedTuple):
     """Assigns variables of the automaton, and writes entries."""
 
     assignments: tuple[tuple[str, Expr], ...]
     writes: tuple[BoardEntry, ...]
 
 
-class Branch(NamedTuple):
+class Decide(NamedTuple):
     """Continues at `yes` if the condition holds, otherwise at `no`."""
 
     condition: Expr | bool
@@ -49,16 +49,16 @@ class Draw(NamedTuple):
     no: Place
 
 
-Step: TypeAlias = Ask | Run | Branch | Draw
+Step: TypeAlias = Ask | Update | Decide | Draw
 
 
 def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Place) -> tuple[Step, ...]:
     """Whether the observed entry was written; if so, it counts as seen."""
     return (
         Ask((flag,)),
-        Branch(equal(name(flag.local), integer(1)), (segment, 2), otherwise),
-        Run(((flag.local, integer(0)),), (flag,)),
-        Branch(True, following, otherwise),
+        Decide(equal(name(flag.local), integer(1)), (segment, 2), otherwise),
+        Update(((flag.local, integer(0)),), (flag,)),
+        Decide(True, following, otherwise),
     )
 
 
@@ -73,9 +73,9 @@ def output_steps(
             share = 1 / (len(values) - position)
             here = len(steps)
             steps.append(Draw(share, (segment, here + 1), (segment, here + 3)))
-            steps.append(Run(((entry.local, expr(value)),), (entry,)))
-            steps.append(Branch(True, (segment, end), following))
-    return (*steps, Branch(True, following, following))
+            steps.append(Update(((entry.local, expr(value)),), (entry,)))
+            steps.append(Decide(True, (segment, end), following))
+    return (*steps, Decide(True, following, following))
 
 
 def script_steps(segment: str, script: CompiledScript, following: Place, otherwise: Place | None) -> tuple[Step, ...]:
@@ -83,9 +83,9 @@ def script_steps(segment: str, script: CompiledScript, following: Place, otherwi
     continues there if its value is false."""
     steps: list[Step] = [Ask(script.reads)] if script.reads else []
     for condition in script.conditions:
-        steps.append(Branch(condition, (segment, len(steps) + 1), EXCEPTION))
-    steps.append(Run(script.assignments, script.writes))
+        steps.append(Decide(condition, (segment, len(steps) + 1), EXCEPTION))
+    steps.append(Update(script.assignments, script.writes))
     if otherwise is None:
-        return (*steps, Branch(True, following, following))
+        return (*steps, Decide(True, following, following))
     assert script.truth is not None
-    return (*steps, Branch(script.truth, following, otherwise))
+    return (*steps, Decide(script.truth, following, otherwise))

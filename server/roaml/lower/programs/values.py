@@ -22,7 +22,7 @@ RESULT = "*result"
 
 
 @dataclass(frozen=True, eq=False)
-class Values:
+class ProgramValues:
     """The values of expressions of the program of a node; `declared` are the variables of the automaton."""
 
     code: NodeCode
@@ -111,6 +111,8 @@ class Values:
 
     def element(self, position: Value) -> Value:
         """The element of a queue at a position."""
+        if not self.code.elements:
+            return 0  # never read: an empty queue has no element
         result = expr(self.code.elements[-1])
         for index in reversed(range(len(self.code.elements) - 1)):
             test = equal(expr(position), integer(index))

@@ -20,7 +20,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         return
     entries = entries_of(forest)
     executed = forest.executed
-    by_entry = entries.by_entry()
+    by_entry = entries.by_entry
     written = {key for key, uses in by_entry.items() if any(use.writes is not False for use in uses)}
     names: dict[str, list[str]] = {}
     for key in written:

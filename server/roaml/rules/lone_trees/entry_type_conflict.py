@@ -18,7 +18,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for uses in entries_of(forest).by_entry().values():
+    for uses in entries_of(forest).by_entry.values():
         typed = [use for use in uses if use.type != ANY]
         if len({use.type for use in typed}) > 1:
             for use, first in _conflicts(typed):

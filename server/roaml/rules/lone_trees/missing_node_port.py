@@ -25,7 +25,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         known = forest.declaration(node)
         if known is None or (known.kind is NodeKind.SUBTREE and is_autoremapped(node)):
             continue

@@ -23,7 +23,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         known = forest.known_node(node)
         if known is not None and not node.compact and node.element.name != _tag(known):
             yield _finding(node, known)

@@ -25,7 +25,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for tree, node in forest.own_nodes():
+    for tree, node in forest.own_nodes:
         known = forest.declaration(node)
         for setting in ports_of(node):
             port = known.port(setting.attribute.name) if known else None

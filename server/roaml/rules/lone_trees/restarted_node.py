@@ -21,7 +21,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     possible = Possible(forest)
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         name = node.plugin.value if node.plugin else ""
         if name in ("ReactiveSequence", "ReactiveFallback") and forest.known_node(node):
             yield from _refused(forest, node, name)

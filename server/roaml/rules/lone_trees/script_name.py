@@ -24,7 +24,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     entries = entries_of(forest)
     created: set[Key] = set()
     names: dict[str, list[str]] = {}
-    for key, uses in entries.by_entry().items():
+    for key, uses in entries.by_entry.items():
         if any(use.creates for use in uses):
             created.add(key)
             for use in uses:

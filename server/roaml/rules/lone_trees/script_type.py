@@ -35,19 +35,19 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if problems:
             continue
         for problem in check_types(script, lookup):
-            yield RULE.at(problem.span, problem.message, *fixes(context, use, problem))
+            yield RULE.at(problem.span, problem.message, *fixes(context, use.attribute, problem))
         if use.is_condition:
             for problem in check_condition(script, lookup):
                 yield RULE.at(problem.span, f"`{use.attribute.name}` is a condition: {problem.message}")
             for problem in assignments_as_conditions(script):
                 message = f"`{use.attribute.name}` is a condition: {problem.message}"
-                yield RULE.at(problem.span, message, *fixes(context, use, problem), severity=Severity.WARNING)
+                yield RULE.at(problem.span, message, *fixes(context, use.attribute, problem), severity=Severity.WARNING)
 
 
 def _types(entries: Entries) -> dict[Key, Type]:
     """The types of the entries whose ports all have the same type."""
     types_of: Mapping[Key, set[str]] = {
-        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry().items()
+        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry.items()
     }
     single = {key: next(iter(types)) for key, types in types_of.items() if len(types) == 1}
     return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}

@@ -17,7 +17,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         if node.plugin is None or node.plugin.value not in _ASKING or not node.children:
             continue
         if forest.known_node(node) is CPP.nodes[node.plugin.value]:

@@ -25,7 +25,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     undescribed: set[str] = set()
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         if node.element.name == "SubTreePlus":
             yield _renamed(node.element.name_span, rename_tag(node.element, "SubTree"), "SubTreePlus", "SubTree")
         if node.plugin is not None and not node.is_subtree and not forest.names_tree(node):

@@ -26,7 +26,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    for _, node in forest.own_nodes():
+    for _, node in forest.own_nodes:
         yield from _conditions(node)
         yield from _identifier(node)
         known = forest.known_node(node)

@@ -1,33 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scripts in the trees of a file that belongs to no system."""
+"""The scripts in the trees of a file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from roaml.diagnostics import Fix
-from roaml.forest.scripts import ScriptUse, parsed, scripts_of
-from roaml.model.tree import Tree
+from roaml.forest.scripts import ScriptUse, parsed, script_attributes, scripts_of
+from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import TreeContext
 from roaml.rules.support.forest import forest_of
 from roaml.script.parse import ScriptProblem
 from roaml.script.tree import Script
 from roaml.text import TextEdit
+from roaml.xml_syntax import Attribute
 from roaml.xml_syntax.escapes import escape
 
 
 def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[ScriptProblem, ...]]]:
-    """Each script with its syntax errors, at their places in the file."""
+    """Each script of a file that belongs to no system with its syntax errors, at their places in the file."""
     forest = forest_of(context)
     if forest is None:
         return
-    for tree, node in forest.own_nodes():
+    for tree, node in forest.own_nodes:
         for use in scripts_of(forest, node):
             yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
 
 
-def fixes(context: TreeContext, use: ScriptUse, problem: ScriptProblem) -> Iterator[Fix]:
+def all_scripts(context: TreeContext) -> Iterator[tuple[Attribute, Script, tuple[ScriptProblem, ...]]]:
+    """Each script with its syntax errors, also in a tree that belongs to a system."""
+    if context.system is None:
+        yield from ((use.attribute, script, problems) for _, use, script, problems in scripts(context))
+        return
+    for tree in context.file.trees:
+        for node in nodes(tree):
+            for attribute in script_attributes(node):
+                yield attribute, *parsed(context.document.decoded(attribute.value_span))
+
+
+def fixes(context: TreeContext, attribute: Attribute, problem: ScriptProblem) -> Iterator[Fix]:
     if problem.replacement:
-        quote = context.source.text[use.attribute.value_span.start - 1]
+        quote = context.source.text[attribute.value_span.start - 1]
         edit = TextEdit(problem.span, escape(problem.replacement, quote))
         yield Fix(f"Change to `{problem.replacement}`", (edit,), preferred=True)

@@ -23,7 +23,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
     read = [name for name, ports in board.items() if any(bound.port.read for bound in ports)]
     unwritten = [name for name in read if not any(bound.port.written for bound in board[name])]
     for variable, ports in board.items():
-        if variable in read or not any(bound.port.written for bound in ports):
+        entry = system.entries.get(variable)
+        if variable in read or (entry is not None and entry.read) or not any(bound.port.written for bound in ports):
             continue
         if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(GapAct.VARIABLE, variable):
             continue

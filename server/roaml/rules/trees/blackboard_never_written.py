@@ -18,7 +18,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
     board = context.system.blackboard
     set_ = [name for name, ports in board.items() if any(bound.port.written for bound in ports)]
     for variable, ports in board.items():
-        if variable in set_ or context.system.may(GapAct.VARIABLE, variable):
+        entry = context.system.entries.get(variable)
+        if variable in set_ or (entry is not None and entry.written) or context.system.may(GapAct.VARIABLE, variable):
             continue
         close = close_names(variable, set_)
         for bound, span, written in places(context, variable, ports):

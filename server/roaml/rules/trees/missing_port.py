@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
-from roaml.language import BEHAVIOR_TREE
 from roaml.model.outline import MachineOutline, PortOutline
-from roaml.model.system import CHILDREN_COUNT, builtin_plugins
+from roaml.model.system import CHILDREN_COUNT, optional_ports
 from roaml.model.tree import TreeNode, nodes
 from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, listing
@@ -28,15 +27,14 @@ def check(context: TreeContext) -> Iterator[Finding]:
             path, plugin = context.system.plugin(node.plugin.value)
             if plugin is None:
                 continue
-            missing = [port for port in missing_ports(node, plugin) if (plugin.name, port.key) not in defaults]
+            missing = [port for port in missing_ports(node, plugin, path) if (plugin.name, port.key) not in defaults]
             if missing:
                 yield _finding(node, plugin, path, missing)
 
 
-def missing_ports(node: TreeNode, plugin: MachineOutline) -> list[PortOutline]:
+def missing_ports(node: TreeNode, plugin: MachineOutline, path: str) -> list[PortOutline]:
     """The ports of a plugin that a node does not set and that have no default."""
-    builtin = BEHAVIOR_TREE.elements[plugin.name] if plugin.name in builtin_plugins() else None
-    known = {a.name for a in builtin.ports if a.port and not a.port.required} if builtin else set()
+    known = set(optional_ports(plugin.name)) if path == "" else set()
     known.add(CHILDREN_COUNT)
     given = {attribute.name for attribute in node.element.attributes} | {setting.key.value for setting in node.ports}
     missing = [port for port in plugin.ports if port.key not in known and port.key not in given]

@@ -19,7 +19,10 @@ from roaml.text import Decoded
 def check(context: TreeContext) -> Iterator[Finding]:
     """Report settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
+    is_library_tree = context.system is not None and context.system.is_library_tree
     for node, key, text in _settings(context):
+        if is_library_tree and key == "max_failures":
+            continue  # the library accepts any number
         number = _number(text) if key in _COUNTS else None
         problem = _problem(node, key, number) if number is not None else None
         if problem is not None:

@@ -11,7 +11,7 @@ from roaml.rules.rule import Rule, TreeContext
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is None:
+    if context.system is None or context.system.is_library_tree:
         return
     for tree in context.file.trees:
         for node in nodes(tree):

@@ -15,7 +15,10 @@ from roaml.rules.support.instances import instances
 def check(context: TreeContext) -> Iterator[Finding]:
     """Report a subtree that writes a variable for which its `<SubTree>` passes a constant
     (docs/spec/trees.md#subtrees)."""
+    is_library_tree = context.system is not None and context.system.is_library_tree
     for node, automaton in instances(context):
+        if is_library_tree and not automaton.path:
+            continue  # the library makes a variable with this first value
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)
             if port is None or port.direction is Direction.IN or setting.variable is None:

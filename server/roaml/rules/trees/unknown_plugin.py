@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import rename_tag
-from roaml.model.system import builtin_plugins
+from roaml.model.system import library_plugins
 from roaml.model.tree import TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.text import Span, TextEdit
@@ -37,7 +37,7 @@ def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
     misplaced = name in [outline.name for _, outline in system.nodes]
     if not misplaced and not system.plugins_known:
         return  # the error in the listed file that may contain the plugin is reported instead
-    close = close_names(name, [*(outline.name for _, outline in system.plugins), *builtin_plugins()])
+    close = close_names(name, [*(outline.name for _, outline in system.plugins), *library_plugins()])
     hint = did_you_mean(close) or "; list its file in `<behavior_tree>` of the system"
     if misplaced:
         hint = "; its file is listed in `<node_models>`, but plugins must be listed in `<behavior_tree>`"

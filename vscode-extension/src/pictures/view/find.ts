@@ -1,32 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Navigation in a picture: by arrow keys, by search, and by zooming. */
 
-import type { Picture } from "../contract";
-import type { Box, DrawnNode, Point } from "./layout";
+import type { Box, Drawing, DrawnNode, Picture, Point } from "../contract";
 
-export type Direction = "ArrowUp" | "ArrowDown" | "ArrowLeft" | "ArrowRight";
+export type Arrow = "ArrowUp" | "ArrowDown" | "ArrowLeft" | "ArrowRight";
 
-const WAYS: Record<Direction, Point> = {
+const WAYS: Record<Arrow, Point> = {
     ArrowUp: { x: 0, y: -1 },
     ArrowDown: { x: 0, y: 1 },
     ArrowLeft: { x: -1, y: 0 },
     ArrowRight: { x: 1, y: 0 },
 };
 
-export function isDirection(key: string): key is Direction {
+export function isArrow(key: string): key is Arrow {
     return key in WAYS;
 }
 
 /** The index of the nearest node in a direction; a sideways distance is weighted more. */
-export function neighbour(nodes: readonly DrawnNode[], from: number, direction: Direction): number | undefined {
-    const shown = nodes.filter((node) => node.index >= 0);
-    const start = shown.find((node) => node.index === from);
-    if (!start) return shown[0]?.index;
+export function neighbour(nodes: readonly DrawnNode[], from: number, direction: Arrow): number | undefined {
+    const start = nodes.find((node) => node.index === from);
+    if (!start) return nodes[0]?.index;
     const way = WAYS[direction];
     const origin = middle(start);
     let best: number | undefined;
     let least = Infinity;
-    for (const node of shown) {
+    for (const node of nodes) {
         const { x, y } = middle(node);
         const ahead = (x - origin.x) * way.x + (y - origin.y) * way.y;
         const aside = Math.abs((x - origin.x) * way.y) + Math.abs((y - origin.y) * way.x);
@@ -37,7 +35,7 @@ export function neighbour(nodes: readonly DrawnNode[], from: number, direction: 
     return best;
 }
 
-/** The indexes of the nodes that contain all words of a text, ignoring case. */
+/** The indexes of the nodes that contain all words of a text, ignoring case; a state contains its transitions. */
 export function search(picture: Picture, text: string): number[] {
     const words = text
         .toLowerCase()
@@ -45,7 +43,8 @@ export function search(picture: Picture, text: string): number[] {
         .filter((word) => word !== "");
     if (words.length === 0) return [];
     return picture.nodes.flatMap((node, index) => {
-        const all = [node.kind, node.label, ...node.details].join(" ").toLowerCase();
+        const leaving = picture.edges.flatMap(({ source, labels }) => (source === node.id ? labels : []));
+        const all = [node.kind, node.label, ...node.details, ...leaving].join(" ").toLowerCase();
         return words.every((word) => all.includes(word)) ? [index] : [];
     });
 }
@@ -56,20 +55,50 @@ export interface Sight extends Point {
 }
 
 const MARGIN = 24;
+/** Texts of 12 px are legible down to 11 px. */
+const LEGIBLE = 11 / 12;
+type Area = Pick<Drawing, "width" | "height">;
+
+function scaleOf(drawing: Area, width: number, height: number): number {
+    const across = (width - 2 * MARGIN) / Math.max(1, drawing.width);
+    return Math.min(1, across, (height - 2 * MARGIN) / Math.max(1, drawing.height));
+}
 
 /** The view that shows a whole drawing in a window; small drawings are not enlarged. */
-export function fit(drawing: { width: number; height: number }, width: number, height: number): Sight {
-    const scale = Math.min(
-        1,
-        (width - 2 * MARGIN) / Math.max(1, drawing.width),
-        (height - 2 * MARGIN) / Math.max(1, drawing.height),
-    );
-    const usable = Math.max(0.05, scale);
-    return {
-        scale: usable,
-        x: (drawing.width - width / usable) / 2,
-        y: (drawing.height - height / usable) / 2,
+export function fit(drawing: Area, width: number, height: number): Sight {
+    return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
+}
+
+/** The view that shows as much of a drawing as is legible, from its beginning. */
+export function fitLegibly(drawing: Area, width: number, height: number): Sight {
+    return at(drawing, width, height, Math.max(LEGIBLE, scaleOf(drawing, width, height)));
+}
+
+/** The view at a scale: in the middle where the drawing is smaller than the window, otherwise at its beginning. */
+function at(drawing: Area, width: number, height: number, scale: number): Sight {
+    const start = (size: number, window: number) => (size <= window ? (size - window) / 2 : -MARGIN / scale);
+    return { scale, x: start(drawing.width, width / scale), y: start(drawing.height, height / scale) };
+}
+
+/** The index of the drawing that suits a window best: it is legible as a whole, or else at least in its width. */
+export function bestDrawing(drawings: readonly Area[], width: number, height: number): number {
+    const rank = (drawing: Area): readonly number[] => {
+        const scale = scaleOf(drawing, width, height);
+        const fitsAcross = drawing.width * LEGIBLE <= width - 2 * MARGIN;
+        return [Number(scale >= LEGIBLE), scale >= LEGIBLE ? 0 : Number(fitsAcross), scale];
     };
+    let best = 0;
+    drawings.forEach((drawing, index) => {
+        const [mine, other] = [rank(drawing), rank(drawings[best] ?? drawing)];
+        const differs = mine.findIndex((value, place) => value !== other[place]);
+        if (differs >= 0 && (mine[differs] ?? 0) > (other[differs] ?? 0)) best = index;
+    });
+    return best;
+}
+
+/** The view moved by a distance on the screen. */
+export function pan(sight: Sight, dx: number, dy: number): Sight {
+    return { ...sight, x: sight.x + dx / sight.scale, y: sight.y + dy / sight.scale };
 }
 
 /** The view zoomed by a factor around a fixed point of the window. */

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The view in a panel: draws the pictures that the extension sends, and sends it the actions of the user. */
 
-import ELK from "elkjs/lib/elk.bundled.js";
-import type { FromView, Part, Picture, PictureEdge, PictureNode, ToView, Words } from "../contract";
-import { draw, element, markers, type Scene } from "./draw";
-import { pngData, svgText } from "./exporting";
-import { fit, isDirection, neighbour, reveal, search, zoom, type Sight } from "./find";
-import { TITLE_SIZE, drawingOf, graphOf, type Drawing } from "./layout";
+import {
+    DIRECTIONS,
+    type Drawing,
+    type FromView,
+    type Part,
+    type Picture,
+    type PictureEdge,
+    type PictureNode,
+    type Theme,
+    type ToView,
+    type Words,
+} from "../contract";
+import { bestDrawing, fit, fitLegibly, isArrow, neighbour, pan, reveal, search, zoom, type Sight } from "./find";
+import { element, pngData, sceneOf, type Scene } from "./scene";
+import { legendOf, type LegendEntry } from "./words";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
 
 const editor = acquireVsCodeApi();
-const elk = new ELK();
 const ZOOM = 1.25;
 
 class View {
@@ -22,21 +30,30 @@ class View {
     private readonly notice = document.createElement("div");
     private words: Words | undefined;
     private picture: Picture | undefined;
-    private drawing: Drawing | undefined;
+    /** The index of the drawing that is shown. */
+    private shown = 0;
+    /** Whether the user has chosen what is visible. */
+    private moved = false;
     private scene: Scene | undefined;
     private sight: Sight = { x: 0, y: 0, scale: 1 };
     private selected = -1;
     private here: Part | null = null;
-    private asked = 0;
+    private highlighted = "";
 
     constructor() {
         this.bar.className = "bar";
         this.legend.className = "legend";
         this.notice.className = "notice";
         this.notice.setAttribute("role", "status");
-        this.svg.append(markers());
         document.body.append(this.svg, this.bar, this.legend, this.notice);
         this.listen();
+        new ResizeObserver(() => {
+            this.refit();
+        }).observe(this.svg);
+    }
+
+    private get drawing(): Drawing | undefined {
+        return this.picture?.drawings[this.shown];
     }
 
     receive(message: ToView): void {
@@ -46,7 +63,7 @@ class View {
                 this.fillBar(message.words);
                 break;
             case "show":
-                void this.show(message.picture, message.here, message.highlighted);
+                this.show(message.picture, message.here, message.highlighted);
                 break;
             case "here":
                 this.mark(message.here);
@@ -54,43 +71,73 @@ class View {
             case "highlight":
                 this.highlight(message.node);
                 break;
+            case "rasterize":
+                void pngData(message.svg).then((data) => {
+                    editor.postMessage({ type: "png", data });
+                });
+                break;
             case "none":
-                this.asked++;
                 this.clear();
                 this.notice.textContent = message.reason;
                 break;
         }
     }
 
-    private async show(picture: Picture, here: Part | null, highlighted: string): Promise<void> {
-        const { words } = this;
-        if (!words) return;
-        const asked = ++this.asked;
-        const laidOut = await elk.layout(graphOf(picture, measure(), (node) => words.kinds[node.kind]));
-        if (asked !== this.asked) return;
+    private show(picture: Picture, here: Part | null, highlighted: string): void {
         const isNew = this.picture?.title !== picture.title || this.picture.kind !== picture.kind;
         const label = this.picture?.nodes[this.selected]?.label;
         this.clear();
         this.picture = picture;
-        this.drawing = drawingOf(picture, laidOut);
-        this.scene = draw(picture, this.drawing, words);
-        this.svg.append(this.scene.root);
-        this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
-        this.fillLegend(picture, words);
-        if (isNew) this.fit();
-        else this.look(this.sight);
+        this.here = here;
+        this.highlighted = highlighted;
+        if (isNew) {
+            this.moved = false;
+            this.shown = this.best();
+        }
+        this.draw();
+        if (isNew) this.fitLegibly();
         if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.mark(here);
         this.highlight(highlighted);
-        if (this.input.value !== "") this.search();
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
+    }
+
+    /** Draw the picture in the direction that is shown. */
+    private draw(): void {
+        const { picture, drawing, words } = this;
+        if (!picture || !drawing || !words) return;
+        this.scene?.root.remove();
+        this.scene = sceneOf(picture, drawing, words);
+        this.svg.append(this.scene.root);
+        this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
+        this.legend.replaceChildren(...legendOf(picture, words).map(entry));
+        this.look(this.sight);
+        if (this.input.value !== "") this.search();
+    }
+
+    private best(): number {
+        const { width, height } = this.svg.getBoundingClientRect();
+        return bestDrawing(this.picture?.drawings ?? [], width, height);
+    }
+
+    /** Adapt the drawing to a new size of the window, unless the user has chosen what is visible. */
+    private refit(): void {
+        if (this.moved || !this.picture) return;
+        const best = this.best();
+        if (best !== this.shown) {
+            this.shown = best;
+            this.draw();
+            for (const group of this.parts(this.here)) group.classList.add("here");
+            this.highlight(this.highlighted);
+            this.scene?.nodes.get(this.selected)?.classList.add("selected");
+        }
+        this.fitLegibly();
     }
 
     private clear(): void {
         this.scene?.root.remove();
         this.scene = undefined;
         this.picture = undefined;
-        this.drawing = undefined;
         this.selected = -1;
         this.notice.textContent = "";
         this.legend.replaceChildren();
@@ -106,10 +153,17 @@ class View {
 
     private fit(): void {
         const { width, height } = this.svg.getBoundingClientRect();
+        this.moved = true;
         if (this.drawing) this.look(fit(this.drawing, width, height));
     }
 
+    private fitLegibly(): void {
+        const { width, height } = this.svg.getBoundingClientRect();
+        if (this.drawing) this.look(fitLegibly(this.drawing, width, height));
+    }
+
     private zoom(factor: number, about?: { x: number; y: number }): void {
+        this.moved = true;
         const { width, height } = this.svg.getBoundingClientRect();
         this.look(zoom(this.sight, factor, about ?? { x: width / 2, y: height / 2 }));
     }
@@ -135,9 +189,9 @@ class View {
 
     /** Select the part that contains the caret. */
     private mark(here: Part | null): void {
-        this.part(this.here)?.classList.remove("here");
+        for (const group of this.parts(this.here)) group.classList.remove("here");
         this.here = here;
-        this.part(here)?.classList.add("here");
+        for (const group of this.parts(here)) group.classList.add("here");
         if (here === null || !this.picture) return;
         if ("node" in here) this.reveal(here.node);
         else {
@@ -148,15 +202,18 @@ class View {
 
     /** Highlight the node of the current step of a trace. */
     private highlight(id: string): void {
+        this.highlighted = id;
         const highlighted = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
         for (const [index, node] of this.scene?.nodes ?? [])
             node.classList.toggle("highlighted", index === highlighted);
         if (highlighted >= 0) this.reveal(highlighted);
     }
 
-    private part(part: Part | null): SVGGElement | undefined {
-        if (part === null) return undefined;
-        return "node" in part ? this.scene?.nodes.get(part.node) : this.scene?.edges.get(part.edge);
+    private parts(part: Part | null): readonly SVGGElement[] {
+        if (part === null || !this.scene) return [];
+        if ("edge" in part) return this.scene.edges.get(part.edge) ?? [];
+        const node = this.scene.nodes.get(part.node);
+        return node ? [node] : [];
     }
 
     private jump(to: PictureNode | PictureEdge | undefined, beside: boolean): void {
@@ -180,14 +237,12 @@ class View {
     private listen(): void {
         this.svg.addEventListener("click", ({ target, ctrlKey, metaKey }) => {
             if (!(target instanceof Element) || !this.scene || !this.picture) return;
-            const part = target.closest<SVGGElement>(".node, .edge");
-            for (const [index, node] of this.scene.nodes) {
-                if (node !== part) continue;
-                this.select(index);
-                this.jump(this.picture.nodes[index], ctrlKey || metaKey);
-            }
-            for (const [index, edge] of this.scene.edges) {
-                if (edge === part) this.jump(this.picture.edges[index], ctrlKey || metaKey);
+            const { node, edges } = target.closest<SVGGElement>("[data-node], [data-edges]")?.dataset ?? {};
+            if (node !== undefined) {
+                this.select(Number(node));
+                this.jump(this.picture.nodes[Number(node)], ctrlKey || metaKey);
+            } else if (edges !== undefined) {
+                this.jump(this.picture.edges[Number(edges.split(" ")[0])], ctrlKey || metaKey);
             }
         });
         this.svg.addEventListener("dblclick", ({ target }) => {
@@ -197,21 +252,31 @@ class View {
             "wheel",
             (event) => {
                 event.preventDefault();
+                if (!event.ctrlKey && !event.metaKey) {
+                    this.moved = true;
+                    const [dx, dy] = event.shiftKey ? [event.deltaY, event.deltaX] : [event.deltaX, event.deltaY];
+                    this.look(pan(this.sight, dx, dy));
+                    return;
+                }
                 const { left, top } = this.svg.getBoundingClientRect();
                 const about = { x: event.clientX - left, y: event.clientY - top };
-                this.zoom(Math.exp(-event.deltaY / 400), about);
+                this.zoom(Math.exp(-event.deltaY / 200), about);
             },
             { passive: false },
         );
         this.svg.addEventListener("pointerdown", (event) => {
-            if (event.button !== 0 || (event.target instanceof Element && event.target.closest(".node, .edge"))) return;
+            if (
+                event.button !== 0 ||
+                (event.target instanceof Element && event.target.closest("[data-node], [data-edges]"))
+            )
+                return;
             this.svg.setPointerCapture(event.pointerId);
             this.svg.classList.add("moving");
         });
         this.svg.addEventListener("pointermove", (event) => {
             if (!this.svg.hasPointerCapture(event.pointerId)) return;
-            const { x, y, scale } = this.sight;
-            this.look({ scale, x: x - event.movementX / scale, y: y - event.movementY / scale });
+            this.moved = true;
+            this.look(pan(this.sight, -event.movementX, -event.movementY));
         });
         const release = () => {
             this.svg.classList.remove("moving");
@@ -240,8 +305,7 @@ class View {
         }
         if (key === "/" || (key === "f" && (ctrlKey || metaKey))) this.input.focus();
         else if (ctrlKey || metaKey) return false;
-        else if (isDirection(key))
-            this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
+        else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
         else if (key === "Enter") this.jump(this.picture?.nodes[this.selected], false);
         else if (key === "+" || key === "=") this.zoom(ZOOM);
         else if (key === "-") this.zoom(1 / ZOOM);
@@ -273,44 +337,40 @@ class View {
             button(words.fit, words.fit, () => {
                 this.fit();
             }),
-            button("SVG", words.saveSvg, () => this.save("svg")),
-            button("PNG", words.savePng, () => this.save("png")),
+            button("SVG", words.saveSvg, () => {
+                this.save("svg");
+            }),
+            button("PNG", words.savePng, () => {
+                this.save("png");
+            }),
         );
     }
 
-    private fillLegend(picture: Picture, words: Words): void {
-        const kinds = new Set(picture.edges.filter(({ kind }) => kind !== "child").map(({ kind }) => kind));
-        const entries = [...kinds].map((kind) => entry(`is-${kind}`, words.kinds[kind]));
-        if (picture.edges.some((edge) => edge.probabilistic)) entries.push(entry("chance", words.byChance));
-        this.legend.replaceChildren(...entries);
-    }
-
-    private async save(format: "svg" | "png"): Promise<void> {
-        if (!this.scene || !this.drawing) return;
-        const svg = svgText(this.svg, this.scene.root, this.drawing);
-        const data = format === "svg" ? svg : await pngData(svg, this.drawing);
-        editor.postMessage({ type: "save", format, data });
+    private save(format: "svg" | "png"): void {
+        const direction = DIRECTIONS[this.shown];
+        if (this.picture && direction) editor.postMessage({ type: "save", format, direction, theme: theme() });
     }
 }
 
-function entry(className: string, text: string): HTMLElement {
+function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
     const made = document.createElement("span");
-    const line = element("svg", { width: 28, height: 8, "aria-hidden": "true" });
-    const group = element("g", { class: `edge ${className}` });
-    group.append(element("path", { d: "M 1 4 H 27", class: "line" }));
-    line.append(group);
-    made.append(line, text);
+    const sample = element("svg", { width: 24, height: 10, class: "scene", "aria-hidden": "true" });
+    const group = element("g", { class: `link tone-${tone}` });
+    const shape = isLine
+        ? element("path", { d: "M 1 5 H 23", class: "line" })
+        : element("rect", { x: 7, y: 0, width: 10, height: 10, rx: 2, class: "badge" });
+    group.append(shape);
+    sample.append(group);
+    made.append(sample, text);
     return made;
 }
 
-function measure(): (text: string, size: number) => number {
-    const context = document.createElement("canvas").getContext("2d");
-    const { fontFamily } = getComputedStyle(document.body);
-    return (text, size) => {
-        if (!context) return text.length * size * 0.6;
-        context.font = `${size === TITLE_SIZE ? "600 " : ""}${size}px ${fontFamily}`;
-        return context.measureText(text).width;
-    };
+/** The kind of the theme of the editor. */
+function theme(): Theme {
+    const { classList } = document.body;
+    if (classList.contains("vscode-high-contrast-light")) return "high-contrast-light";
+    if (classList.contains("vscode-high-contrast")) return "high-contrast";
+    return classList.contains("vscode-dark") ? "dark" : "light";
 }
 
 const view = new View();

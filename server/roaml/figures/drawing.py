@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A drawing: groups of shapes, lines and texts with their places, in pixels.
+
+- Every text is inside the box of its group's shape, and none is smaller than `text.SMALL`.
+- A `role` names the element in the style sheet, a `tone` its color there.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.text import text_width
+
+
+class Tone(enum.Enum):
+    """What a color stands for."""
+
+    PLAIN = "plain"
+    EVENT = "event"
+    ROS = "ros"
+    TREE = "tree"
+    CHANCE = "chance"
+    BLACKBOARD = "blackboard"
+    TOPIC = "topic"
+    SERVICE = "service"
+    ROS_ACTION = "ros-action"
+    CONTROL = "control"
+    DECORATOR = "decorator"
+    ACTION = "action"
+    CONDITION = "condition"
+    SUBTREE = "subtree"
+
+
+class Outline(enum.Enum):
+    """The form of a shape within its box."""
+
+    RECTANGLE = "rectangle"
+    ROUNDED = "rounded"
+    PILL = "pill"
+    HEXAGON = "hexagon"
+    CUT = "cut"
+    DOUBLE = "double"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    box: Box
+    outline: Outline
+    role: str
+
+
+@dataclass(frozen=True, slots=True)
+class TextItem:
+    """One line of text; `x` is its left end, `y` its base line."""
+
+    text: str
+    x: float
+    y: float
+    size: float
+    role: str
+    bold: bool = False
+
+    @property
+    def box(self) -> Box:
+        """The area of its letters, in the widest font."""
+        width = text_width(self.text, self.size, bold=self.bold)
+        return Box(self.x, self.y - 0.8 * self.size, width, self.size)
+
+
+@dataclass(frozen=True, slots=True)
+class Polyline:
+    """A polyline with round corners; `has_arrow`: an arrow head at its end."""
+
+    points: tuple[Point, ...]
+    has_arrow: bool = False
+    role: str = "line"
+
+
+@dataclass(frozen=True, slots=True)
+class Glyph:
+    """A small symbol of strokes; `strokes` are polylines in the unit square."""
+
+    box: Box
+    strokes: tuple[tuple[Point, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Items that belong together.
+
+    Attributes:
+        role: what it is: `node`, `edge`, `link`, `label`, `frame`, ...
+        kind: the kind of the node or edge, for the style sheet.
+        node: the index of the node that it shows, if it shows one.
+        edges: the indexes of the edges that it shows.
+        hint: the whole text, if the items show less.
+    """
+
+    role: str
+    tone: Tone
+    items: tuple[Item, ...]
+    kind: str = ""
+    node: int | None = None
+    edges: tuple[int, ...] = ()
+    hint: str = ""
+
+
+Leaf: TypeAlias = Shape | TextItem | Polyline | Glyph
+Item: TypeAlias = Leaf | Group
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """`nodes`: the boxes of the nodes by their indexes."""
+
+    size: Extent
+    groups: tuple[Group, ...]
+    nodes: Mapping[int, Box]
+
+    def walk(self) -> Iterator[tuple[tuple[Group, ...], Leaf]]:
+        """Every item with the groups around it, the outermost first."""
+        for group in self.groups:
+            yield from _walk(group, ())
+
+
+def _walk(group: Group, around: tuple[Group, ...]) -> Iterator[tuple[tuple[Group, ...], Leaf]]:
+    inside = (*around, group)
+    for item in group.items:
+        if isinstance(item, Group):
+            yield from _walk(item, inside)
+        else:
+            yield inside, item

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The links to turn so that no cycle remains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+def closing_links(count: int, links: Sequence[tuple[int, int]]) -> frozenset[int]:
+    """The indexes of links that lead back to a node on the way to them, in a depth-first search from the first node.
+
+    Links are followed in their order, so that a model is drawn in the order in which it is written.
+
+    Args:
+        count: the number of nodes.
+        links: source and target of each link.
+    """
+    outgoing: list[list[int]] = [[] for _ in range(count)]
+    for index, (source, _) in enumerate(links):
+        outgoing[source].append(index)
+    closing: set[int] = set()
+    finished: set[int] = set()
+    for start in range(count):
+        if start in finished:
+            continue
+        active = {start}
+        path = [(start, iter(outgoing[start]))]
+        while path:
+            node, rest = path[-1]
+            following = next(rest, None)
+            if following is None:
+                path.pop()
+                active.discard(node)
+                finished.add(node)
+                continue
+            target = links[following][1]
+            if target in active:
+                closing.add(following)
+            elif target not in finished:
+                active.add(target)
+                path.append((target, iter(outgoing[target])))
+    return frozenset(closing)

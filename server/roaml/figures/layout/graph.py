@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The input and the output of layouts."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roaml.figures.geometry import Box, Extent, Point
+
+
+class LayoutDirection(enum.Enum):
+    """The direction in which links lead, apart from those that close cycles."""
+
+    DOWN = "down"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A line from one node to another, with the size of its label, if it has one."""
+
+    source: str
+    target: str
+    label: Extent | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """The line of a link from its source to its target.
+
+    Attributes:
+        parts: one polyline; two if the label interrupts it.
+        label: the place of the label, if the link has one.
+    """
+
+    parts: tuple[tuple[Point, ...], ...]
+    label: Box | None = None
+
+    def moved(self, dx: float, dy: float) -> Route:
+        parts = tuple(tuple(Point(x + dx, y + dy) for x, y in part) for part in self.parts)
+        return Route(parts, self.label.moved(dx, dy) if self.label else None)
+
+    @property
+    def turned(self) -> Route:
+        parts = tuple(tuple(point.turned for point in part) for part in self.parts)
+        return Route(parts, self.label.turned if self.label else None)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Boxes by the names of nodes, routes in the order of the links. Everything is within `size`."""
+
+    size: Extent
+    nodes: Mapping[str, Box]
+    routes: tuple[Route, ...]
+
+    @property
+    def turned(self) -> Layout:
+        boxes = {name: box.turned for name, box in self.nodes.items()}
+        return Layout(self.size.turned, boxes, tuple(route.turned for route in self.routes))

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Layered layout of a graph with orthogonal lines and labels (see the package)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.layout.cycles import closing_links
+from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
+from roaml.figures.layout.layers import assign_layers
+from roaml.figures.layout.order import order_layers
+from roaml.figures.layout.packing import components, pack
+from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
+from roaml.figures.layout.positions import place_vertices
+from roaml.figures.layout.tracks import assign_tracks
+from roaml.figures.layout.vertices import Vertex, VertexKind
+
+LAYER_DISTANCE = 30.0
+TRACK_MARGIN = 18.0
+TRACK_DISTANCE = 10.0
+"""Between layers: the least distance; the distance of tracks from layers, and of tracks from each other."""
+
+
+def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:
+    """The layout of a graph; links between a node and itself are not possible.
+
+    Nodes are drawn in their order as far as links allow it: the first one comes first. A node grows if it has too many
+    links for its size. Parts of the graph that are not connected are packed.
+
+    Args:
+        aspect: the desired ratio of width to height, for packing.
+    """
+    if direction is LayoutDirection.RIGHT:
+        turned = {name: size.turned for name, size in nodes.items()}
+        turned_links = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
+        return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
+    parts = [
+        (_Component(nodes, names, indexes, links).layout(), indexes) for names, indexes in components(nodes, links)
+    ]
+    return pack(parts, len(links), aspect)
+
+
+@dataclass(frozen=True, slots=True)
+class _Edge:
+    """A piece of a link between two vertices in neighbouring layers, downwards."""
+
+    link: int
+    upper: int
+    lower: int
+
+
+class _Component:
+    """The layout of a connected graph, downwards."""
+
+    def __init__(
+        self, sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]
+    ) -> None:
+        self.names = names
+        self.indexes = indexes
+        self.links = links
+        number = {name: index for index, name in enumerate(names)}
+        ends = [(number[links[index].source], number[links[index].target]) for index in indexes]
+        turned = closing_links(len(names), ends)
+        self.turned = {index: position in turned for position, index in enumerate(indexes)}
+        downwards = {
+            index: (target, source) if self.turned[index] else (source, target)
+            for index, (source, target) in zip(indexes, ends, strict=True)
+        }
+        self.vertices = [Vertex(VertexKind.NODE, sizes[name]) for name in names]
+        self.labels: dict[int, int] = {}
+        self.edges: list[_Edge] = []
+        self._add_edges(downwards)
+        self._split_long_edges()
+        self._grow()
+
+    def _add_edges(self, downwards: Mapping[int, tuple[int, int]]) -> None:
+        for index in self.indexes:
+            source, target = downwards[index]
+            label = self.links[index].label
+            if label is None:
+                self.edges.append(_Edge(index, source, target))
+                continue
+            self.labels[index] = len(self.vertices)
+            self.vertices.append(Vertex(VertexKind.LABEL, label))
+            self.edges += [_Edge(index, source, self.labels[index]), _Edge(index, self.labels[index], target)]
+
+    def _split_long_edges(self) -> None:
+        """Add a vertex in each layer that a link passes."""
+        pairs = [(edge.upper, edge.lower) for edge in self.edges]
+        self.layers = assign_layers(self.vertices, pairs)
+        short: list[_Edge] = []
+        for edge in self.edges:
+            upper = edge.upper
+            for layer in range(self.layers[edge.upper] + 1, self.layers[edge.lower]):
+                self.vertices.append(Vertex(VertexKind.PASSING, Extent(0, 0)))
+                self.layers.append(layer)
+                short.append(_Edge(edge.link, upper, len(self.vertices) - 1))
+                upper = len(self.vertices) - 1
+            short.append(_Edge(edge.link, upper, edge.lower))
+        self.edges = short
+
+    def _grow(self) -> None:
+        """Make nodes wide enough for their links."""
+        upper, lower = [0] * len(self.vertices), [0] * len(self.vertices)
+        for edge in self.edges:
+            lower[edge.upper] += 1
+            upper[edge.lower] += 1
+        for index, vertex in enumerate(self.vertices):
+            ports = max(upper[index], lower[index])
+            if vertex.kind is VertexKind.NODE and ports > 1:
+                width = 2 * PORT_MARGIN + (ports - 1) * PORT_DISTANCE
+                self.vertices[index] = Vertex(vertex.kind, Extent(max(vertex.size.width, width), vertex.size.height))
+
+    def layout(self) -> Layout:
+        pairs = [(edge.upper, edge.lower) for edge in self.edges]
+        rows = order_layers(self.layers, pairs)
+        middles = place_vertices(self.vertices, rows, pairs)
+        ports = Ports(self.vertices, rows, pairs, middles)
+        gaps: list[list[int]] = [[] for _ in rows]
+        for index, edge in enumerate(self.edges):
+            gaps[self.layers[edge.upper]].append(index)
+        bends: dict[int, list[Point]] = {}
+        boxes: dict[int, Box] = {}
+        y = 0.0
+        for row, gap in zip(rows, gaps, strict=True):
+            thickness = max(self.vertices[vertex].size.height for vertex in row)
+            for vertex in row:
+                width, height = self.vertices[vertex].size
+                boxes[vertex] = Box(middles[vertex] - width / 2, y + (thickness - height) / 2, width, height)
+            y += thickness
+            turns, count = assign_tracks([(ports.leaving[index], ports.entering[index]) for index in gap])
+            for index, line in zip(gap, turns, strict=True):
+                x = ports.leaving[index]
+                bends[index] = []
+                for turn in line:
+                    track = y + TRACK_MARGIN + turn.track * TRACK_DISTANCE
+                    bends[index] += [Point(x, track), Point(turn.to, track)]
+                    x = turn.to
+            y += max(LAYER_DISTANCE, 2 * TRACK_MARGIN + (count - 1) * TRACK_DISTANCE) if gap else 0
+        return self._assembled(boxes, bends, ports)
+
+    def _assembled(self, boxes: Mapping[int, Box], bends: Mapping[int, Sequence[Point]], ports: Ports) -> Layout:
+        pieces: dict[int, list[int]] = {}
+        for index, edge in enumerate(self.edges):
+            pieces.setdefault(edge.link, []).append(index)
+        routes = []
+        for link in self.indexes:
+            parts: list[list[Point]] = [[]]
+            for index in pieces[link]:
+                edge = self.edges[index]
+                if self.vertices[edge.upper].kind is not VertexKind.PASSING:
+                    parts[-1].append(Point(ports.leaving[index], boxes[edge.upper].bottom))
+                parts[-1] += bends[index]
+                if self.vertices[edge.lower].kind is not VertexKind.PASSING:
+                    parts[-1].append(Point(ports.entering[index], boxes[edge.lower].y))
+                    parts.append([])
+            lines = [_simplified(part) for part in parts if part]
+            if self.turned[link]:
+                lines = [line[::-1] for line in reversed(lines)]
+            routes.append(Route(tuple(lines), boxes[self.labels[link]] if link in self.labels else None))
+        placed = {name: boxes[index] for index, name in enumerate(self.names)}
+        return _at_origin(placed, routes)
+
+
+def _simplified(points: Sequence[Point]) -> tuple[Point, ...]:
+    """The line without points between equal directions."""
+    kept: list[Point] = []
+    for point in points:
+        while len(kept) >= 2 and (kept[-2].x == kept[-1].x == point.x or kept[-2].y == kept[-1].y == point.y):
+            kept.pop()
+        kept.append(point)
+    return tuple(kept)
+
+
+def _at_origin(boxes: Mapping[str, Box], routes: Sequence[Route]) -> Layout:
+    areas = [*boxes.values(), *(route.label for route in routes if route.label)]
+    points = [point for route in routes for part in route.parts for point in part]
+    left = min([area.x for area in areas] + [point.x for point in points])
+    top = min([area.y for area in areas] + [point.y for point in points])
+    right = max([area.right for area in areas] + [point.x for point in points])
+    bottom = max([area.bottom for area in areas] + [point.y for point in points])
+    return Layout(
+        Extent(right - left, bottom - top),
+        {name: box.moved(-left, -top) for name, box in boxes.items()},
+        tuple(route.moved(-left, -top) for route in routes),
+    )

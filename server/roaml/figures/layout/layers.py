@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The layer of every vertex: each link leads to a later layer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from roaml.figures.layout.vertices import Vertex, VertexKind
+
+
+def assign_layers(vertices: Sequence[Vertex], edges: Sequence[tuple[int, int]]) -> list[int]:
+    """The layer of each vertex, from 0. A node is in the first possible layer, a node without predecessors right before
+    its first successor, and a label near the middle of its link.
+
+    Args:
+        edges: the pairs (from, to) of an acyclic graph.
+    """
+    successors: list[list[int]] = [[] for _ in vertices]
+    predecessors: list[list[int]] = [[] for _ in vertices]
+    for source, target in edges:
+        successors[source].append(target)
+        predecessors[target].append(source)
+    order = _topological(successors, predecessors)
+    layers = [0] * len(vertices)
+    for vertex in order:
+        layers[vertex] = max((layers[p] + 1 for p in predecessors[vertex]), default=0)
+    for vertex in reversed(order):
+        if not predecessors[vertex] and successors[vertex]:
+            layers[vertex] = min(layers[s] for s in successors[vertex]) - 1
+    _balance_labels(vertices, predecessors, successors, layers)
+    used = {layer: index for index, layer in enumerate(sorted(set(layers)))}
+    return [used[layer] for layer in layers]
+
+
+def _topological(successors: Sequence[Sequence[int]], predecessors: Sequence[Sequence[int]]) -> list[int]:
+    missing = [len(p) for p in predecessors]
+    order = [vertex for vertex, count in enumerate(missing) if count == 0]
+    for vertex in order:
+        for successor in successors[vertex]:
+            missing[successor] -= 1
+            if missing[successor] == 0:
+                order.append(successor)
+    return order
+
+
+def _balance_labels(
+    vertices: Sequence[Vertex],
+    predecessors: Sequence[Sequence[int]],
+    successors: Sequence[Sequence[int]],
+    layers: list[int],
+) -> None:
+    """Move labels of long links to the layers that are least filled, with labels rather than with nodes."""
+    filled: dict[int, float] = {}
+    with_nodes: set[int] = set()
+    for vertex, layer in zip(vertices, layers, strict=True):
+        filled[layer] = filled.get(layer, 0) + vertex.size.width
+        if vertex.kind is VertexKind.NODE:
+            with_nodes.add(layer)
+    for index, vertex in enumerate(vertices):
+        if vertex.kind is not VertexKind.LABEL:
+            continue
+        first, last = layers[predecessors[index][0]] + 1, layers[successors[index][0]] - 1
+        if first >= last:
+            continue
+        middle = (first + last) / 2
+        filled[layers[index]] -= vertex.size.width
+        layers[index] = min(
+            range(first, last + 1),
+            key=lambda layer: (layer in with_nodes, filled.get(layer, 0), abs(layer - middle), layer),
+        )
+        filled[layers[index]] = filled.get(layers[index], 0) + vertex.size.width

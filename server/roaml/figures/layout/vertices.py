@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The vertices of a layered graph: nodes, labels, and the points where a line passes a layer."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from roaml.figures.geometry import Extent
+
+
+class VertexKind(enum.Enum):
+    NODE = "node"
+    LABEL = "label"
+    PASSING = "passing"
+
+
+@dataclass(frozen=True, slots=True)
+class Vertex:
+    """`size.width` is its extent within the layer, `size.height` across."""
+
+    kind: VertexKind
+    size: Extent
+
+
+NODE_DISTANCE = 28.0
+LABEL_DISTANCE = 18.0
+LINE_DISTANCE = 14.0
+"""Distances of neighbours in a layer: of two nodes, of a label to others, of two lines."""
+
+
+def distance(left: Vertex, right: Vertex) -> float:
+    """The distance of the borders of two neighbours in a layer."""
+    kinds = {left.kind, right.kind}
+    if kinds == {VertexKind.PASSING}:
+        return LINE_DISTANCE
+    return NODE_DISTANCE if kinds == {VertexKind.NODE} else LABEL_DISTANCE

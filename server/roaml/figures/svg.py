@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drawings as SVG: for a view with its own style sheet, or as a file that contains it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from html import escape
+
+from roaml.exhaustive import assert_never
+from roaml.figures.drawing import Drawing, Glyph, Group, Outline, Polyline, Shape, TextItem
+from roaml.figures.geometry import Box, Point
+from roaml.figures.themes import THEMES, style_sheet
+
+MARGIN = 16.0
+_CORNER = 6.0
+_HEAD = (9.0, 4.5)
+"""The length and half the width of an arrow head."""
+
+
+def svg_file(drawing: Drawing, title: str, theme: str = "light") -> str:
+    """The text of a file."""
+    width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
+    area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(-MARGIN)} {_n(-MARGIN)} {_n(width)} {_n(height)}" '
+        f'width="{_n(width)}" height="{_n(height)}" role="img">\n'
+        f"<title>{escape(title)}</title>\n"
+        f"<style>\n{style_sheet(theme)}</style>\n"
+        f'<rect {area} fill="{THEMES[theme]["background"]}"/>\n'
+        f"{svg_scene(drawing)}</svg>\n"
+    )
+
+
+def svg_scene(drawing: Drawing) -> str:
+    """The group with everything that is drawn; groups of nodes and edges have their indexes as data."""
+    return f'<g class="scene">\n{"".join(map(_group, drawing.groups))}</g>\n'
+
+
+def _group(group: Group) -> str:
+    classes = [group.role, f"tone-{group.tone.value}", *(f"is-{kind}" for kind in group.kind.split())]
+    data = f' data-node="{group.node}"' if group.node is not None else ""
+    data += f' data-edges="{" ".join(map(str, group.edges))}"' if group.edges else ""
+    hint = f"<title>{escape(group.hint)}</title>" if group.hint else ""
+    items = "".join(_group(item) if isinstance(item, Group) else "".join(_item(item)) for item in group.items)
+    return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
+
+
+def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
+    match item:
+        case Shape():
+            yield from _shape(item)
+        case TextItem():
+            role = f"{item.role} strong" if item.bold else item.role
+            place = f'x="{_n(item.x)}" y="{_n(item.y)}" font-size="{_n(item.size)}"'
+            yield f'<text class="{role}" {place}>{escape(item.text, quote=False)}</text>'
+        case Polyline():
+            yield f'<path class="{item.role}" d="{path(_shortened(item))}"/>'
+            if item.has_arrow:
+                yield f'<polygon class="head" points="{_points(_head(item.points))}"/>'
+        case Glyph():
+            x, y, width, height = item.box
+            for stroke in item.strokes:
+                placed = [Point(x + width * point.x, y + height * point.y) for point in stroke]
+                yield f'<polyline class="glyph" points="{_points(placed)}"/>'
+        case _:
+            assert_never(item)
+
+
+def _shape(shape: Shape) -> Iterator[str]:
+    match shape.outline:
+        case Outline.RECTANGLE:
+            yield _rectangle(shape.box, 2, shape.role)
+        case Outline.ROUNDED:
+            yield _rectangle(shape.box, min(7, shape.box.height / 2), shape.role)
+        case Outline.PILL:
+            yield _rectangle(shape.box, min(shape.box.width, shape.box.height) / 2, shape.role)
+        case Outline.DOUBLE:
+            yield _rectangle(shape.box, 3, shape.role)
+            yield _rectangle(shape.box.grown(-3), 2, f"{shape.role} inner")
+        case Outline.HEXAGON:
+            yield _cut(shape, min(8, shape.box.height / 2), shape.box.height / 2)
+        case Outline.CUT:
+            yield _cut(shape, 7, 7)
+        case _:
+            assert_never(shape.outline)
+
+
+def _cut(shape: Shape, dx: float, dy: float) -> str:
+    """A rectangle whose corners are cut off."""
+    x, y, right, bottom = shape.box.x, shape.box.y, shape.box.right, shape.box.bottom
+    corners = (
+        ((x + dx, y), (right - dx, y), (right, y + dy), (right, bottom - dy)),
+        ((right - dx, bottom), (x + dx, bottom), (x, bottom - dy), (x, y + dy)),
+    )
+    points = [Point(*corner) for side in corners for corner in side]
+    return f'<polygon class="{shape.role}" points="{_points(points)}"/>'
+
+
+def _rectangle(box: Box, radius: float, role: str) -> str:
+    place = f'x="{_n(box.x)}" y="{_n(box.y)}" width="{_n(box.width)}" height="{_n(box.height)}"'
+    return f'<rect class="{role}" {place} rx="{_n(radius)}"/>'
+
+
+def path(points: Sequence[Point], radius: float = _CORNER) -> str:
+    """A polyline with round corners, as the `d` of a path."""
+    parts = [f"M {_n(points[0].x)} {_n(points[0].y)}"]
+    for before, corner, after in zip(points, points[1:], points[2:], strict=False):
+        bend = min(radius, math.dist(before, corner) / 2, math.dist(corner, after) / 2)
+        start, end = _towards(corner, before, bend), _towards(corner, after, bend)
+        parts.append(f"L {_n(start.x)} {_n(start.y)} Q {_n(corner.x)} {_n(corner.y)} {_n(end.x)} {_n(end.y)}")
+    parts.append(f"L {_n(points[-1].x)} {_n(points[-1].y)}")
+    return " ".join(parts)
+
+
+def _shortened(line: Polyline) -> tuple[Point, ...]:
+    """The line up to the middle of its arrow head, so that it does not blunt the tip."""
+    if not line.has_arrow:
+        return line.points
+    *rest, before, tip = line.points
+    return (*rest, before, _towards(tip, before, min(_HEAD[0] / 2, math.dist(tip, before))))
+
+
+def _head(points: Sequence[Point]) -> tuple[Point, Point, Point]:
+    before, tip = points[-2:]
+    length, half = _HEAD
+    base = _towards(tip, before, length)
+    whole = math.dist(before, tip) or 1
+    dx, dy = (tip.x - before.x) / whole * half, (tip.y - before.y) / whole * half
+    return tip, Point(base.x - dy, base.y + dx), Point(base.x + dy, base.y - dx)
+
+
+def _towards(start: Point, end: Point, length: float) -> Point:
+    whole = math.dist(start, end) or 1
+    return Point(start.x + (end.x - start.x) * length / whole, start.y + (end.y - start.y) * length / whole)
+
+
+def _points(points: Sequence[Point]) -> str:
+    return " ".join(f"{_n(point.x)},{_n(point.y)}" for point in points)
+
+
+def _n(number: float) -> str:
+    """A number with at most one decimal."""
+    return f"{round(number, 1):g}" if abs(number) < 1e5 else f"{number:.0f}"

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The style sheet of pictures in files: `figure.css` with the colors of a theme.
+
+Many programs that show SVG do not read variables of CSS, therefore files contain the colors themselves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+_FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
+
+THEMES: Mapping[str, Mapping[str, str]] = {
+    "light": {
+        "background": "#ffffff",
+        "text": "#1f2328",
+        "muted": "#57606a",
+        "card": "#f6f8fa",
+        "border": "#c4cbd3",
+        "on-tone": "#ffffff",
+        "green": "#1a7f37",
+        "blue": "#0969da",
+        "purple": "#8250df",
+        "orange": "#bc4c00",
+        "yellow": "#8a6100",
+    },
+    "dark": {
+        "background": "#1f1f1f",
+        "text": "#e6e6e6",
+        "muted": "#a5a5a5",
+        "card": "#2a2a2b",
+        "border": "#55585d",
+        "on-tone": "#1f1f1f",
+        "green": "#89d185",
+        "blue": "#6cb6ff",
+        "purple": "#c8a2ff",
+        "orange": "#f0a45d",
+        "yellow": "#e5c454",
+    },
+    "high-contrast": {
+        "background": "#000000",
+        "text": "#ffffff",
+        "muted": "#ffffff",
+        "card": "#000000",
+        "border": "#ffffff",
+        "on-tone": "#000000",
+        "green": "#89d185",
+        "blue": "#6fc3df",
+        "purple": "#d7afff",
+        "orange": "#ffb266",
+        "yellow": "#ffe066",
+    },
+    "high-contrast-light": {
+        "background": "#ffffff",
+        "text": "#000000",
+        "muted": "#292929",
+        "card": "#ffffff",
+        "border": "#0f4a85",
+        "on-tone": "#ffffff",
+        "green": "#0b5c1e",
+        "blue": "#0f4a85",
+        "purple": "#5b2a9d",
+        "orange": "#8a3500",
+        "yellow": "#5f4300",
+    },
+}
+"""The colors of each theme by the names of the variables `--figure-NAME`."""
+
+
+@cache
+def style_sheet(theme: str) -> str:
+    """The rules for a file, with the colors of a theme: for each rule that uses a tone, one for every tone."""
+    css = (Path(__file__).parent / "figure.css").read_text(encoding="utf-8")
+    css = re.sub(r"/\*.*?\*/", "", css, flags=re.DOTALL)
+    values = {f"--figure-{name}": color for name, color in THEMES[theme].items()} | {"--figure-font": _FONT}
+    css = re.sub(r"var\((--figure-[\w-]+)\)", lambda match: values[match[1]], css)
+    rules = re.findall(r"([^{}]+)\{([^{}]*)\}", css)
+    tones = {
+        selector.strip(): body.split(":", 1)[1].strip(" ;")
+        for selectors, body in rules
+        if "--tone:" in body
+        for selector in selectors.split(",")
+    }
+    return "".join(_written(selectors, body, tones) for selectors, body in rules if "--tone:" not in body)
+
+
+def _written(selectors: str, body: str, tones: Mapping[str, str]) -> str:
+    selectors, body = " ".join(selectors.split()), " ".join(body.split())
+    if "var(--tone)" not in body:
+        return f"{selectors} {{ {body} }}\n"
+    rest = "; ".join(part.strip() for part in body.split(";") if part.strip() and "var(--tone)" not in part)
+    toned = [part.strip() for part in body.split(";") if "var(--tone)" in part]
+    general = f"{selectors} {{ {rest} }}\n" if rest else ""
+    return general + "".join(
+        f"{', '.join(_within(tone, s.strip()) for s in selectors.split(','))} "
+        f"{{ {'; '.join(part.replace('var(--tone)', color) for part in toned)} }}\n"
+        for tone, color in tones.items()
+    )
+
+
+def _within(tone: str, selector: str) -> str:
+    """The selector for parts of a group of a tone."""
+    scene, _, rest = selector.partition(" ")
+    group, arrow, part = rest.partition(" > ")
+    return f"{scene} {group}{tone} > {part}" if arrow else f"{scene} {tone} > {group}"

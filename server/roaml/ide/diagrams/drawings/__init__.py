@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drawings of diagrams: where each part is, and how it looks.
+
+The same drawings are shown by the editor and written by the command line. A drawing has one of two directions, so that
+it fits a wide place as well as a tall one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from roaml.figures.drawing import Drawing
+from roaml.figures.layout import LayoutDirection
+from roaml.ide.diagrams.diagram import DiagramKind, Picture
+from roaml.ide.diagrams.drawings.machine import draw_machine
+from roaml.ide.diagrams.drawings.ros import draw_ros
+from roaml.ide.diagrams.drawings.tree import draw_tree
+
+_PAINTERS: Mapping[DiagramKind, Callable[[Picture, LayoutDirection], Drawing]] = {
+    DiagramKind.MACHINE: draw_machine,
+    DiagramKind.TREE: draw_tree,
+    DiagramKind.ROS: draw_ros,
+}
+
+PAGE = (1200.0, 900.0)
+"""The width and height of the place for a drawing in a document."""
+
+
+def draw(kind: DiagramKind, picture: Picture, direction: LayoutDirection) -> Drawing:
+    """The drawing of a diagram in a direction."""
+    return _PAINTERS[kind](picture, direction)
+
+
+def draw_for(kind: DiagramKind, picture: Picture, width: float, height: float) -> Drawing:
+    """The drawing in the direction in which it is larger in a place of this size; at equal sizes, the smaller area."""
+    drawings = [draw(kind, picture, direction) for direction in LayoutDirection]
+    return max(drawings, key=lambda drawing: (scale(drawing, width, height), -drawing.size.width * drawing.size.height))
+
+
+def scale(drawing: Drawing, width: float, height: float) -> float:
+    """The factor by which a drawing is reduced to fit; 1 if it fits."""
+    return min(1.0, width / max(1.0, drawing.size.width), height / max(1.0, drawing.size.height))

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Groups moved to another place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from roaml.exhaustive import assert_never
+from roaml.figures.drawing import Glyph, Group, Item, Polyline, Shape, TextItem
+from roaml.figures.geometry import Point
+
+
+def moved(group: Group, dx: float, dy: float) -> Group:
+    return replace(group, items=tuple(_moved(item, dx, dy) for item in group.items))
+
+
+def _moved(item: Item, dx: float, dy: float) -> Item:
+    match item:
+        case Group():
+            return moved(item, dx, dy)
+        case Shape() | Glyph():
+            return replace(item, box=item.box.moved(dx, dy))
+        case Polyline():
+            return replace(item, points=tuple(Point(x + dx, y + dy) for x, y in item.points))
+        case TextItem():
+            return replace(item, x=item.x + dx, y=item.y + dy)
+        case _:
+            return assert_never(item)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cards: blocks of text below each other, their size, and their items at a place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from roaml.figures.drawing import Group, Item, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
+
+PADDING = 10.0
+_ROW_DISTANCE = 5.0
+_BAR_WIDTH, _BAR_DISTANCE = 3.0, 7.0
+_INDENT = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class TextLine:
+    """A line of a block; `indent` in pixels."""
+
+    text: str
+    size: float = SMALL
+    role: str = "text"
+    bold: bool = False
+    indent: float = 0.0
+
+    @property
+    def width(self) -> float:
+        return self.indent + text_width(self.text, self.size, bold=self.bold)
+
+    @property
+    def height(self) -> float:
+        return self.size * LINE_HEIGHT
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A block of lines that represents edges, or belongs to the card itself if there are none.
+
+    Attributes:
+        has_bar: whether a bar in its tone is left of the lines.
+        is_joined: whether it continues the row above.
+        hint: the whole text, if the lines show less.
+    """
+
+    lines: tuple[TextLine, ...]
+    tone: Tone = Tone.PLAIN
+    kind: str = ""
+    edges: tuple[int, ...] = ()
+    has_bar: bool = False
+    is_joined: bool = False
+    hint: str = ""
+
+    @property
+    def size(self) -> Extent:
+        bar = _BAR_WIDTH + _BAR_DISTANCE if self.has_bar else 0.0
+        width = max((line.width for line in self.lines), default=0.0)
+        return Extent(width + bar, sum(line.height for line in self.lines))
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """Rows below each other; `ruled`: whether a line separates the first row from the others. `side` is the width that
+    is free on the left of the first row, for a badge."""
+
+    rows: tuple[Row, ...]
+    ruled: bool = False
+    side: float = 0.0
+    padding: float = PADDING
+
+    @property
+    def size(self) -> Extent:
+        widths = [row.size.width + (self.side if index == 0 else 0) for index, row in enumerate(self.rows)]
+        height = sum(self._heights())
+        return Extent(
+            round(max(widths, default=0.0) + 2 * self.padding + 0.5), round(height + 2 * 0.7 * self.padding + 0.5)
+        )
+
+    def _heights(self) -> Iterator[float]:
+        for index, row in enumerate(self.rows):
+            yield (self._gap(index) if index else 0.0) + row.size.height
+
+    def _gap(self, index: int) -> float:
+        if self.ruled and index == 1:
+            return 2 * _ROW_DISTANCE
+        return 0.0 if self.rows[index].is_joined else _ROW_DISTANCE
+
+    def items(self, box: Box) -> tuple[Item, ...]:
+        """The rows in a box of at least the size of the card."""
+        items: list[Item] = []
+        y = box.y + (box.height - sum(self._heights())) / 2
+        for index, row in enumerate(self.rows):
+            if index:
+                gap = self._gap(index)
+                if self.ruled and index == 1:
+                    rule = (Point(box.x, y + gap / 2), Point(box.right, y + gap / 2))
+                    items.append(Polyline(rule, role="rule"))
+                y += gap
+            x = box.x + self.padding + (self.side if index == 0 else 0)
+            drawn = _row(row, x, y)
+            if row.edges:
+                items.append(Group("edge", row.tone, drawn, row.kind, edges=row.edges, hint=row.hint))
+            else:
+                items += drawn
+            y += row.size.height
+        return tuple(items)
+
+
+def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
+    items: list[Item] = []
+    if row.has_bar:
+        items.append(Shape(Box(x, y + 1, _BAR_WIDTH, row.size.height - 2), Outline.PILL, "bar"))
+        x += _BAR_WIDTH + _BAR_DISTANCE
+    for line in row.lines:
+        y += line.height
+        base = y - (line.height - 0.72 * line.size) / 2
+        items.append(TextItem(line.text, x + line.indent, base, line.size, line.role, line.bold))
+    return tuple(items)
+
+
+def title(text: str, width: float) -> tuple[TextLine, ...]:
+    """The lines of a title."""
+    return tuple(TextLine(line, MEDIUM, "title", bold=True) for line in wrap(text, MEDIUM, width, bold=True, limit=3))
+
+
+def paragraph(
+    text: str, width: float, role: str = "text", *, limit: int = 0, bold: bool = False
+) -> tuple[TextLine, ...]:
+    """A text in small letters; further lines are indented."""
+    if not text:
+        return ()
+    lines = wrap(text, SMALL, width - _INDENT, bold=bold, limit=limit)
+    return tuple(TextLine(line, SMALL, role, bold, _INDENT if index else 0.0) for index, line in enumerate(lines))
+
+
+def is_shortened(lines: Sequence[TextLine], *texts: str) -> bool:
+    """Whether lines show less than the texts."""
+    return sum(len("".join(line.text.split())) for line in lines) < sum(len("".join(text.split())) for text in texts)

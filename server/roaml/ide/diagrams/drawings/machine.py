@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drawing of a state machine.
+
+- A state is a card with its entry and exit actions. Transitions from a state to itself are rows of its card.
+- All transitions from one state to another are rows of one label on one line.
+- A choice is a small junction; one whose targets are all its own state is a row of the card.
+- Each action thread is a frame around its own drawing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
+from roaml.figures.geometry import Box, Extent
+from roaml.figures.layout import LayoutDirection, Link, layered
+from roaml.figures.layout.packing import shelves
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.drawings.assembly import moved
+from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
+
+CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
+"""The widths of lines of text."""
+LABEL_PADDING = 7.0
+MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
+_JUNCTION, _DOT = 14.0, 10.0
+_START = "start"
+_FRAME_MARGIN = 18.0
+_ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
+_TONES: Mapping[EdgeKind, Tone] = {
+    EdgeKind.EVENT: Tone.EVENT,
+    EdgeKind.ROS: Tone.ROS,
+    EdgeKind.BT: Tone.TREE,
+}
+
+
+def draw_machine(picture: Picture, direction: LayoutDirection) -> Drawing:
+    frames = [index for index, node in enumerate(picture.nodes) if node.kind is DiagramNodeKind.THREAD]
+    charts = [_Chart(picture, "").drawing(direction)]
+    charts += [_framed(picture, frame, direction) for frame in frames]
+    places, size = shelves([chart.size for chart in charts], _ASPECT[direction])
+    groups: list[Group] = []
+    nodes: dict[int, Box] = {}
+    for chart, (dx, dy) in zip(charts, places, strict=True):
+        groups += [moved(group, dx, dy) for group in chart.groups]
+        nodes |= {index: box.moved(dx, dy) for index, box in chart.nodes.items()}
+    return Drawing(size, tuple(groups), nodes)
+
+
+def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing:
+    """The chart of an action thread in its frame."""
+    node = picture.nodes[index]
+    chart = _Chart(picture, node.id).drawing(direction)
+    heading = Card((Row((*title(" ".join((node.label, *(f"({d})" for d in node.details))), 400.0),)),))
+    top = heading.size.height
+    size = Extent(
+        max(chart.size.width + 2 * _FRAME_MARGIN, heading.size.width), chart.size.height + top + _FRAME_MARGIN
+    )
+    box = Box(0, 0, *size)
+    items = (Shape(box, Outline.ROUNDED, "frame"), *heading.items(Box(0, 0, size.width, top)))
+    frame = Group("node", Tone.PLAIN, items, "thread", node=index)
+    inner = [moved(group, _FRAME_MARGIN, top) for group in chart.groups]
+    nodes = {number: place.moved(_FRAME_MARGIN, top) for number, place in chart.nodes.items()}
+    return Drawing(size, (frame, *inner), {index: box, **nodes})
+
+
+class _Chart:
+    """The states of the machine itself, or those of one thread."""
+
+    def __init__(self, picture: Picture, frame: str) -> None:
+        self._picture = picture
+        self._index = {
+            node.id: index
+            for index, node in enumerate(picture.nodes)
+            if node.parent == frame and node.kind is not DiagramNodeKind.THREAD
+        }
+        self._edges = [(i, edge) for i, edge in enumerate(picture.edges) if edge.source in self._index]
+        self._inlined = self._inlined_choices()
+        self._cards = {
+            name: Card((Row(title(picture.nodes[index].label, CARD_WIDTH)), *self._rows(name)), ruled=True)
+            for name, index in self._index.items()
+            if picture.nodes[index].kind is DiagramNodeKind.STATE
+        }
+
+    def _inlined_choices(self) -> frozenset[str]:
+        """The choices that always return to the state from which they come."""
+        origin = {edge.target: edge.source for _, edge in self._edges if not edge.probabilistic}
+        choices = {
+            name for name, index in self._index.items() if self._picture.nodes[index].kind is DiagramNodeKind.CHOICE
+        }
+        leaving = {edge.source for _, edge in self._edges if edge.probabilistic and edge.target != origin[edge.source]}
+        return frozenset(choices - leaving)
+
+    def _rows(self, state: str) -> Iterator[Row]:
+        """The rows below the title of a state."""
+        for text in self._picture.nodes[self._index[state]].details:
+            lines = paragraph(text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
+            yield Row(lines, hint=text if is_shortened(lines, text) else "")
+        returns = bool(self._picture.nodes[self._index[state]].details)
+        for index, edge in self._edges:
+            if edge.source == state and edge.target == state:
+                yield _row(index, edge, CARD_WIDTH, "↻ " if returns and not edge.internal else "")
+            elif edge.source == state and edge.target in self._inlined:
+                yield _row(index, edge, CARD_WIDTH)
+                for number, outcome in self._edges:
+                    if outcome.source == edge.target:
+                        yield _row(number, outcome, CARD_WIDTH, joined=True)
+
+    def drawing(self, direction: LayoutDirection) -> Drawing:
+        sizes: dict[str, Extent] = {}
+        links: list[Link] = []
+        initial = next((name for name in self._cards if self._picture.nodes[self._index[name]].initial), None)
+        if initial is not None:
+            sizes[_START] = Extent(_DOT, _DOT)
+            sizes[initial] = self._cards[initial].size
+            links.append(Link(_START, initial))
+        for name in self._index:
+            if name in self._cards:
+                sizes[name] = self._cards[name].size
+            elif name not in self._inlined:
+                sizes[name] = Extent(_JUNCTION, _JUNCTION)
+        bundles = [bundle for bundle in self._bundles() if bundle[0] in sizes and bundle[1] in sizes]
+        labels = [_label(edges) for _, _, edges in bundles]
+        links += [
+            Link(source, target, label.size if label.rows else None)
+            for (source, target, _), label in zip(bundles, labels, strict=True)
+        ]
+        layout = layered(sizes, links, direction, _ASPECT[direction])
+        groups: list[Group] = []
+        routes = layout.routes
+        if initial is not None:
+            line = Polyline(routes[0].parts[0], has_arrow=True)
+            dot = Shape(layout.nodes[_START], Outline.PILL, "dot")
+            groups.append(Group("start", Tone.PLAIN, (line, dot)))
+            routes = routes[1:]
+        for (_, _, edges), route in zip(bundles, routes, strict=True):
+            lines = tuple(
+                Polyline(part, has_arrow=number == len(route.parts) - 1) for number, part in enumerate(route.parts)
+            )
+            groups.append(Group("link", _tone(edges), lines, _kinds(edges), edges=tuple(i for i, _ in edges)))
+        for (_, _, edges), label, route in zip(bundles, labels, routes, strict=True):
+            if route.label:
+                shape = Shape(route.label, Outline.ROUNDED, "label-card")
+                groups.append(Group("label", _tone(edges), (shape, *label.items(route.label))))
+        nodes = {self._index[name]: box for name, box in layout.nodes.items() if name in self._index}
+        groups += [self._node(index, nodes[index]) for index in sorted(nodes)]
+        return Drawing(layout.size, tuple(groups), nodes)
+
+    def _bundles(self) -> list[tuple[str, str, list[tuple[int, DiagramEdge]]]]:
+        """The edges that are drawn as lines, grouped by their ends, in the order of the first of each."""
+        bundles: dict[tuple[str, str], list[tuple[int, DiagramEdge]]] = {}
+        for index, edge in self._edges:
+            if edge.source != edge.target:
+                bundles.setdefault((edge.source, edge.target), []).append((index, edge))
+        return [(source, target, edges) for (source, target), edges in bundles.items()]
+
+    def _node(self, index: int, box: Box) -> Group:
+        node = self._picture.nodes[index]
+        if node.kind is DiagramNodeKind.CHOICE:
+            return Group("node", Tone.CHANCE, (Shape(box, Outline.PILL, "junction"),), "choice", node=index)
+        items: tuple[Item, ...] = (Shape(box, Outline.ROUNDED, "card"), *self._cards[node.id].items(box))
+        return Group("node", Tone.PLAIN, items, "state initial" if node.initial else "state", node=index)
+
+
+def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined: bool = False) -> Row:
+    """A transition: its trigger, its condition and its actions."""
+    lines: list[TextLine] = []
+    heads, guards = _split(edge)
+    if heads:
+        lines += paragraph(mark + heads, width, bold=True, limit=MAX_ACTION_LINES)
+    for text in guards:
+        lines += paragraph(("" if heads or lines else mark) + text, width, limit=MAX_GUARD_LINES)
+    for number, action in enumerate(edge.actions[:MAX_ACTIONS]):
+        dots = " …" if number == MAX_ACTIONS - 1 < len(edge.actions) - 1 else ""
+        lines += paragraph(f"/ {action}{dots}", width, "muted", limit=MAX_ACTION_LINES)
+    if not lines:
+        lines = [TextLine(f"{mark}without event")]
+    texts = (*edge.labels, *(f"/ {action}" for action in edge.actions))
+    tone = Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN)
+    hint = "\n".join(texts) if is_shortened(lines, *texts) else ""
+    return Row(tuple(lines), tone, _kinds([(index, edge)]), (index,), has_bar=True, is_joined=joined, hint=hint)
+
+
+def _label(edges: Sequence[tuple[int, DiagramEdge]]) -> Card:
+    """The label of a line; it has no rows if there is nothing to say."""
+    told = [(index, edge) for index, edge in edges if edge.labels or edge.actions]
+    return Card(tuple(_row(index, edge, LABEL_WIDTH) for index, edge in told), padding=LABEL_PADDING)
+
+
+def _split(edge: DiagramEdge) -> tuple[str, list[str]]:
+    """What is written bold, and the conditions."""
+    guards = [text for text in edge.labels if text.startswith("[")]
+    return " ".join(text for text in edge.labels if text not in guards), guards
+
+
+def _tone(edges: Sequence[tuple[int, DiagramEdge]]) -> Tone:
+    """The tone of a line: that of its transitions if they are of one kind."""
+    tones = {Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN) for _, edge in edges}
+    return tones.pop() if len(tones) == 1 else Tone.PLAIN
+
+
+def _kinds(edges: Sequence[tuple[int, DiagramEdge]]) -> str:
+    """The kinds of edges, for the style sheet; "" if there are several."""
+    kinds = {f"{edge.kind.value} chance" if edge.probabilistic else edge.kind.value for _, edge in edges}
+    return kinds.pop() if len(kinds) == 1 else ""

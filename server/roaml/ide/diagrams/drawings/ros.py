@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drawing of a ROS graph: nodes and plugins, the interfaces between them, and plain events.
+
+The color of a line is that of what it carries: messages of a topic, a service, an action, or plain events. Its arrow
+leads to the receiver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, Tone
+from roaml.figures.geometry import Box
+from roaml.figures.layout import LayoutDirection, Link, layered
+from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
+
+CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
+"""The widths of lines of text; they are small where nodes are side by side."""
+LABEL_WIDTH = 150.0
+_ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
+_CHANNELS: Mapping[DiagramNodeKind, Tone] = {
+    DiagramNodeKind.TOPIC: Tone.TOPIC,
+    DiagramNodeKind.SERVICE: Tone.SERVICE,
+    DiagramNodeKind.ACTION_INTERFACE: Tone.ROS_ACTION,
+}
+_OUTLINES: Mapping[DiagramNodeKind, Outline] = {
+    DiagramNodeKind.TOPIC: Outline.RECTANGLE,
+    DiagramNodeKind.SERVICE: Outline.DOUBLE,
+    DiagramNodeKind.ACTION_INTERFACE: Outline.CUT,
+}
+_WORDS: Mapping[DiagramNodeKind, str] = {
+    DiagramNodeKind.PLUGIN: "plugin",
+    DiagramNodeKind.TOPIC: "topic",
+    DiagramNodeKind.SERVICE: "service",
+    DiagramNodeKind.ACTION_INTERFACE: "action",
+}
+
+
+def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
+    index = {node.id: number for number, node in enumerate(picture.nodes)}
+    cards = {node.id: _card(node, CARD_WIDTH[direction]) for node in picture.nodes}
+    shown = [(number, edge) for number, edge in enumerate(picture.edges) if edge.source != edge.target]
+    labels = [_label(number, edge) for number, edge in shown]
+    links = [
+        Link(edge.source, edge.target, label.size if label else None)
+        for (_, edge), label in zip(shown, labels, strict=True)
+    ]
+    layout = layered({name: card.size for name, card in cards.items()}, links, direction, _ASPECT[direction])
+    groups: list[Group] = []
+    for (number, edge), label, route in zip(shown, labels, layout.routes, strict=True):
+        tone = _tone(edge, picture.nodes[index[edge.source]], picture.nodes[index[edge.target]])
+        lines = tuple(Polyline(part, has_arrow=part is route.parts[-1]) for part in route.parts)
+        groups.append(Group("edge", tone, lines, edge.kind.value, edges=(number,)))
+        if label and route.label:
+            shape = Shape(route.label, Outline.ROUNDED, "label-card")
+            groups.append(Group("label", tone, (shape, *label.items(route.label))))
+    groups += [_node(node, number, cards[node.id], layout.nodes[node.id]) for number, node in enumerate(picture.nodes)]
+    return Drawing(layout.size, tuple(groups), {index[name]: box for name, box in layout.nodes.items()})
+
+
+def _card(node: DiagramNode, width: float) -> Card:
+    word = _WORDS.get(node.kind, "node")
+    rows = [Row(title(node.label, width))]
+    rows += [Row(paragraph(text, width, "muted"), is_joined=True) for text in (node.details or (word,))]
+    return Card(tuple(rows), padding=14.0 if node.kind in _CHANNELS else 12.0)
+
+
+def _label(number: int, edge: DiagramEdge) -> Card | None:
+    """The names of plain events; other edges have no label."""
+    if not edge.labels:
+        return None
+    lines = tuple(line for text in edge.labels for line in paragraph(text, LABEL_WIDTH, bold=True))
+    return Card((Row(lines, Tone.EVENT, edge.kind.value, (number,), has_bar=True),), padding=7.0)
+
+
+def _tone(edge: DiagramEdge, source: DiagramNode, target: DiagramNode) -> Tone:
+    if edge.kind is EdgeKind.SENDS:
+        return Tone.EVENT
+    return _CHANNELS.get(source.kind) or _CHANNELS.get(target.kind) or Tone.PLAIN
+
+
+def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
+    shape = Shape(box, _OUTLINES.get(node.kind, Outline.ROUNDED), "card")
+    tone = _CHANNELS.get(node.kind, Tone.PLAIN)
+    return Group("node", tone, (shape, *card.items(box)), node.kind.value, node=index)

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drawing of a behavior tree.
+
+A node is a card with the symbol and the color of its kind, its name, its plugin, its number and its ports. Ports that
+are bound to the blackboard are rows of the card; the entries of the blackboard are listed below the tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
+from roaml.figures.geometry import Box, Extent
+from roaml.figures.layout import LayoutDirection, tidy_tree
+from roaml.figures.layout.packing import shelves
+from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
+from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
+
+TITLE_WIDTH, PORT_WIDTH = 190.0, 210.0
+MAX_PORT_LINES = 3
+_TONES: Mapping[DiagramNodeKind, Tone] = {
+    DiagramNodeKind.CONTROL: Tone.CONTROL,
+    DiagramNodeKind.DECORATOR: Tone.DECORATOR,
+    DiagramNodeKind.ACTION: Tone.ACTION,
+    DiagramNodeKind.CONDITION: Tone.CONDITION,
+    DiagramNodeKind.SUBTREE: Tone.SUBTREE,
+    DiagramNodeKind.VARIABLE: Tone.BLACKBOARD,
+}
+_OUTLINES: Mapping[DiagramNodeKind, Outline] = {
+    DiagramNodeKind.CONTROL: Outline.RECTANGLE,
+    DiagramNodeKind.DECORATOR: Outline.HEXAGON,
+    DiagramNodeKind.CONDITION: Outline.PILL,
+    DiagramNodeKind.SUBTREE: Outline.DOUBLE,
+}
+_BLACKBOARD_DISTANCE = 44.0
+_BADGE_DISTANCE = 7.0
+
+
+def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
+    index = {node.id: number for number, node in enumerate(picture.nodes)}
+    cards = {node.id: _card(picture, node) for node in picture.nodes}
+    children: dict[str, list[str]] = {}
+    numbers: dict[tuple[str, str], int] = {}
+    for number, edge in enumerate(picture.edges):
+        if edge.kind is EdgeKind.CHILD:
+            children.setdefault(edge.source, []).append(edge.target)
+            numbers[edge.source, edge.target] = number
+    variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
+    sizes = {name: _size(cards[name], picture.nodes[index[name]].kind) for name in cards}
+    tree = tidy_tree({name: sizes[name] for name in sizes if name not in variables}, children, direction)
+    boxes, size = _with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
+    pairs = ((parent, child) for parent, group in children.items() for child in group)
+    groups = [
+        Group("link", Tone.PLAIN, (Polyline(route.parts[0]),), "child", edges=(numbers[pair],))
+        for pair, route in zip(pairs, tree.routes, strict=True)
+    ]
+    groups += [_node(picture.nodes[index[name]], index[name], cards[name], box) for name, box in boxes.items()]
+    return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
+
+
+def _with_blackboard(
+    tree: Mapping[str, Box], size: Extent, variables: Mapping[str, Extent]
+) -> tuple[dict[str, Box], Extent]:
+    """The boxes with those of the entries of the blackboard, in rows below the tree."""
+    boxes = dict(tree)
+    if not variables:
+        return boxes, size
+    area = sum((width + 16) * (height + 16) for width, height in variables.values())
+    width = max(size.width, 240.0)
+    places, shelf = shelves(list(variables.values()), width * width / area, 16.0)
+    top = size.height + _BLACKBOARD_DISTANCE if tree else 0.0
+    for (name, own), (x, y) in zip(variables.items(), places, strict=True):
+        boxes[name] = Box(x, top + y, *own)
+    return boxes, Extent(max(size.width, shelf.width), top + shelf.height)
+
+
+def _size(card: Card, kind: DiagramNodeKind) -> Extent:
+    """The size of a card; shapes with slanted or round ends need more space at the sides."""
+    width, height = card.size
+    outline = _OUTLINES.get(kind, Outline.ROUNDED)
+    extra = {Outline.HEXAGON: 12.0, Outline.PILL: min(height / 2, 24.0), Outline.DOUBLE: 6.0}.get(outline, 0.0)
+    return Extent(width + extra, height)
+
+
+def _card(picture: Picture, node: DiagramNode) -> Card:
+    name, _, plugin = node.label.rpartition(" : ")
+    if node.kind is DiagramNodeKind.VARIABLE:
+        return Card((Row(title(f"{{{node.label}}}", PORT_WIDTH)),))
+    rows = [Row(title(name or plugin, TITLE_WIDTH))]
+    subtitle = " · ".join(filter(None, (plugin if name else "", node.id if node.id.isdigit() else "")))
+    if subtitle:
+        rows.append(Row((TextLine(subtitle, role="muted"),), is_joined=True))
+    rows += _ports(picture, node)
+    return Card(tuple(rows), side=BADGE + _BADGE_DISTANCE)
+
+
+def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
+    """The rows of the ports; those that are bound to the blackboard represent edges."""
+    bound: dict[str, list[int]] = {}
+    for number, edge in enumerate(picture.edges):
+        if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
+            bound.setdefault(edge.labels[0], []).append(number)
+    for text in node.details:
+        edges = tuple(bound.get(text.partition(" = ")[0], ()))
+        lines = paragraph(text, PORT_WIDTH, "text" if edges else "muted", limit=MAX_PORT_LINES)
+        hint = text if is_shortened(lines, text) else ""
+        kind = " ".join(picture.edges[number].kind.value for number in edges)
+        yield Row(lines, Tone.BLACKBOARD, kind, edges, has_bar=bool(edges), hint=hint)
+
+
+def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
+    items: list[Item] = [Shape(box, _OUTLINES.get(node.kind, Outline.ROUNDED), "card")]
+    width = card.size.width
+    inner = Box(box.x + (box.width - width) / 2, box.y, width, box.height)
+    rows = card.items(inner)
+    items += rows
+    first = next((item for item in rows if not isinstance(item, Group)), None)
+    symbol = badge(node, inner.x + card.padding, getattr(first, "y", inner.y) - 13.5)
+    items += symbol or ()
+    kind = f"{node.kind.value} initial" if node.initial else node.kind.value
+    return Group("node", _TONES.get(node.kind, Tone.PLAIN), tuple(items), kind, node=index)

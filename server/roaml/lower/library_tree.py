@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tree of a system whose nodes are executed as by BehaviorTree.CPP (docs/spec/nodes.md#library).
+
+- Nodes of the libraries become programs. Plugins stay machines and take part by the same events.
+- Conditions of plugins and of `<SubTree>` are evaluated by automata of their own. Such an automaton receives the events
+  of the node, `bt_1003_tick`; the node itself then has another address, `bt_1003_inner_tick`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
+from roaml.lower.programs.assembly import NodeProgram, programs
+from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_automaton
+from roaml.lower.programs.board import Board, build_board
+from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
+from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
+from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
+from roaml.model.outline import MachineOutline
+from roaml.model.system import EntryOutline, System, SystemAutomaton
+from roaml.model.tree import TreeFile, TreeNode
+from roaml.roles import Direction, NodeKind
+from roaml.script.names import names_in
+from roaml.scxml.model import Automaton
+from roaml.scxml.names import CONDITIONS_PREFIX
+from roaml.text import Location
+
+STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
+"""The codes with which a machine answers."""
+WORLD = 0.1
+"""The probability that something happens in the world at a tick (docs/spec/mocks.md#world)."""
+
+
+@dataclass(frozen=True, eq=False)
+class LibraryTree:
+    """
+    Attributes:
+        automata: instance -> the automata of its conditions, the outermost first, and of its program; that of a machine
+            is not among them.
+        addresses: instance -> its address in events, if that is not its number.
+        board: the blackboard.
+        refusals: why the tree cannot be translated.
+    """
+
+    automata: Mapping[int, tuple[Automaton, ...]]
+    addresses: Mapping[int, str]
+    board: Board
+    refusals: tuple[TreeRefusal, ...]
+
+    def address(self, number: int) -> str:
+        return self.addresses.get(number, str(number))
+
+
+def library_tree(system: System, files: Mapping[str, TreeFile]) -> LibraryTree:
+    """The tree of a system, translated.
+
+    Args:
+        files: the tree files of the system, by path.
+    """
+    return _Builder(system, files).tree()
+
+
+def entry_outlines(system: System, files: Mapping[str, TreeFile]) -> Mapping[str, EntryOutline]:
+    """The variables of the blackboard of a tree."""
+    return _Builder(system, files).outlines()
+
+
+@dataclass(frozen=True, eq=False)
+class _FrameNames:
+    """The names in one use of a tree. `initial` collects the entries whose values a `<SubTree>` gives as constants."""
+
+    frame: Frame
+    initial: dict[str, str] = field(repr=False)
+
+    def entry(self, name: str) -> str:
+        value = self.frame.resolve(name)
+        if isinstance(value, Reference):
+            return value.variable
+        variable = identifier(f"{self.frame.prefix}{name}")
+        self.initial[variable] = value.text
+        return variable
+
+    def is_initial(self, entry: str) -> bool:
+        """Whether a `<SubTree>` gives the value of an entry as a constant."""
+        return entry in self.initial
+
+
+@dataclass(eq=False)
+class _Part:
+    """One automaton of an instance: its conditions, or the node itself; `program` is `None` for a machine."""
+
+    node: ExecutedNode
+    program: NodeProgram | None
+    address: str
+    name: str
+
+
+class _Builder:
+    def __init__(self, system: System, files: Mapping[str, TreeFile]) -> None:
+        self.system, self.files = system, files
+        self.initial: dict[str, str] = {}
+        self.refusals: list[TreeRefusal] = []
+        self.parts = {instance.number: tuple(self.parts_of(instance)) for instance in system.instances}
+        nodes = [part for parts in self.parts.values() for part in parts]
+        # Each part has a number of its own in the tree of all parts.
+        self.tree_of_parts = ExecutedTree(
+            "", tuple(replace(part.node, number=index) for index, part in enumerate(nodes)), self.initial
+        )
+        used = {index: part.program for index, part in enumerate(nodes)}
+        for node in self.tree_of_parts.nodes:
+            list(node.ports())  # finds the constants of subtrees
+        self.board = build_board(self.tree_of_parts, {}, used, self.machine_types())
+        self.index = {id(part): index for index, part in enumerate(nodes)}
+
+    # ------------------------------------------------------------------- parts
+
+    def parts_of(self, instance: Instance) -> Iterator[_Part]:
+        """The automata of an instance, the outermost first."""
+        automaton = self.system.by_instance.get(instance.number)
+        source = self.source(instance)
+        if automaton is None or source is None:
+            return
+        names = _FrameNames(self.system.tree_uses[instance.use].frame, self.initial)
+        origin = Location(instance.source.path, source.element.name_span)
+        known = _declared(automaton)
+        node = ExecutedNode(instance.number, known.name, instance.name, source, known, names, instance.children, origin)
+        try:
+            program = None if automaton.path else program_of(node)
+        except TreeRefusal as refusal:
+            self.refusals.append(refusal)
+            return
+        conditions = [*self.subtrees_above(instance)]
+        if program is None and instance.scripts:
+            conditions.append(replace(node, type=MACHINE))
+        for level, condition in enumerate(conditions):
+            kind = programs()[MACHINE if condition.type == MACHINE else "SubTree"]
+            name = f"{CONDITIONS_PREFIX}{_address(instance.number, level)}_{condition.name}"
+            yield _Part(condition, kind, _address(instance.number, level), name)
+        yield _Part(node, program, _address(instance.number, len(conditions)), instance.automaton)
+
+    def subtrees_above(self, instance: Instance) -> Iterator[ExecutedNode]:
+        """The `<SubTree>` elements with conditions whose top node is the instance, the outermost first."""
+        parent = None if instance.parent is None else self.system.by_instance.get(instance.parent)
+        around = parent.instance.use if parent is not None and parent.instance is not None else None
+        uses: list[TreeUse] = []
+        index: int | None = instance.use
+        while index != around and index is not None:
+            use = self.system.tree_uses[index]
+            if use.scripts and use.frame.use is not None and use.frame.outer is not None:
+                uses.append(use)
+            index = use.outer
+        for use in reversed(uses):
+            assert use.frame.use is not None
+            assert use.frame.outer is not None
+            file = self.files.get(use.frame.use.path)
+            source = node_at(file, use.frame.use) if file else None
+            if source is not None:
+                origin = Location(use.frame.use.path, source.element.name_span)
+                names = _FrameNames(use.frame.outer, self.initial)
+                yield ExecutedNode(0, "SubTree", use.name, source, None, names, (instance.number,), origin)
+
+    def source(self, instance: Instance) -> TreeNode | None:
+        file = self.files.get(instance.source.path)
+        return node_at(file, instance.source) if file else None
+
+    def machine_types(self) -> dict[str, str]:
+        """The variables to which ports of machines are bound, with the names of their types."""
+        types: dict[str, str] = {}
+        for variable, ports in self.system.blackboard.items():
+            if any(bound.automaton.path for bound in ports):
+                types[variable] = self.system.variable_type(variable)
+        return types
+
+    # ---------------------------------------------------------------- automata
+
+    def outlines(self) -> Mapping[str, EntryOutline]:
+        def outline(name: str, type_: str) -> EntryOutline:
+            ports = self.system.blackboard.get(name, ())
+            read = name in self.board.read or any(bound.port.read for bound in ports)
+            return EntryOutline(type_, read, name in self.board.written)
+
+        flags = {flag.variable: EntryOutline(flag.type_name, True, True) for flag in self.board.flag_of.values()}
+        return {name: outline(name, entry.type_name) for name, entry in self.board.entries.items()} | flags
+
+    def tree(self) -> LibraryTree:
+        automata: dict[int, tuple[Automaton, ...]] = {}
+        children: dict[int, Child] = {}
+        for instance in reversed(self.system.instances):
+            built: list[Automaton] = []
+            child = Child(str(instance.number), STATUSES, False)
+            for part in reversed(self.parts[instance.number]):
+                try:
+                    self.check(part)
+                    if part.program is None:
+                        self.check_machine(instance, part, children)
+                        child = Child(part.address, STATUSES, False)
+                        continue
+                    below = [child] if part.address != self.parts[instance.number][-1].address else None
+                    below = below or [children[number] for number in instance.children]
+                    made = node_automaton(self.code(part, part.program, tuple(below)))
+                    built.append(made.automaton)
+                    child = made.child
+                except NodeTooLargeError:
+                    self.refusals.append(TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states"))
+                except TreeRefusal as refusal:
+                    self.refusals.append(refusal)
+            children[instance.number] = child
+            automata[instance.number] = tuple(reversed(built))
+        addresses = {n: parts[-1].address for n, parts in self.parts.items() if len(parts) > 1}
+        self.refusals = [refusal for refusal in self.refusals if refusal.reason != INVALID_SCRIPT]
+        self.refusals.sort(key=lambda refusal: (refusal.origin.path, refusal.origin.span.start))
+        return LibraryTree(automata, addresses, self.board, tuple(self.refusals))
+
+    @cached_property
+    def constants_of_machines(self) -> frozenset[str]:
+        """The entries that are constants for ports of machines, because a `<SubTree>` gives their values."""
+        machines = [parts[-1] for parts in self.parts.values() if parts and parts[-1].program is None]
+        bound = ((part, entry) for part in machines for _, entry, _, _ in part.node.ports() if entry is not None)
+        return frozenset(entry for part, entry in bound if _names(part).is_initial(entry))
+
+    def check(self, part: _Part) -> None:
+        """A constant that a port of a machine has got cannot change."""
+        for attribute in part.node.node.element.attributes:
+            for name, operator in names_in(attribute.value) if attribute.name in dict(_scripts(part.node.node)) else ():
+                if operator != "read" and part.node.frame.entry(name) in self.constants_of_machines:
+                    raise _constant(name, Location(part.node.origin.path, attribute.value_span))
+        for port, entry, _, span in part.node.ports():
+            declared = part.node.known.port(port) if part.node.known else None
+            writes = declared is not None and declared.direction.writes and part.program is not None
+            if writes and entry is not None and entry in self.constants_of_machines:
+                raise _constant(entry, Location(part.node.origin.path, span))
+
+    def check_machine(self, instance: Instance, part: _Part, children: Mapping[int, Child]) -> None:
+        for number in instance.children:
+            if not children[number].answers <= STATUSES:
+                below = self.system.by_instance[number].instance
+                name = below.name if below else ""
+                reason = f"the plugin `{instance.plugin}` does not know the status SKIPPED, and `{name}` can be skipped"
+                raise TreeRefusal(part.node.origin, reason)
+
+    def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...]) -> NodeCode:
+        node = part.node
+        number = self.index[id(part)]
+        is_condition = node.type in (MACHINE, "SubTree")
+        values = PortValues() if is_condition else port_values(node, program, self.board)
+        if asks_world(program):
+            values.known["event"] = WORLD
+        return NodeCode(
+            part.address,
+            part.name,
+            program,
+            children,
+            values.known,
+            values.bound,
+            compiled_scripts(node, self.board),
+            self.board.flag_of.get(number),
+            (),
+            values.elements,
+            flags_at(node, self.board),
+            Fraction(str(self.system.parameters.tick_rate)),
+            counts=False,
+            origin=node.origin,
+            is_halted_always=True,
+        )
+
+
+def _names(part: _Part) -> _FrameNames:
+    assert isinstance(part.node.frame, _FrameNames)
+    return part.node.frame
+
+
+def _constant(name: str, origin: Location) -> TreeRefusal:
+    reason = f"`{name}` is a constant that a `<SubTree>` gives to the port of a plugin; nothing can assign it"
+    return TreeRefusal(origin, reason)
+
+
+def _address(number: int, level: int) -> str:
+    """The address of a part of an instance: the outermost one has its number."""
+    return str(number) if level == 0 else f"{number}_inner" if level == 1 else f"{number}_inner{level}"
+
+
+def _scripts(node: TreeNode) -> Iterator[tuple[str, str]]:
+    yield from ((attribute.name, attribute.value) for attribute in node.scripts)
+    for port in ("code", "if"):
+        attribute = node.element.get(port)
+        if attribute is not None and node.plugin is not None and node.plugin.value in _SCRIPTED:
+            yield port, attribute.value
+
+
+_SCRIPTED = ("Script", "ScriptCondition", "Precondition")
+
+
+def _declared(automaton: SystemAutomaton) -> Node:
+    """The declaration of a node: that of its library, or of the ports of its machine."""
+    name = automaton.outline.name
+    if automaton.path:
+        return _of_machine(automaton.outline)
+    cpp = library(BEHAVIORTREE_CPP)
+    renamed = cpp.renamed.get(name)
+    current = renamed.now if renamed else name
+    if current in cpp.nodes:
+        return cpp.nodes[current]
+    return next(library(other).nodes[name] for other in LIBRARIES if name in library(other).nodes)
+
+
+def _of_machine(outline: MachineOutline) -> Node:
+    def direction(port: str) -> Direction:
+        known = outline.port(port)
+        return Direction.IN if known is not None and known.direction is Direction.IN else Direction.OUT
+
+    ports = tuple(Port(port.key, direction(port.key), port.type) for port in outline.ports)
+    return Node(outline.name, NodeKind.ACTION, ports, (0, 0))

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Patterns as formulas of past-time logic, for tools that read only these
+(docs/spec/plain-scxml.md#lowered-properties).
+
+The formula is false at the letter at which the pattern is violated. What can be missed only because nothing happens any
+more has no such formula: obligations without a deadline, and those that the end of a stretch ends.
+"""
+
+from __future__ import annotations
+
+from roaml.observers.properties import (
+    CLOSE,
+    LEFT,
+    OPEN,
+    RIGHT,
+    And,
+    Atom,
+    Constant,
+    Formula,
+    Not,
+    Or,
+    Pattern,
+    PatternProperty,
+    ScopeKind,
+    Since,
+    Window,
+    historically,
+    implies,
+    once,
+)
+
+TRUE = Constant(True)
+_FROM_ONE = Window(1)
+
+
+def past_formula(property_: PatternProperty) -> Formula | None:
+    """The formula that is false at the first letter that violates the property; `None` if there is none."""
+    inside = _inside(property_.scope)
+    violation = _violation(property_, inside)
+    if violation is None:
+        return None
+    match property_.scope:
+        case ScopeKind.BEFORE:
+            return implies(Atom(OPEN), Not(once(violation)))
+        case ScopeKind.BETWEEN:
+            return implies(Atom(CLOSE), Not(once(violation)))
+    return Not(violation)
+
+
+def _inside(scope: ScopeKind) -> Formula:
+    """Whether a letter is in a stretch."""
+    match scope:
+        case ScopeKind.GLOBALLY:
+            return TRUE
+        case ScopeKind.AFTER:
+            return once(Atom(OPEN))
+        case ScopeKind.BEFORE | ScopeKind.UNTIL:
+            return historically(Not(Atom(OPEN)))
+        case ScopeKind.BETWEEN | ScopeKind.AFTER_UNTIL:
+            return Since(Not(Atom(CLOSE)), And(Atom(OPEN), Not(Atom(CLOSE))))
+
+
+def _violation(property_: PatternProperty, inside: Formula) -> Formula | None:
+    """A formula that is true at letters that violate the pattern in their stretch."""
+
+    def earlier(condition: Formula, window: Window) -> Formula:
+        """`condition` was true in this stretch, at a distance in time."""
+        return Since(inside, _and(inside, condition), window)
+
+    left, window = Atom(LEFT), property_.window
+    # The letters at the time at which the stretch opened.
+    first = _and(inside, Not(Since(inside, inside, _FROM_ONE)))
+    match property_.pattern:
+        case Pattern.UNIVERSALITY | Pattern.ABSENCE:
+            wrong = left if property_.pattern is Pattern.ABSENCE else Not(left)
+            bounded = wrong if window.is_unbounded else And(earlier(first, window), wrong)
+            return _and(inside, bounded)
+        case Pattern.PRECEDENCE:
+            return _and(inside, And(Atom(RIGHT), Not(earlier(left, window))))
+        case Pattern.RECURRENCE:
+            return _and(inside, Not(earlier(Or(first, left), window)))
+        case Pattern.EXISTENCE | Pattern.RESPONSE:
+            return _late(property_, inside, first)
+
+
+def _late(property_: PatternProperty, inside: Formula, first: Formula) -> Formula | None:
+    """A deadline has passed."""
+    window = property_.window
+    can_close = property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.AFTER)
+    if window.upper is None or can_close:
+        return None
+    over = Window(window.upper + 1)
+    if property_.pattern is Pattern.RESPONSE:
+        if window.lower:
+            return None
+        waits = _and(inside, Not(Atom(RIGHT)))
+        return Since(waits, And(waits, Atom(LEFT)), over)
+    is_in_window = And(Atom(LEFT), Since(inside, first, window))
+    happened = Since(inside, _and(inside, is_in_window))
+    return And(Since(inside, first, over), Not(happened))
+
+
+def _and(left: Formula, right: Formula) -> Formula:
+    return right if left == TRUE else And(left, right)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Layouts of random graphs and trees: nothing overlaps, lines end at their nodes and cross nothing else."""
+
+from __future__ import annotations
+
+from itertools import combinations, pairwise
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from examples import examples
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.layout import Layout, LayoutDirection, Link, layered, tidy_tree
+from roaml.figures.layout.spread import spread
+from roaml.figures.layout.tracks import assign_tracks
+
+NEAR = 0.05
+SIZES = st.builds(Extent, st.integers(8, 300), st.integers(8, 200))
+DIRECTIONS = st.sampled_from(list(LayoutDirection))
+
+
+@st.composite
+def graphs(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link]]:
+    names = [str(number) for number in range(draw(st.integers(1, 10)))]
+    nodes = {name: draw(SIZES) for name in names}
+    pairs = [(source, target) for source in names for target in names if source != target]
+    ends = draw(st.lists(st.sampled_from(pairs), max_size=2 * len(names))) if pairs else []
+    return nodes, [Link(source, target, draw(st.none() | SIZES)) for source, target in ends]
+
+
+def segments(layout: Layout) -> list[tuple[int, Point, Point]]:
+    return [
+        (number, a, b) for number, route in enumerate(layout.routes) for part in route.parts for a, b in pairwise(part)
+    ]
+
+
+def area(a: Point, b: Point) -> Box:
+    return Box(min(a.x, b.x), min(a.y, b.y), abs(a.x - b.x), abs(a.y - b.y))
+
+
+def crosses(a: Point, b: Point, box: Box) -> bool:
+    line, inner = area(a, b), box.grown(-NEAR)
+    return (
+        line.x < inner.right
+        and inner.x < line.right + NEAR / 2
+        and line.y < inner.bottom
+        and inner.y < line.bottom + NEAR / 2
+    )
+
+
+def touches(box: Box, point: Point) -> bool:
+    edge = box.grown(NEAR).contains(Box(*point, 0, 0))
+    return edge and not box.grown(-NEAR).contains(Box(*point, 0, 0))
+
+
+def flaws(nodes: dict[str, Extent], links: list[Link], layout: Layout) -> list[str]:
+    boxes = [*layout.nodes.values(), *(route.label for route in layout.routes if route.label)]
+    flaws = [f"overlap: {a}, {b}" for a, b in combinations(boxes, 2) if a.grown(-NEAR).overlaps(b)]
+    whole = Box(0, 0, *layout.size).grown(NEAR)
+    flaws += [f"outside: {box}" for box in boxes if not whole.contains(box)]
+    lines = segments(layout)
+    flaws += [f"crosses: {a}, {b}, {box}" for _, a, b in lines for box in boxes if crosses(a, b, box)]
+    flaws += [f"slanted: {a}, {b}" for _, a, b in lines if a.x != b.x and a.y != b.y]
+    for (first, a, b), (second, c, d) in combinations(lines, 2):
+        if first != second and (a.x == b.x) == (c.x == d.x) and area(a, b).grown(1).overlaps(area(c, d).grown(1)):
+            flaws.append(f"coincide: {a}, {b}, {c}, {d}")
+    for link, route in zip(links, layout.routes, strict=True):
+        ends = [layout.nodes[link.source], *([route.label] * 2 if route.label else []), layout.nodes[link.target]]
+        points = [point for part in route.parts for point in (part[0], part[-1])]
+        flaws += [f"loose: {link}" for box, point in zip(ends, points, strict=True) if not touches(box, point)]
+    for name, size in nodes.items():
+        box = layout.nodes[name]
+        flaws += [f"small: {name}"] if box.width < size.width - NEAR or box.height < size.height - NEAR else []
+    return flaws
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(graphs(), DIRECTIONS)
+def test_layered(graph: tuple[dict[str, Extent], list[Link]], direction: LayoutDirection) -> None:
+    nodes, links = graph
+    layout = layered(nodes, links, direction, 1.5)
+    assert flaws(nodes, links, layout) == []
+    assert layered(nodes, links, direction, 1.5) == layout
+
+
+def test_the_first_node_comes_first() -> None:
+    nodes = dict.fromkeys("abc", Extent(40, 20))
+    links = [Link("a", "b"), Link("b", "c"), Link("c", "a", Extent(30, 10))]
+    down = layered(nodes, links, LayoutDirection.DOWN, 1).nodes
+    assert down["a"].y < down["b"].y < down["c"].y
+    right = layered(nodes, links, LayoutDirection.RIGHT, 1).nodes
+    assert right["a"].x < right["b"].x < right["c"].x
+
+
+def test_a_longer_label_does_not_change_the_arrangement() -> None:
+    """What is typed in a label moves nodes, but does not exchange them."""
+    nodes = dict.fromkeys("abcd", Extent(60, 30))
+    ends = ("ab", "ac", "bd", "cd", "da")
+    layouts = [
+        layered(nodes, [Link(s, t, Extent(width, 20)) for s, t in ends], LayoutDirection.DOWN, 1).nodes
+        for width in (30, 90, 150)
+    ]
+    for layout in layouts:
+        assert layout["a"].y < layout["b"].y == layout["c"].y < layout["d"].y
+        assert layout["b"].x < layout["c"].x
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> tuple[dict[str, Extent], dict[str, list[str]]]:
+    count = draw(st.integers(1, 25))
+    children: dict[str, list[str]] = {}
+    for number in range(1, count):
+        children.setdefault(str(draw(st.integers(0, number - 1))), []).append(str(number))
+    return {str(number): draw(SIZES) for number in range(count)}, children
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(trees(), DIRECTIONS)
+def test_trees(tree: tuple[dict[str, Extent], dict[str, list[str]]], direction: LayoutDirection) -> None:
+    nodes, children = tree
+    layout = tidy_tree(nodes, children, direction)
+    boxes = list(layout.nodes.values())
+    assert not [(a, b) for a, b in combinations(boxes, 2) if a.grown(-NEAR).overlaps(b)]
+    assert all(Box(0, 0, *layout.size).grown(NEAR).contains(box) for box in boxes)
+    assert not [(a, b) for _, a, b in segments(layout) for box in boxes if crosses(a, b, box)]
+    pairs = [(parent, child) for parent, group in children.items() for child in group]
+    for (parent, child), route in zip(pairs, layout.routes, strict=True):
+        assert touches(layout.nodes[parent], route.parts[0][0])
+        assert touches(layout.nodes[child], route.parts[0][-1])
+    for group in children.values():
+        middles = [box.x + box.width / 2 if direction is LayoutDirection.DOWN else box.y + box.height / 2 for box in
+                   (layout.nodes[child] for child in group)]  # fmt: skip
+        assert middles == sorted(middles)
+
+
+def test_lines_that_exchange_their_places() -> None:
+    """One of them changes its track on the way, so that their vertical parts do not coincide."""
+    turns, count = assign_tracks([(0.0, 50.0), (50.0, 0.0)])
+    assert sorted(map(len, turns)) == [1, 2]
+    assert count == 3
+    assert [line[-1].to for line in turns] == [50.0, 0.0]
+    assert assign_tracks([(10.0, 10.0)]) == ([[]], 0)
+
+
+def test_spread() -> None:
+    assert spread([0, 0], [10]) == [-5, 5]
+    assert spread([0, 100], [10]) == [0, 100]
+    assert spread([0, 0, 0], [10, 10], low=0) == [0, 10, 20]
+    assert spread([0, 0], [10], [1, 3]) == [-7.5, 2.5]
+    assert spread([], []) == []

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drawings of our examples: geometry without flaws, and ten golden pictures.
+
+`AS2FM_GOLDEN=write` writes the golden pictures again; look at each before you commit it.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import pytest
+from drawn import problems
+from ide_models import load
+
+from roaml import api
+from roaml.figures.drawing import Drawing, Group, Polyline, TextItem
+from roaml.figures.geometry import Point
+from roaml.figures.layout import LayoutDirection
+from roaml.figures.svg import svg_file
+from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, picture_of
+from roaml.project.analysis import Analysis
+from roaml.project.settings import Settings
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+GOLDEN = Path(__file__).parents[2] / "docs/pictures"
+FOLDERS = ("assembly_robot", "case_study", "delivery_robot", "fetch_tree", "grid_world")
+PAGE = (1200, 900)
+
+
+@cache
+def analysis_of(folder: str) -> Analysis:
+    return api.check([str(EXAMPLES / folder)], settings=Settings()).snapshot.analysis
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_examples(folder: str) -> None:
+    analysis = analysis_of(folder)
+    shown = 0
+    for path in sorted((EXAMPLES / folder).rglob("*xml")):
+        for kind in DiagramKind:
+            picture = picture_of(kind, analysis, str(path))
+            for direction in LayoutDirection if picture else ():
+                assert picture is not None
+                assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
+                shown += 1
+    assert shown > 0
+
+
+GOLDEN_PICTURES = {
+    "arm": (DiagramKind.MACHINE, "assembly_robot/arm.ascxml"),
+    "move_to_goal": (DiagramKind.MACHINE, "assembly_robot/plugins/move_to_goal.ascxml"),
+    "assembly_tree": (DiagramKind.TREE, "assembly_robot/tree.xml"),
+    "assembly_graph": (DiagramKind.ROS, "assembly_robot/main.xml"),
+    "mover": (DiagramKind.MACHINE, "case_study/nodes/mover.ascxml"),
+    "recover_block": (DiagramKind.MACHINE, "case_study/plugins/recover_block.ascxml"),
+    "case_study_graph": (DiagramKind.ROS, "case_study/main.xml"),
+    "battery": (DiagramKind.MACHINE, "delivery_robot/nodes/battery.ascxml"),
+    "fetch_tree": (DiagramKind.TREE, "fetch_tree/fetch.xml"),
+    "grid_robot": (DiagramKind.MACHINE, "grid_world/robot.ascxml"),
+}
+
+
+@pytest.mark.parametrize("name", GOLDEN_PICTURES)
+def test_golden_pictures(name: str) -> None:
+    kind, file = GOLDEN_PICTURES[name]
+    picture = picture_of(kind, analysis_of(file.partition("/")[0]), str(EXAMPLES / file))
+    assert picture is not None
+    svg = svg_file(draw_for(kind, picture, *PAGE), picture.title)
+    golden = GOLDEN / f"{name}.svg"
+    if os.environ.get("AS2FM_GOLDEN") == "write":
+        golden.write_text(svg, encoding="utf-8")
+    assert svg == golden.read_text(encoding="utf-8")
+
+
+MACHINE = """\
+<ascxml name="Robot" version="1.0" initial="idle">
+  <ros_topic_subscriber name="go" topic="/go" type="std_msgs/Bool"/>
+  <ros_action_server name="walk" action_name="/walk" type="example_interfaces/Fibonacci"/>
+  <state id="idle">
+    <onentry><assign location="x" expr="1"/></onentry>
+    <ros_topic_callback name="go" cond="_msg.data" target="busy"/>
+    <transition event="stop" target="idle"/>
+    <transition event="log"/>
+    <transition event="roll">
+      <target id="idle" prob="0.25"><send event="again"/></target><target id="idle"/>
+    </transition>
+  </state>
+  <state id="busy">
+    <transition event="toss"><target id="idle" prob="0.25"/><target id="busy"/><target id="done"/></transition>
+    <transition event="back" target="idle"><assign location="x" expr="2"/></transition>
+    <transition event="undo" cond="x &gt; 1" target="idle"/>
+    <transition target="done"/>
+  </state>
+  <state id="done"/>
+  <ros_action_thread name="walk" n_threads="3">
+    <state id="idle"><transition event="a" target="idle"/><transition event="b" target="idle"/></state>
+  </ros_action_thread>
+</ascxml>
+"""
+
+
+def machine(tmp_path: Path, text: str = MACHINE) -> tuple[Picture, Drawing]:
+    analysis = load(tmp_path, {"robot.ascxml": text})
+    picture = picture_of(DiagramKind.MACHINE, analysis, str(tmp_path / "robot.ascxml"))
+    assert picture is not None
+    return picture, draw(DiagramKind.MACHINE, picture, LayoutDirection.DOWN)
+
+
+def texts(group: Group) -> list[str]:
+    inner = [
+        texts(item) if isinstance(item, Group) else [item.text]
+        for item in group.items
+        if isinstance(item, (Group, TextItem))
+    ]
+    return [text for part in inner for text in part]
+
+
+def test_a_state_is_a_card_with_its_reactions(tmp_path: Path) -> None:
+    picture, drawing = machine(tmp_path)
+    assert problems(picture, drawing) == []
+    cards = {group.node: texts(group) for group in drawing.groups if group.node is not None}
+    idle = ["idle", "entry / x := 1", "↻ stop", "log", "roll", "0.25", "/ send again", "otherwise"]
+    assert cards[0] == idle
+    busy = next(index for index, node in enumerate(picture.nodes) if node.label == "busy")
+    assert cards[busy] == ["busy"]
+    thread = next(index for index, node in enumerate(picture.nodes) if node.kind.value == "thread")
+    assert cards[thread] == ["walk (3 threads)"]
+
+
+def test_transitions_between_two_states_share_a_line_and_a_label(tmp_path: Path) -> None:
+    _, drawing = machine(tmp_path)
+    labels = [texts(group) for group in drawing.groups if group.role == "label"]
+    assert ["back", "/ x := 2", "undo", "[x > 1]"] in labels
+    assert ["/go", "[_msg.data]"] in labels
+    together = [group.edges for group in drawing.groups if group.role == "link" and len(group.edges) == 2]
+    assert len(together) == 1
+
+
+def test_a_choice_is_a_junction_with_probabilities(tmp_path: Path) -> None:
+    picture, drawing = machine(tmp_path)
+    choices = [index for index, node in enumerate(picture.nodes) if node.kind.value == "choice"]
+    assert [index in drawing.nodes for index in choices] == [False, True]
+    labels = [texts(group) for group in drawing.groups if group.role == "label"]
+    assert sorted(label[0] for label in labels if label[0] in ("0.25", "otherwise")) == [
+        "0.25",
+        "otherwise",
+        "otherwise",
+    ]
+
+
+def test_typing_keeps_the_arrangement(tmp_path: Path) -> None:
+    """A longer condition moves states by less than it is long, and exchanges none."""
+    before = machine(tmp_path)[1].nodes
+    after = machine(tmp_path, MACHINE.replace("x &gt; 1", "x &gt; 1 &amp;&amp; y &lt; 2"))[1].nodes
+    for a, b in [(a, b) for a in before for b in before]:
+        assert (before[a].y < before[b].y) == (after[a].y < after[b].y)
+
+
+def test_flaws_are_found(tmp_path: Path) -> None:
+    """The check of geometry finds a label on a node, a line through a label, equal rows, and small text."""
+    picture, drawing = machine(tmp_path)
+    label = next(group for group in drawing.groups if group.role == "label")
+    row = next(item for item in label.items if isinstance(item, Group))
+    text = next(item for item in row.items if isinstance(item, TextItem))
+    line = Group("link", label.tone, (Polyline((Point(0, text.y), Point(drawing.size.width, text.y))),))
+    twice = replace(label, items=(*label.items, row))
+    small = replace(label, items=(replace(text, size=8.0),))
+    for group, word in (
+        (line, "a line crosses"),
+        (twice, "two texts overlap"),
+        (small, "small text"),
+        (label, "two shapes"),
+    ):
+        flawed = replace(drawing, groups=(*drawing.groups, group))
+        assert any(problem.startswith(word) for problem in problems(picture, flawed)), word
+    lines = [group for group in drawing.groups if group.role != "link"]
+    missing = [problem for problem in problems(picture, replace(drawing, groups=tuple(lines))) if "no line" in problem]
+    assert len(missing) == sum(edge.source != edge.target for edge in picture.edges) - 3  # a choice is in its state

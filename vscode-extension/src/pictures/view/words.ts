@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The words for the parts of a picture: for readers of the screen, for hovers, and for the legend. */
+
+import type { EdgeKind, NodeKind, Picture, PictureEdge, PictureNode, Words } from "../contract";
+
+/** A node for readers of the screen. */
+export function nodeWords(node: PictureNode, words: Words): string {
+    return [words.kinds[node.kind], node.label, ...node.details].filter((text) => text !== "").join(", ");
+}
+
+/** An edge for readers of the screen. */
+export function edgeWords(picture: Picture, edge: PictureEdge, words: Words): string {
+    const chance = edge.probabilistic ? [words.byChance] : [];
+    const ends = `${labelOf(picture, edge.source)} → ${labelOf(picture, edge.target)}`;
+    return [ends, words.kinds[edge.kind], ...edge.labels, ...chance].join(", ");
+}
+
+/** What a hover over an edge shows: the ends, the type of an interface, all its text, its file and line. */
+export function edgeHint(picture: Picture, edge: PictureEdge): string {
+    const channel = picture.nodes.find(
+        (node) => isChannel(node.kind) && (node.id === edge.source || node.id === edge.target),
+    );
+    const lines = channel
+        ? [throughChannel(picture, edge, channel), ...channel.details]
+        : [`${labelOf(picture, edge.source)} → ${labelOf(picture, edge.target)}`];
+    if (edge.place) {
+        const file = decodeURIComponent(edge.place.uri.replace(/^.*\//, ""));
+        lines.push(`${file}:${edge.place.range.start.line + 1}`);
+    }
+    return [...lines.slice(0, 1), ...edge.labels, ...lines.slice(1)].join("\n");
+}
+
+/** The sender, the interface and the receivers; an edge has only one of them. */
+function throughChannel(picture: Picture, edge: PictureEdge, channel: PictureNode): string {
+    const others = picture.edges.filter(({ source, target }) =>
+        edge.source === channel.id ? target === channel.id : source === channel.id,
+    );
+    const names = (ids: readonly string[]) => [...new Set(ids.map((id) => labelOf(picture, id)))].join(", ");
+    const senders = edge.source === channel.id ? names(others.map(({ source }) => source)) : names([edge.source]);
+    const receivers = edge.source === channel.id ? names([edge.target]) : names(others.map(({ target }) => target));
+    return [senders, channel.label, receivers].filter((text) => text !== "").join(" → ");
+}
+
+/** An entry of the legend: its tone in the style sheet, and its text. */
+export interface LegendEntry {
+    readonly tone: string;
+    readonly text: string;
+    readonly isLine: boolean;
+}
+
+const EDGE_TONES: Partial<Record<EdgeKind, string>> = { eventless: "plain", event: "event", ros: "ros", bt: "tree" };
+const NODE_TONES: Partial<Record<NodeKind, string>> = {
+    control: "control",
+    decorator: "decorator",
+    action: "action",
+    condition: "condition",
+    subtree: "subtree",
+    variable: "blackboard",
+};
+const CHANNEL_TONES: Partial<Record<NodeKind, string>> = {
+    topic: "topic",
+    service: "service",
+    "action-interface": "ros-action",
+};
+
+/** One entry for each color of a picture. */
+export function legendOf(picture: Picture, words: Words): LegendEntry[] {
+    const entries: LegendEntry[] = [];
+    const add = (tone: string | undefined, text: string, isLine: boolean) => {
+        if (tone !== undefined && !entries.some((entry) => entry.tone === tone)) entries.push({ tone, text, isLine });
+    };
+    switch (picture.kind) {
+        case "machine":
+            for (const { kind } of picture.edges.filter((edge) => !edge.probabilistic))
+                add(EDGE_TONES[kind], words.kinds[kind], true);
+            if (picture.edges.some((edge) => edge.probabilistic)) add("chance", words.byChance, true);
+            break;
+        case "tree":
+            for (const { kind } of picture.nodes) add(NODE_TONES[kind], words.kinds[kind], false);
+            break;
+        case "ros":
+            for (const { kind } of picture.nodes) add(CHANNEL_TONES[kind], words.kinds[kind], true);
+            if (picture.edges.some(({ kind }) => kind === "sends")) add("event", words.kinds.event, true);
+            break;
+    }
+    return entries;
+}
+
+function isChannel(kind: NodeKind): boolean {
+    return kind in CHANNEL_TONES;
+}
+
+function labelOf(picture: Picture, id: string): string {
+    const node = picture.nodes.find((candidate) => candidate.id === id);
+    if (node?.kind !== "choice") return node?.label ?? "";
+    // A choice has no name: it is part of the transition that leads to it.
+    const source = picture.edges.find(({ target }) => target === id)?.source;
+    return source === undefined ? "" : labelOf(picture, source);
+}
