@@ -90,6 +90,8 @@ export interface Wrong extends Partial<Place> {
 /** The result of a property: numbers, or an error. Infinite numbers are strings, because JSON has none. */
 export interface Verified {
     readonly property: string;
+    /** What the property requires, in a sentence. */
+    readonly comment?: string;
     readonly seconds?: number;
     /** Estimate and interval in a few characters. */
     readonly short?: string;
@@ -104,11 +106,17 @@ export interface Verified {
         readonly certain: boolean;
         /** Whether it is met under uniform choices, but not known to be met under all schedulers. */
         readonly under_uniform_choices_only?: boolean;
+        /** The number of traces if none of them contradicts an expected 0 or 1. */
+        readonly unanimous?: number;
     }[];
     /** Why the number is doubtful (traces got stuck), or is not the minimum or maximum that the property asks for. */
     readonly warning?: string;
+    /** `no expectation set` if the result is compared with nothing, and so is neither good nor bad. */
+    readonly verdict?: string;
     /** Whether there is a counterexample: a trace that contradicts the expectation. */
     readonly counterexample?: boolean;
+    /** Whether there is a trace that speaks for the property. */
+    readonly witness?: boolean;
     readonly error?: Wrong;
 }
 
@@ -132,11 +140,12 @@ export interface Verification {
 /** The name of the property that every system has: that it gets stuck. */
 export const STUCK = "stuck";
 
-/** A property; `stale` is missing while it has no result. */
+/** A property; `stale` and `result` are missing while it has no result. The result is judged by what is expected now. */
 export interface Property extends Place {
     readonly name: string;
     readonly comment: string;
     readonly stale?: boolean;
+    readonly result?: Verified;
 }
 
 export interface VerifiableSystem {
@@ -174,11 +183,36 @@ export interface Counterexample {
     readonly steps: readonly Step[];
 }
 
-export interface CounterexampleParams extends DocumentParams {
+export interface PropertyParams extends DocumentParams {
     readonly property: string;
 }
 
+/** With `witness`, the trace that speaks for the property. */
+export interface CounterexampleParams extends PropertyParams {
+    readonly witness?: boolean;
+}
+
+/** The expectations that the known result suggests, those that are set, and the name of the file for one. */
+export interface Expectations {
+    readonly suggestions: readonly string[];
+    readonly current: readonly string[];
+    readonly file: string;
+}
+
+export interface SetExpectationParams extends PropertyParams {
+    readonly expected: string;
+}
+
+/** An edit of the file at `uri`; `problem` is the reason if there is none. */
+export interface ExpectationSet {
+    readonly edit: WorkspaceEdit | null;
+    readonly uri: string;
+    readonly problem: string;
+}
+
 export const properties = new RequestType<null, readonly VerifiableSystem[], void>("as2fm/properties");
+export const expectations = new RequestType<PropertyParams, Expectations | null, void>("as2fm/expectations");
+export const setExpectation = new RequestType<SetExpectationParams, ExpectationSet, void>("as2fm/setExpectation");
 export const counterexample = new RequestType<CounterexampleParams, Counterexample | null, void>(
     "as2fm/counterexample",
 );

@@ -5,17 +5,28 @@ import type { Verified } from "../src/protocol";
 import { outcomeOf } from "../src/verification/outcome";
 import { chosen, type Test } from "../src/verification/selection";
 
-const ROW: Verified = { property: "alarm", seconds: 1.25, short: "0.71 [0.66, 0.76]", counterexample: true };
+const BARE: Verified = {
+    property: "alarm",
+    seconds: 1.25,
+    short: "0.71 [0.66, 0.76]",
+    verdict: "no expectation set",
+    counterexample: true,
+};
 const MET = { expected: ">= 0.5", met: true, certain: true };
+const STUCK = { level: "warning", text: "who waits for whom", example: { trace: 3 } } as const;
+const ROW: Verified = { ...BARE, verdict: "met", expectations: [MET] };
 const MISSED = { expected: ">= 0.95", met: false, certain: true };
 
-test("a property without an expectation passes with its probability", () => {
-    assert.deepEqual(outcomeOf(ROW), {
-        kind: "passed",
-        short: "0.71 [0.66, 0.76]",
-        milliseconds: 1250,
-        uniform: [],
-    });
+test("a property without an expectation neither passes nor fails", () => {
+    assert.deepEqual(outcomeOf(BARE), { kind: "unjudged", short: "0.71 [0.66, 0.76]" });
+    const stuck = outcomeOf(BARE, { ...STUCK, level: "error" });
+    assert.equal(stuck.kind, "failed");
+});
+
+test("an expected 1 that no trace contradicts says how many there were", () => {
+    const all = { expected: "≥ 1", met: true, certain: false, unanimous: 200 };
+    const outcome = outcomeOf({ ...ROW, expectations: [all] });
+    assert.ok(outcome.kind === "passed" && outcome.unanimous === 200);
 });
 
 test("expectations decide", () => {
@@ -31,11 +42,15 @@ test("expectations decide", () => {
     assert.ok(without.kind === "failed" && !without.hasCounterexample);
 });
 
-const STUCK = { level: "warning", text: "who waits for whom", example: { trace: 3 } } as const;
-
 test("a system that gets stuck is reported, and fails its properties if that is an error", () => {
     const told = { short: "0.71 [0.66, 0.76]", milliseconds: 1250 };
-    assert.deepEqual(outcomeOf(ROW, STUCK), { ...told, kind: "passed", uniform: [], stuck: "who waits for whom" });
+    assert.deepEqual(outcomeOf(ROW, STUCK), {
+        ...told,
+        kind: "passed",
+        uniform: [],
+        unanimous: 0,
+        stuck: "who waits for whom",
+    });
     assert.deepEqual(outcomeOf(ROW, { ...STUCK, level: "error" }), {
         ...told,
         kind: "failed",
@@ -61,6 +76,7 @@ test("an expectation that only uniform choices are known to meet passes with a r
         short: "0.71 [0.66, 0.76]",
         milliseconds: 1250,
         uniform: [">= 0.5"],
+        unanimous: 0,
         warning,
     });
 });

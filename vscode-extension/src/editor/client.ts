@@ -37,6 +37,8 @@ export const SHOW_REFERENCES = "as2fm.showReferences";
 
 /** The command with which lenses show why a property fails. Arguments: the URI of a system, the name of a property. */
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
+export const SHOW_WITNESS = "as2fm.showWitness";
+export const SET_EXPECTATION = "as2fm.setExpectation";
 export const DEBUG_COUNTEREXAMPLE = "as2fm.debugCounterexample";
 
 const WELL_FORMEDNESS = "xml-syntax";
@@ -119,7 +121,9 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             settings: vscode.workspace.getConfiguration("as2fm"),
             showReferences: SHOW_REFERENCES,
             showCounterexample: SHOW_COUNTEREXAMPLE,
+            showWitness: SHOW_WITNESS,
             debugCounterexample: DEBUG_COUNTEREXAMPLE,
+            setExpectation: SET_EXPECTATION,
             triggerSuggest: "editor.action.triggerSuggest",
         },
         progressOnInitialization: false,

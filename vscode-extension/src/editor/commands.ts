@@ -4,11 +4,12 @@ import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
-import { DEBUG_COUNTEREXAMPLE, SHOW_COUNTEREXAMPLE, SHOW_REFERENCES } from "./client";
+import { DEBUG_COUNTEREXAMPLE, SET_EXPECTATION, SHOW_COUNTEREXAMPLE, SHOW_REFERENCES, SHOW_WITNESS } from "./client";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
 import type { JaniView } from "./janiView";
+import { chooseExpectation } from "./expectation";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
@@ -74,15 +75,24 @@ export function registerCommands(parts: Parts): void {
     context.subscriptions.push(
         // Called from a lens or a message, or from the menu of a test.
         vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, (of: string | vscode.TestItem, property: string) => {
-            const asked = typeof of === "string" ? { system: of, property } : parts.tests.of(of);
+            const asked = parts.tests.asked(of, property);
             return asked && parts.counterexamples.show(asked.system, asked.property);
+        }),
+        vscode.commands.registerCommand(SHOW_WITNESS, (of: string | vscode.TestItem, property: string) => {
+            const asked = parts.tests.asked(of, property);
+            return asked && parts.counterexamples.show(asked.system, asked.property, true);
+        }),
+        vscode.commands.registerCommand(SET_EXPECTATION, async (of: string | vscode.TestItem, property: string) => {
+            const asked = parts.tests.asked(of, property);
+            if (!asked || !isTrusted()) return;
+            if (await chooseExpectation(server, asked.system, asked.property)) await parts.tests.refresh();
         }),
     );
     context.subscriptions.push(
         vscode.commands.registerCommand(
             DEBUG_COUNTEREXAMPLE,
             (of: string | vscode.TestItem, property: string, trace?: Trace) => {
-                const asked = typeof of === "string" ? { system: of, property } : parts.tests.of(of);
+                const asked = parts.tests.asked(of, property);
                 const uri = asked && server.client?.protocol2CodeConverter.asUri(asked.system);
                 return (
                     uri &&

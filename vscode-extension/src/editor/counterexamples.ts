@@ -37,10 +37,13 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         ];
     }
 
-    async show(system: string, property: string): Promise<void> {
-        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property });
+    /** Show the trace that contradicts a property, or a witness: one that speaks for it. */
+    async show(system: string, property: string, witness = false): Promise<void> {
+        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
         if (!found) {
-            const text = vscode.l10n.t("There is no counterexample for {0} yet. Verify it first.", property);
+            const text = witness
+                ? vscode.l10n.t("There is no trace that speaks for {0}, or it has not been verified.", property)
+                : vscode.l10n.t("There is no trace that contradicts {0}, or it has not been verified.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Properties in the Test Explorer: a system is a suite, a property is a test, and running a test verifies it. */
 
+import { randomUUID } from "node:crypto";
 import * as vscode from "vscode";
-import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
+import { ExecuteCommandRequest, ProgressType } from "vscode-languageserver-protocol";
 import {
     properties,
     SHOW_FIRST_ERROR,
@@ -11,11 +12,12 @@ import {
     type Property,
     type VerifiableSystem,
     type Verification,
+    type Verified,
     type Wrong,
 } from "../protocol";
-import { outcomeOf, type Outcome } from "../verification/outcome";
+import { outcomeOf } from "../verification/outcome";
 import { chosen } from "../verification/selection";
-import { SHOW_COUNTEREXAMPLE } from "./client";
+import { SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
 import type { Debugging } from "./debugging";
 import type { LanguageServer } from "./server";
 import { done } from "./steps";
@@ -23,7 +25,8 @@ import { isTrusted } from "./trust";
 
 const DELAY_MS = 300;
 
-interface Asked {
+/** A property of a system. */
+export interface Asked {
     readonly system: string;
     readonly property: string;
 }
@@ -31,7 +34,10 @@ interface Asked {
 export class PropertyTests implements vscode.Disposable {
     private readonly controller: vscode.TestController;
     private readonly subscriptions: { dispose(): unknown }[];
-    private readonly asked = new WeakMap<vscode.TestItem, Asked>();
+    private readonly askedBy = new WeakMap<vscode.TestItem, Asked>();
+    /** What was expected of the results that are shown, by the id of the test. */
+    private readonly judged = new Map<string, string>();
+    private readonly running = new Set<string>();
     private readonly stale = new Set<string>();
     private readonly toldStuck = new WeakMap<vscode.TestRun, Set<string>>();
     private timer: NodeJS.Timeout | undefined;
@@ -86,9 +92,9 @@ export class PropertyTests implements vscode.Disposable {
         return true;
     }
 
-    /** The property of a test. */
-    of(item: vscode.TestItem): Asked | undefined {
-        return this.asked.get(item);
+    /** The property that a lens or message names, or that of a test. */
+    asked(of: string | vscode.TestItem, property: string): Asked | undefined {
+        return typeof of === "string" ? { system: of, property } : this.askedBy.get(of);
     }
 
     dispose(): void {
@@ -103,7 +109,8 @@ export class PropertyTests implements vscode.Disposable {
         this.timer = setTimeout(() => void this.refresh(), DELAY_MS);
     }
 
-    private async refresh(): Promise<void> {
+    /** Show the properties as they are now. */
+    async refresh(): Promise<void> {
         const found = await this.server.ask(properties, null);
         if (found === undefined) return;
         const known = new Set(found.map(({ uri }) => uri));
@@ -134,7 +141,7 @@ export class PropertyTests implements vscode.Disposable {
         if (item?.uri?.toString() !== place.toString()) {
             item = this.controller.createTestItem(id, property.name, place);
             suite.children.add(item);
-            this.asked.set(item, { system, property: property.name });
+            this.askedBy.set(item, { system, property: property.name });
         }
         item.range = rangeOf(property.range);
         // In the order of the files, not by name.
@@ -144,6 +151,17 @@ export class PropertyTests implements vscode.Disposable {
             this.stale.add(id);
             this.controller.invalidateTestResults(item);
         } else if (!property.stale) this.stale.delete(id);
+        if (property.result && property.stale === false) this.judgeAgain(item, property.result);
+    }
+
+    /** Show a known result again if another expectation judges it. */
+    private judgeAgain(item: vscode.TestItem, result: Verified): void {
+        const asked = this.askedBy.get(item);
+        const before = this.judged.get(item.id);
+        if (!asked || before === undefined || before === expectedOf(result) || this.running.has(item.id)) return;
+        const run = this.controller.createTestRun(new vscode.TestRunRequest([item]), undefined, false);
+        this.show(run, item, asked, result);
+        run.end();
     }
 
     private uri(uri: string): vscode.Uri {
@@ -163,10 +181,15 @@ export class PropertyTests implements vscode.Disposable {
             }),
         );
         for (const item of items) run.enqueued(item);
+        const bySystem = new Map<string, vscode.TestItem[]>();
+        for (const item of items) {
+            const system = this.askedBy.get(item)?.system;
+            if (system !== undefined) bySystem.set(system, [...(bySystem.get(system) ?? []), item]);
+        }
         try {
-            for (const item of items) {
-                if (cancel.token.isCancellationRequested) run.skipped(item);
-                else await this.runOne(run, item, cancel.token);
+            for (const [system, tests] of bySystem) {
+                if (cancel.token.isCancellationRequested) for (const item of tests) run.skipped(item);
+                else await this.runSystem(run, system, tests, cancel.token);
             }
         } finally {
             run.end();
@@ -177,76 +200,141 @@ export class PropertyTests implements vscode.Disposable {
     /** Debug a run in which the first of the properties does not hold. */
     private async debug(request: vscode.TestRunRequest): Promise<void> {
         const [item] = chosen(this.controller.items, request.include, request.exclude);
-        const asked = item && this.asked.get(item);
+        const asked = item && this.askedBy.get(item);
         if (asked) await this.debugging.counterexample(this.uri(asked.system), asked.property, undefined);
     }
 
-    private async runOne(run: vscode.TestRun, item: vscode.TestItem, token: vscode.CancellationToken): Promise<void> {
-        const asked = this.asked.get(item);
-        if (!asked) return;
-        run.started(item);
-        item.busy = true;
-        try {
-            const answer = await this.ask(asked, token);
-            const result = answer?.results[0];
-            if (result) this.show(run, item, asked, outcomeOf(result, answer.stuck));
-            else if (answer && answer.errors.length > 0)
-                run.errored(
-                    item,
-                    answer.errors.map((each) => this.wrong(each)),
-                );
-            else run.skipped(item);
-        } catch (error) {
-            this.log.debug(`${asked.property} has no answer: ${String(error)}`);
-            if (token.isCancellationRequested) run.skipped(item);
-            else run.errored(item, new vscode.TestMessage(String(error)));
-        } finally {
+    /** Verify properties of a system together, so that they share traces. Each result is shown when it is complete. */
+    private async runSystem(
+        run: vscode.TestRun,
+        system: string,
+        items: readonly vscode.TestItem[],
+        token: vscode.CancellationToken,
+    ): Promise<void> {
+        const open = new Map<string, vscode.TestItem>();
+        for (const item of items) {
+            const property = this.askedBy.get(item)?.property;
+            if (property !== undefined) open.set(property, item);
+            run.started(item);
+            item.busy = true;
+            this.running.add(item.id);
+        }
+        const all = new Map(open);
+        const take = (result: Verified) => {
+            const item = open.get(result.property);
+            if (!item) return;
+            open.delete(result.property);
             item.busy = false;
+            this.show(run, item, { system, property: result.property }, result);
+        };
+        try {
+            const answer = await this.ask(system, [...open.keys()], token, take);
+            for (const result of answer?.results ?? []) {
+                take(result);
+                const item = all.get(result.property);
+                // Only the whole answer says whether the system gets stuck.
+                if (item && answer?.stuck?.example)
+                    this.show(run, item, { system, property: result.property }, result, answer.stuck);
+            }
+            for (const item of open.values()) {
+                const wrong = answer?.errors.map((each) => this.wrong(each)) ?? [];
+                if (wrong.length > 0) run.errored(item, wrong);
+                else run.skipped(item);
+            }
+        } catch (error) {
+            this.log.debug(`${system} has no answer: ${String(error)}`);
+            for (const item of open.values()) {
+                if (token.isCancellationRequested) run.skipped(item);
+                else run.errored(item, new vscode.TestMessage(String(error)));
+            }
+        } finally {
+            for (const item of items) {
+                item.busy = false;
+                this.running.delete(item.id);
+            }
         }
     }
 
-    private async ask({ system, property }: Asked, token: vscode.CancellationToken): Promise<Verification | null> {
+    private async ask(
+        system: string,
+        names: readonly string[],
+        token: vscode.CancellationToken,
+        take: (result: Verified) => void,
+    ): Promise<Verification | null> {
         const { client } = this.server;
         if (!client) throw new Error(vscode.l10n.t("The language server is not running."));
-        const params = { command: VERIFY, arguments: [system, [property], { silent: true }] };
-        return (await client.sendRequest(ExecuteCommandRequest.type, params, token)) as Verification | null;
+        const partialResultToken = randomUUID();
+        const parts = client.onProgress(new ProgressType<Verified>(), partialResultToken, take);
+        try {
+            const params = { command: VERIFY, arguments: [system, names, { silent: true, partialResultToken }] };
+            return (await client.sendRequest(ExecuteCommandRequest.type, params, token)) as Verification | null;
+        } finally {
+            parts.dispose();
+        }
     }
 
-    private show(run: vscode.TestRun, item: vscode.TestItem, asked: Asked, outcome: Outcome): void {
+    private show(
+        run: vscode.TestRun,
+        item: vscode.TestItem,
+        asked: Asked,
+        result: Verified,
+        stuckness?: Verification["stuck"],
+    ): void {
+        const outcome = outcomeOf(result, stuckness);
         if (outcome.kind === "errored") {
-            run.errored(item, new vscode.TestMessage(outcome.message));
+            const message = new vscode.TestMessage(outcome.message);
+            if (result.error) run.errored(item, this.wrong(result.error));
+            else run.errored(item, message);
             return;
         }
         done("verified");
-        const { short, milliseconds, stuck } = outcome;
+        this.judged.set(item.id, expectedOf(result));
+        const { short, stuck } = outcome;
         const brief = stuck === undefined ? short : `${short}, ${vscode.l10n.t("gets stuck")}`;
         item.description = brief;
         const line = `${asked.property}: ${brief}`;
+        const sentence = result.comment === undefined ? "" : `${result.comment}\r\n`;
         const more = stuck === undefined ? "" : `${stuck.replaceAll(/\r?\n/g, "\r\n")}\r\n`;
         if (stuck !== undefined) this.tellStuck(run, asked.system);
         const warned = outcome.warning === undefined ? "" : `${outcome.warning}\r\n`;
+        if (outcome.kind === "unjudged") {
+            item.description = `${brief}, ${vscode.l10n.t("no expectation set")}`;
+            run.appendOutput(`${sentence}${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
+            run.skipped(item);
+            return;
+        }
         if (outcome.kind === "passed") {
             // The Test Explorer has only passed and failed: the description beside the name contains the details.
             if (outcome.uniform.length > 0) {
                 const expected = outcome.uniform.join(", ");
                 item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
             }
-            run.appendOutput(`${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
-            run.passed(item, milliseconds);
+            if (outcome.unanimous > 0) {
+                const said = vscode.l10n.t("no trace against it in {0}", outcome.unanimous.toLocaleString("en"));
+                item.description = `${item.description}, ${said}`;
+            }
+            run.appendOutput(`${sentence}${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
+            run.passed(item, outcome.milliseconds);
             return;
         }
         const missed = outcome.missed.length > 0 ? [vscode.l10n.t("expected {0}", outcome.missed.join(", "))] : [];
-        run.appendOutput(`${[line, ...missed].join(", ")}\r\n${warned}${more}`, undefined, item);
+        run.appendOutput(`${sentence}${[line, ...missed].join(", ")}\r\n${warned}${more}`, undefined, item);
         const text = new vscode.MarkdownString(escaped([brief, ...missed].join(", ")));
+        if (result.comment !== undefined) text.appendMarkdown(`\n\n${escaped(result.comment)}`);
         if (stuck !== undefined) text.appendCodeblock(stuck, "text");
+        const links: string[] = [];
         if (outcome.hasCounterexample || stuck !== undefined) {
             const property = outcome.hasCounterexample ? asked.property : STUCK;
-            const link = `${SHOW_COUNTEREXAMPLE}?${encodeURIComponent(JSON.stringify([asked.system, property]))}`;
-            text.appendMarkdown(`\n\n[${vscode.l10n.t("Show Counterexample")}](command:${link})`);
-            text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE] };
+            links.push(linkTo(SHOW_COUNTEREXAMPLE, vscode.l10n.t("Show Counterexample"), asked.system, property));
+        }
+        if (result.witness === true)
+            links.push(linkTo(SHOW_WITNESS, vscode.l10n.t("Show Witness"), asked.system, asked.property));
+        if (links.length > 0) {
+            text.appendMarkdown(`\n\n${links.join(" · ")}`);
+            text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE, SHOW_WITNESS] };
         }
         // Without a location: the lens and the inlay hint show the same on that line.
-        run.failed(item, new vscode.TestMessage(text), milliseconds);
+        run.failed(item, new vscode.TestMessage(text), outcome.milliseconds);
     }
 
     /** Warn once in each run that a system gets stuck, which makes its numbers doubtful and a passed test hides. */
@@ -279,6 +367,16 @@ function testId(system: string, property: string): string {
 
 function rangeOf({ start, end }: Property["range"]): vscode.Range {
     return new vscode.Range(start.line, start.character, end.line, end.character);
+}
+
+/** The expectations of a result, as a key. */
+function expectedOf({ expectations = [] }: Verified): string {
+    return JSON.stringify(expectations.map(({ expected, met }) => [expected, met]));
+}
+
+/** A link in Markdown that calls a command for a property. */
+function linkTo(command: string, title: string, system: string, property: string): string {
+    return `[${title}](command:${command}?${encodeURIComponent(JSON.stringify([system, property]))})`;
 }
 
 /** Escape the brackets of an interval, which are markup in Markdown. */

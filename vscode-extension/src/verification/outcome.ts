@@ -3,6 +3,8 @@
 
 import type { Stuckness, Verified } from "../protocol";
 
+const NO_EXPECTATION = "no expectation set";
+
 export type Outcome =
     | {
           readonly kind: "passed";
@@ -10,6 +12,8 @@ export type Outcome =
           readonly milliseconds: number;
           /** The expectation that is met under uniform choices, but not known to be met under all schedulers. */
           readonly uniform: readonly string[];
+          /** The number of traces, if none of them contradicts an expected 0 or 1 that the interval leaves open. */
+          readonly unanimous: number;
           /** Why the number is doubtful, or differs from what the property asks for. */
           readonly warning?: string;
           /** Which automaton waits for which, if the system gets stuck. */
@@ -25,12 +29,16 @@ export type Outcome =
           readonly warning?: string;
           readonly stuck?: string;
       }
+    | {
+          /** Neither passed nor failed: no expectation is set. */
+          readonly kind: "unjudged";
+          readonly short: string;
+          readonly warning?: string;
+          readonly stuck?: string;
+      }
     | { readonly kind: "errored"; readonly message: string };
 
-/**
- * A property without an expectation passes: the result is its probability. If the system gets stuck, the result
- * contains this; if that is an error, the test fails.
- */
+/** If the system gets stuck, the result contains this; if that is an error, the test fails. */
 export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome {
     if (verified.error) return { kind: "errored", message: verified.error.message };
     const { short = "", seconds = 0 } = verified;
@@ -39,10 +47,12 @@ export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome
     const stuck = known?.example ? { stuck: known.text } : {};
     const warning = verified.warning === undefined ? {} : { warning: verified.warning };
     const isWrong = known?.example && known.level === "error";
+    if (verified.verdict === NO_EXPECTATION && !isWrong) return { kind: "unjudged", short, ...warning, ...stuck };
     if (missed.length === 0 && !isWrong) {
         const onlyUniform = (verified.expectations ?? []).filter((each) => each.under_uniform_choices_only);
         const uniform = onlyUniform.map(({ expected }) => expected);
-        return { kind: "passed", short, milliseconds, uniform, ...warning, ...stuck };
+        const unanimous = Math.max(0, ...(verified.expectations ?? []).map((each) => each.unanimous ?? 0));
+        return { kind: "passed", short, milliseconds, uniform, unanimous, ...warning, ...stuck };
     }
     const hasCounterexample = verified.counterexample ?? false;
     return { kind: "failed", short, milliseconds, missed, hasCounterexample, ...warning, ...stuck };

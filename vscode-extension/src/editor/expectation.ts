@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Asks what is expected of a property, and writes it beside the property or into the configuration. */
+
+import * as vscode from "vscode";
+import { expectations, setExpectation } from "../protocol";
+import type { LanguageServer } from "./server";
+
+const COMPARISON = /^\s*(>=|<=|==|≥|≤|>|<|=)\s*-?\d*\.?\d+(e-?\d+)?\s*$/;
+
+/** Returns whether an expectation was set. */
+export async function chooseExpectation(server: LanguageServer, system: string, property: string): Promise<boolean> {
+    const of = { textDocument: { uri: system }, property };
+    const known = await server.ask(expectations, of);
+    if (!known) return false;
+    const title = vscode.l10n.t("What is expected of {0}? It is written into {1}.", property, known.file);
+    const expected = await choose(title, known.suggestions, known.current);
+    if (expected === undefined) return false;
+    const answer = await server.ask(setExpectation, { ...of, expected });
+    const { client } = server;
+    if (!answer || !client) return false;
+    const edit = await client.protocol2CodeConverter.asWorkspaceEdit(answer.edit ?? undefined);
+    if (!edit) {
+        void vscode.window.showErrorMessage(answer.problem);
+        return false;
+    }
+    const uri = client.protocol2CodeConverter.asUri(answer.uri);
+    const isEdited = vscode.workspace.textDocuments.some(
+        (each) => each.uri.toString() === uri.toString() && each.isDirty,
+    );
+    if (!(await vscode.workspace.applyEdit(edit))) return false;
+    // The configuration is read from the disk. Other changes of the user are not saved.
+    if (!isEdited) await (await vscode.workspace.openTextDocument(uri)).save();
+    return true;
+}
+
+async function choose(
+    title: string,
+    suggestions: readonly string[],
+    current: readonly string[],
+): Promise<string | undefined> {
+    const other = { label: vscode.l10n.t("Another value…") };
+    const met = vscode.l10n.t("met by the result");
+    const items = [...suggestions.map((label) => ({ label, description: met })), other];
+    const placeHolder = current.length > 0 ? vscode.l10n.t("now {0}", current.join(", ")) : undefined;
+    const options = placeHolder === undefined ? { title } : { title, placeHolder };
+    const picked = suggestions.length > 0 ? await vscode.window.showQuickPick(items, options) : other;
+    if (picked !== other) return picked?.label;
+    return vscode.window.showInputBox({
+        title,
+        value: current[0] ?? ">= 0.95",
+        validateInput: (value) =>
+            COMPARISON.test(value) ? undefined : vscode.l10n.t("A comparison with a number, such as >= 0.95"),
+    });
+}
