@@ -12,6 +12,7 @@ from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
+from roaml.rules.support.states import references
 from roaml.xml_syntax import Document, Element
 
 STATES = ("state", "parallel", "final", "history")
@@ -29,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     elsewhere = anywhere - {state.id.value for chart in context.machine.charts for state in chart.states if state.id}
     for chart in context.machine.charts:
         states = [state.id.value for state in chart.states if state.id]
-        for name in _references(chart) if chart.states else ():
+        for name in references(chart) if chart.states else ():
             # misplaced-element reports a state in a place where none is allowed
             if name.value in states or name.value in elsewhere:
                 continue
@@ -48,16 +49,6 @@ def _add(context: MachineContext, chart: Chart, name: str, states: Collection[st
     if VALID.match(name):
         edit = after(context.document, chart.states[-1].element, f'<state id="{name}" />')
         yield Fix(f"Add the state `{name}`", (edit,), preferred=not close_names(name, states))
-
-
-def _references(chart: Chart) -> Iterator[Name]:
-    if chart.initial is not None:
-        yield chart.initial
-    for state in chart.states:
-        for handler in state.handlers:
-            for target in handler.targets:
-                if target.state is not None:
-                    yield target.state
 
 
 def _states_below(root: Element) -> Iterator[str]:
