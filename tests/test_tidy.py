@@ -90,6 +90,19 @@ def test_reference_manual_is_current() -> None:
     assert done.returncode == 0, done.stderr
 
 
+BASES = (".", "server", "server/as2fm_lsp", "server/roaml", "server/roaml/rules")
+"""The folders to which paths in CONTRIBUTING.md are relative."""
+INVENTED = re.compile(r"GROUP|Name|my_rule")
+
+
+def test_files_that_the_guide_names_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`([\w./]+/[\w.]+\.(?:ascxml|json|md|py|txt|xml|xsd))`", text))
+    assert len(named) > 30
+    real = {name for name in named if not INVENTED.search(name)}
+    assert sorted(name for name in real if not any((ROOT / base / name).is_file() for base in BASES)) == []
+
+
 def test_example_is_what_init_writes() -> None:
     folder = ROOT / "examples" / "delivery_robot"
     written = {path.relative_to(folder).as_posix(): path.read_text() for path in folder.rglob("*") if path.is_file()}
