@@ -24,6 +24,7 @@ from roaml.expr.infer import (
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Name, walk
 from roaml.expr.types import UNKNOWN, ScalarKind, Type, is_kind
+from roaml.model.exact_number import exact_number
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
 from roaml.model.parameters import NANOSECONDS
@@ -441,10 +442,7 @@ def _text(name: WrittenName | None) -> str:
 
 def _number(name: WrittenName | None) -> Fraction | None:
     """The value of a non-negative number; `None` if it is not one."""
-    try:
-        value = Fraction(name.value) if name is not None and "/" not in name.value else None
-    except ValueError:
-        return None
+    value = exact_number(name.value) if name is not None else None
     return value if value is not None and value >= 0 else None
 
 

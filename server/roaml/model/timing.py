@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
+from roaml.model.exact_number import exact_number
 from roaml.model.expand import PortConstant
 from roaml.model.parameters import NANOSECONDS, Parameters
 from roaml.model.system import System, SystemAutomaton
@@ -53,8 +54,5 @@ def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
     value = automaton.port(port) if port else PortConstant(text)
     if not isinstance(value, PortConstant):
         return None
-    try:
-        hertz = Fraction(value.text.strip())
-    except (ValueError, ZeroDivisionError):
-        return None
-    return hertz if 0 < hertz <= NANOSECONDS_PER_SECOND else None
+    hertz = exact_number(value.text)
+    return hertz if hertz is not None and 0 < hertz <= NANOSECONDS_PER_SECOND else None

@@ -16,11 +16,13 @@ from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import uses
 from roaml.language import ElementType
+from roaml.model.exact_number import exact_number
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.system import System, SystemAutomaton, sanitise
+from roaml.model.timing import NANOSECONDS_PER_SECOND, period
 from roaml.model.value_types import TypedMachine, ValueUse
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
@@ -342,22 +344,19 @@ def _from_port(value: Name | PortRead | None, subject: str) -> str:
 
 
 def rate(text: str) -> str:
-    """The period of a timer, from its rate in Hz as written."""
-    try:
-        hertz = float(text)
-    except ValueError:
+    """The period of a timer in a model, from its rate in Hz as written."""
+    hertz = exact_number(text)
+    if hertz is None or hertz <= 0:
         return ""
-    if not 0 < hertz < float("inf"):
-        return ""
-    return f"{hertz:g} Hz: every {duration(1 / hertz)}"
+    return f"{float(hertz):g} Hz: every {duration(period(hertz).nanoseconds / NANOSECONDS_PER_SECOND)}"
 
 
 def duration(seconds: float) -> str:
     """A duration with a readable unit."""
     for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
         if seconds * factor >= 1:
-            return f"{seconds * factor:.4g} {unit}"
-    return f"{seconds * 1e9:.4g} ns"
+            return f"{seconds * factor:.9g} {unit}"
+    return f"{seconds * 1e9:.9g} ns"
 
 
 def port(analysis: Analysis, symbol: Symbol) -> str:

@@ -14,6 +14,7 @@ from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.text import Span, TextEdit
 
+SLOWEST = 1e-9
 FASTEST = 1e9
 ALMOST = re.compile(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII)
 """A number with a decimal comma or a unit."""
@@ -58,6 +59,8 @@ def rate_problem(text: str) -> str:
         return f"a rate must be a number in Hz, not `{text[:40]}`"
     if not 0 < rate < float("inf"):
         return f"a rate must be greater than 0 Hz, not {text}"
+    if rate < SLOWEST:
+        return "a rate must be at least 1e-9 Hz, one tick in 31 years; check the exponent"
     if rate > FASTEST:
         return "a rate must be at most 1 GHz, because the clock has a resolution of 1 ns"
     return ""

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers as users write them, as exact fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+SMALLEST, GREATEST = 1e-30, 1e30
+"""The size of numbers other than 0. The fraction of `1e-9999999` would have ten million digits."""
+
+
+def exact_number(text: str) -> Fraction | None:
+    """The value of a decimal number, as in ` 0.5` or `2e3`; `None` if it is not one, or of an impossible size."""
+    try:
+        size = abs(float(text))
+        if "/" in text or not (SMALLEST <= size <= GREATEST or (size == 0 and _is_zero(text))):
+            return None
+        return Fraction(text.strip())
+    except ValueError:
+        return None
+
+
+def _is_zero(text: str) -> bool:
+    """Whether a number that is 0 as a float is 0, not only too small."""
+    return not any(digit in "123456789" for digit in text.lower().partition("e")[0])
