@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from drawn import problems
+from drawing_check import problems
 from ide_models import load
 
 from roaml import api

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from drawn import problems
+from drawing_check import problems
 
 from conformance import ROOT, systems
 from roaml import api
