@@ -30,7 +30,7 @@ def test_a_message_is_published_and_received(client: Client) -> None:
     client.event("stopped")
     state = client.ask("choices")
     assert (state["step"], state["isByHand"], state["isChanged"]) == (1, True, True)
-    assert "has been sent and not been received" in client.refusal("publish", event="/arm/command", fields={"data": 2})
+    assert "has been sent but not received yet" in client.refusal("publish", event="/arm/command", fields={"data": 2})
     (receives,) = (choice for choice in state["choices"] if choice["text"].startswith("Arm receives"))
     assert "(data: 1)" in receives["text"]
     client.ask("choose", choice=receives["number"])

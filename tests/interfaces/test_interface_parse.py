@@ -368,11 +368,11 @@ char c 'a'
     """,
     """
 float32 x 1e39
-          ^^^^ 1e39 is too large for `float32`
+          ^^^^ 1e39 is out of the range of `float32`
     """,
     """
 float64 x 1e999
-          ^^^^^ 1e999 is too large for `float64`
+          ^^^^^ 1e999 is out of the range of `float64`
     """,
     """
 float64 x 1.0f

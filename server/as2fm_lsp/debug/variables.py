@@ -42,8 +42,8 @@ class References:
         return 0
 
     def variable(self, shown_: Shown) -> dict[str, Any]:
-        """A `Variable` of the protocol. A value that has changed since the previous stop has the attribute `changed`,
-        and its type says what it was."""
+        """A `Variable` of the protocol. If the value has changed since the previous stop, the attributes contain
+        `changed`, and `type` also contains the previous value."""
         entry, before = shown_.entry, shown_.before
         has_changed = before is not None and before != entry.value
         attributes = ["changed"] if has_changed else []

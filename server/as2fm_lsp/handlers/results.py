@@ -67,8 +67,7 @@ def register(context: Context) -> None:
 
     @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
-        """The shortest trace that contradicts a property, or with `witness`, that speaks for it; null if none is
-        known."""
+        """The shortest trace that contradicts a property or, with `witness`, supports it; `null` if none is known."""
         path = session.convert.path(document_uri(params))
         current = CurrentResults(context, session.moment().snapshot(path), path)
         known = current.get(string(params, "property"))

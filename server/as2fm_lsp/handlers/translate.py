@@ -120,7 +120,7 @@ def _while_wanted(context: Context, pieces: Iterable[str]) -> Iterator[str]:
 
 
 def actions(snapshot: Snapshot, path: str, convert: Converter) -> Iterator[types.CodeAction]:
-    """One for each system of a file; a system file is its own system."""
+    """A code action for each system that a file belongs to; a system file belongs to the system that it describes."""
     for system, name in system_names(snapshot.analysis.memberships.get(path, ())).items():
         title = TITLE if system == path else f"Translate {name} to JANI"
         command = types.Command(title, COMMAND, arguments=[convert.uri(system)])

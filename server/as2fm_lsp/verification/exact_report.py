@@ -14,7 +14,7 @@ _SAME = 1e-6
 
 
 def lines(name: str, exact: Exact, seconds: float) -> list[str]:
-    """For users: the values, and the shortest traces."""
+    """The lines of the report for users: the values and the shortest traces."""
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}, {seconds:.1f} s"
     quality = "exact" if exact.is_precise else "not exact, the bounds did not become closer"

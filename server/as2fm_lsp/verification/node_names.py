@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and their nodes.
+"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and the
+nodes that they denote.
 
 Properties use these names, and texts do if several nodes have the same name. Each text that uses them explains them
 once.

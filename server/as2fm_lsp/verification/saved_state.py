@@ -52,7 +52,7 @@ class SavedState:
         if known is None:
             return Tally()
         if known.get("model") != payload.digest:
-            raise StateError(f"{self.path} was written for another model; name another file")
+            raise StateError(f"{self.path} was written for another model; use another file")
         if (known.get("seed"), known.get("max_steps")) != (self.options.seed, self.options.max_steps):
             raise StateError(
                 f"{self.path} was written with another seed or limit of steps; use the same ones, or another file"

@@ -97,7 +97,7 @@ def sending(session: Session, sources: Sources, name: str, fields: Value) -> Int
         raise WatchError(f"`{name}` has several events; use one of {', '.join(form.event for form in matches)}")
     (form,) = matches
     if not form.is_free:
-        raise WatchError(f"{form.text} has been sent and not been received yet; go on until it is received")
+        raise WatchError(f"{form.text} has been sent but not received yet; continue until it is received")
     return Intervention(form.event, tuple(_written(session, sources, form, fields)))
 
 
@@ -174,7 +174,7 @@ def _stored(session: Session, instance: int) -> dict[str, Plain]:
 
 
 class _Cells:
-    """The variables of an instance, of which some are set."""
+    """The variables of an instance, and the new values of those that are changed."""
 
     def __init__(self, stored: dict[str, Plain]) -> None:
         self._stored = stored

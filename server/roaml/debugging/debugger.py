@@ -197,7 +197,7 @@ class Debugger:
         return self._movement is not None
 
     def advance(self, portion: float = PORTION_S) -> Stop | None:
-        """Continue the movement for some time, in s; returns `None` if it is not at its end yet."""
+        """Continue the movement for at most `portion` s; return `None` if it has not ended yet."""
         movement = self._movement
         if movement is None:
             return None

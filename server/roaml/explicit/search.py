@@ -271,7 +271,7 @@ class StateSearch:
     # ------------------------------------------------------------ packing
 
     def _current(self, cell: int) -> int:
-        """The value of a cell in the kernel; a real number by its bits."""
+        """The value of a cell in the kernel; for a real number, its bit pattern as an integer."""
         value: int
         if cell < self.places:
             value = self.kernel.place[cell]

@@ -155,7 +155,7 @@ def _float(written: str, span: Span, type_name: str, report: FileFindings) -> fl
         return None
     value = float(written)
     if abs(value) > _GREATEST_FLOAT[type_name]:
-        report.add(span, f"{shorten(written)} is too large for `{type_name}`")
+        report.add(span, f"{shorten(written)} is out of the range of `{type_name}`")
         return None
     return value
 

@@ -175,7 +175,7 @@ class _Parser:
     # ---------------------------------------------------------------- structure
 
     def value(self, value: JsonValue, comma: int) -> None:
-        """Read `value`, after a comma or not (`comma` < 0)."""
+        """Read `value`; `comma` is the offset of the comma before it, -1 if there is none."""
         if (comma >= 0) is not self.wants_comma:
             self.odd_comma(value.start, comma)
         key = self.key

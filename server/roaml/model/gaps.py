@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The facts that the unreadable parts of a machine might declare for the rest of the system.
 
-- A gap is one possible fact, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`, but it
-  serves nothing. An element that resembles nothing in the language causes no gap.
+- A gap is one possible fact, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`, but
+  cannot provide a service. An element that resembles nothing in the language causes no gap.
 - A rule that searches for something in the system (a publisher of a topic, a sender of an event, ...) checks whether a
   gap may provide it, and reports nothing then: one error is reported once. All other errors are reported.
 - Gaps contain no positions, so they are parts of outlines. `machine_gaps` returns them with their positions.

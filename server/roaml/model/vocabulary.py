@@ -32,7 +32,7 @@ INSIDE_THREADS = ("ros_action_handle_thread_start", "ros_action_thread_free")
 OUTSIDE_THREADS = ("ros_action_start_thread", "ros_action_handle_thread_free")
 """The elements that are not allowed in an action thread."""
 UNUSUAL_IN_THREADS = ("ros_action_handle_goal",)
-"""The elements that are allowed in an action thread, but seldom directly."""
+"""The elements that are allowed in an action thread but cause a warning there."""
 
 DEFAULT_TYPES = {
     ScalarKind.INT: "int32",

@@ -375,8 +375,8 @@ class _Response:
 
 
 class _Precedence:
-    """The pattern that requires the first condition before each letter with the second one, at a distance in the
-    window."""
+    """The precedence pattern: for each letter at which the second condition holds, the first condition must have held
+    at a distance within the window."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE

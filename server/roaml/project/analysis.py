@@ -467,7 +467,8 @@ class Analysis:
         return tuple(outlines.values())
 
     def _including(self, path: str) -> tuple[str, ...]:
-        """The files of a family that include a file and that no other includes, then the file itself."""
+        """The root files that include a file, directly or indirectly, followed by the file itself. A root file is one
+        that no other file includes."""
         tops = self._tops.get(path, ())
         return (path,) if path in tops else (*(top for top in tops if path in self.trees_from(top)), path)
 

@@ -353,7 +353,7 @@ class Compilation:
         return settle, _ints(code)
 
     def _watch_tables(self) -> tuple[Ints, Ints, Ints, Ints, Ints]:
-        """For each watched variable the instances whose guards read it, and for their locations the groups."""
+        """The instances whose guards read each watched variable, and the groups of each location of these instances."""
         readers: dict[tuple[int, int], dict[int, list[int]]] = {}
         for (location, _), group in self.group_of.items():
             number, _ = self.network.locations[location]

@@ -14,7 +14,8 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.program import FALSE, FAULTY, TRUE, Compiled
 
 MAX_COMBINATIONS = 1 << 20
-"""The maximum number of combinations of edges and destinations in one state: some seconds."""
+"""The maximum number of combinations of edges and destinations in one state. Exploring this many takes a few
+seconds."""
 
 
 class ExploredState(NamedTuple):

@@ -369,7 +369,7 @@ class _Writer:
             self.is_bounded = max(self.is_bounded, 1)
 
     def _end_leaf(self) -> None:
-        """Note the variables that the conditions of the last until read."""
+        """Record the variables that the conditions of the last `U` operator read."""
         self.read.append(self.unread)
         self.unread = set()
 

@@ -29,7 +29,7 @@ from roaml.smc.run import ADAPTIVE, FIXED, SPRT, Answer, Options, Tally, TraceFa
 SCHEDULERS = 256
 """The initial number of memoryless schedulers."""
 TRIED = 16
-"""The number of traces for each in the first round; it doubles in each further round."""
+"""The number of traces for each scheduler in the first round; it doubles in each further round."""
 SURE = 3
 """The number of rounds after which a scheduler is selected that has never, or always, succeeded."""
 USUAL = 100

@@ -247,7 +247,8 @@ class _Measuring:
 
 
 def quantile(share: float, values: Sequence[float], confidence: float) -> Quantile:
-    """A quantile of sorted values, with an interval between two of them that holds for every distribution."""
+    """A quantile of sorted values, with a distribution-free confidence interval. Its ends are two of the values, or 0
+    and infinity where there are too few values."""
     count = len(values)
     tail = (1 - confidence) / 2
 

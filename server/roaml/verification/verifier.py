@@ -261,7 +261,7 @@ class Verifier:
     def _result(
         self, asked: CompiledProperty, answer: Answer | FaultError, pool: Pool, pulse: Pulse | None, seconds: float
     ) -> Result:
-        """The result of an answer that took some seconds; a refusal if it is a fault."""
+        """The result for an answer that took `seconds` s; a refusal if the answer is a fault."""
         began = time.monotonic()
         try:
             if isinstance(answer, FaultError):

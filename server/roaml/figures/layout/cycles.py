@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 
 def closing_links(count: int, links: Sequence[tuple[int, int]]) -> frozenset[int]:
-    """The indexes of links that lead back to a node on the way to them, in a depth-first search from the first node.
+    """The indexes of the back edges of a depth-first search from the first node: the links that lead to a node on the
+    current path.
 
     Links are followed in their order, so that a model is drawn in the order in which it is written.
 

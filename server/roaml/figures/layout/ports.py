@@ -12,7 +12,7 @@ from roaml.figures.layout.vertices import Vertex, VertexKind
 PORT_DISTANCE = 16.0
 PORT_MARGIN = 12.0
 LABEL_MARGIN = 7.0
-"""The distance of two lines at a node, and of a line from the corners of a node and of a label."""
+"""The distance between two lines at a node, and between a line and a corner of a node or a label, in pixels."""
 _SWEEPS = 6
 
 

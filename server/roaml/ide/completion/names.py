@@ -150,7 +150,7 @@ def _events_received(request: Request, subject: CompletionSubject) -> Iterator[C
 
 
 def _events_to_send(request: Request) -> Iterator[CompletionItem]:
-    """Events to send: those that a machine waits for, first."""
+    """Events to send; those that a machine waits for come first."""
     for system in request.systems:
         for event in system.events.values():
             receivers = dict.fromkeys(automaton.name for automaton, _ in event.receivers)
