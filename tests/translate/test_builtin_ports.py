@@ -18,11 +18,17 @@ from roaml.diagnostics import Diagnostic
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.outline import PortOutline
 from roaml.model.system import builtin_plugins
+from roaml.roles import Direction
 
 SETUP = Setup(12)
 VARIABLE_OF = {"int8": "few", "uint8": "least", "int32": "n", "uint32": "msec", "bool": "yes", "any": "n"}
 EXAMPLES = {part.kind: part for tree in reversed(list(cases())) for part in tree.walk()}
-PORTS = [(kind, port) for kind, plugin in builtin_plugins().items() for port in plugin.ports if port.direction == "in"]
+PORTS = [
+    (kind, port)
+    for kind, plugin in builtin_plugins().items()
+    for port in plugin.ports
+    if port.direction is Direction.IN
+]
 
 
 def in_tree(diagnostics: Sequence[Diagnostic], text: str) -> list[str]:
