@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 from roaml.forest.forest import Forest
+from roaml.libraries.scripts import CONDITIONS
 from roaml.model.tree import TreeNode
 from roaml.roles import NodeKind
 
@@ -161,7 +162,7 @@ class Possible:
         """Whether the first tick of a node always returns RUNNING."""
         while True:
             name = node.plugin.value if node.plugin else ""
-            if any(node.element.get(condition) for condition in ("_failureIf", "_successIf", "_skipIf", "_while")):
+            if any(node.element.get(condition) for condition in CONDITIONS):
                 return False
             if node.is_subtree or self.forest.names_tree(node):
                 return False

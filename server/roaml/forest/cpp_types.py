@@ -7,7 +7,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-STRING, ANY, SCRIPT = "string", "any", "script"
+from roaml.libraries.scripts import SCRIPT
+
+STRING, ANY = "string", "any"
 
 _SAME = {
     "int": "int", "int32": "int", "integer": "int", "signed": "int",

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
-from roaml.forest.cpp_types import ANY, SCRIPT
+from roaml.forest.cpp_types import ANY
 from roaml.forest.forest import Forest, port_type
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import scripts_of
 from roaml.libraries import Node
+from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.roles import Direction
 from roaml.script.names import names_in

@@ -7,26 +7,14 @@ import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from roaml.forest.cpp_types import SCRIPT
 from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import probable_ports
+from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
 from roaml.model.tree import TreeNode
 from roaml.script.parse import ScriptProblem, parse
 from roaml.script.tree import Script
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
-
-CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
-"""The attributes with conditions that are evaluated before a node is ticked."""
-AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
-"""The attributes with scripts that are executed after a node has ended."""
-
-_CONDITION_PORTS = ("Precondition", "ScriptCondition")
-_SCRIPT_PORTS = {
-    name: ports
-    for name, node in CPP.nodes.items()
-    if (ports := tuple(port.name for port in node.ports if port.type == SCRIPT))
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +31,11 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
         if attribute.has_value:
             yield ScriptUse(node, attribute, attribute.name in CONDITIONS)
     name = node.plugin.value if node.plugin else ""
-    if name in _SCRIPT_PORTS and forest.known_node(node) is CPP.nodes[name]:
-        for port in _SCRIPT_PORTS[name]:
+    if name in script_ports() and forest.known_node(node) is CPP.nodes[name]:
+        for port in script_ports()[name]:
             attribute_of_port = node.element.get(port) or _probable(node, port)
             if attribute_of_port is not None and attribute_of_port.has_value:
-                yield ScriptUse(node, attribute_of_port, name in _CONDITION_PORTS)
+                yield ScriptUse(node, attribute_of_port, name in CONDITION_NODES)
 
 
 def _probable(node: TreeNode, port: str) -> Attribute | None:
@@ -60,7 +48,7 @@ def _probable(node: TreeNode, port: str) -> Attribute | None:
 def script_attributes(node: TreeNode) -> Iterator[Attribute]:
     """The attributes of a node that contain scripts, independently of the declaration of the node."""
     yield from (attribute for attribute in node.scripts if attribute.has_value)
-    for port in _SCRIPT_PORTS.get(node.plugin.value if node.plugin else "", ()):
+    for port in script_ports().get(node.plugin.value if node.plugin else "", ()):
         attribute = node.element.get(port)
         if attribute is not None and attribute.has_value:
             yield attribute

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
+from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
 from roaml.script.names import names_in
 from roaml.suggest import close_names
@@ -556,14 +557,9 @@ _OWN_ATTRIBUTES = frozenset(("ID", "name"))
 _AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
 
 
-SCRIPTS = ("_failureIf", "_successIf", "_skipIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
-"""The attributes with conditions and scripts of any node."""
-_SCRIPT_PORTS = {"Script": "code", "ScriptCondition": "code", "Precondition": "if"}
-
-
 def _scripts(node: NodeOutline) -> tuple[tuple[str, str], ...]:
-    own = None if node.is_subtree else _SCRIPT_PORTS.get(node.plugin)
-    return tuple((key, text) for key, text in node.attributes if key in SCRIPTS or key == own)
+    ports = () if node.is_subtree else script_ports().get(node.plugin, ())
+    return tuple((key, text) for key, text in node.attributes if key in (*CONDITIONS, *AFTERWARDS, *ports))
 
 
 def _names(tree: TreeOutline) -> frozenset[str]:

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from roaml.forest.cpp_types import SCRIPT
-from roaml.forest.scripts import AFTERWARDS, CONDITIONS
 from roaml.ide.completion.expressions import beginning
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.ports import node_name
 from roaml.ide.completion.request import CompletionSubject, Request
+from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, SCRIPT
 from roaml.model.tree import is_variable_name
 from roaml.text import Span
 

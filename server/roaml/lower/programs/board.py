@@ -10,7 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from roaml.forest.forest import port_type
-from roaml.forest.scripts import parsed
+from roaml.forest.scripts import parsed, script_attributes
+from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
 from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
@@ -59,21 +60,15 @@ class Board:
 
 def node_scripts(node: ExecutedNode) -> Iterator[tuple[str, Script, bool]]:
     """The scripts of a node: attribute, script, and whether its value is a condition."""
-    uses = {"code": True, "if": True} if node.type in ("Script", "ScriptCondition", "Precondition") else {}
-    for attribute in node.node.scripts:
-        if attribute.has_value:
-            yield attribute.name, parsed(_text(attribute))[0], attribute.name in _CONDITIONS
-    for port in uses:
-        attribute_of_port = node.node.element.get(port)
-        if attribute_of_port is not None and attribute_of_port.has_value:
-            yield port, parsed(_text(attribute_of_port))[0], node.type != "Script"
+    for attribute in script_attributes(node.node):
+        is_condition = attribute.name in CONDITIONS or (
+            attribute.name in script_ports().get(node.type, ()) and node.type in CONDITION_NODES
+        )
+        yield attribute.name, parsed(_text(attribute))[0], is_condition
 
 
 def _text(attribute: Attribute) -> Decoded:
     return Decoded(attribute.value, attribute.value_span.start)
-
-
-_CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 
 
 def build_board(

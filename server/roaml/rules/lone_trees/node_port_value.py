@@ -7,10 +7,11 @@ import re
 from collections.abc import Iterator, Set
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.forest.cpp_types import SCRIPT, is_converted, mismatch
+from roaml.forest.cpp_types import is_converted, mismatch
 from roaml.forest.entries import entry_of, names_entry
 from roaml.forest.ports import ports_of
 from roaml.libraries import Node, Port
+from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, replacements

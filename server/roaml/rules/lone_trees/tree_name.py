@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.forest.forest import CPP, Forest
-from roaml.forest.scripts import AFTERWARDS, CONDITIONS
+from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext

@@ -9,8 +9,8 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.forest.forest import OLD_ATTRIBUTES
 from roaml.forest.ports import ports_of, probable_ports
-from roaml.forest.scripts import AFTERWARDS, CONDITIONS
 from roaml.libraries import Node
+from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
 from roaml.rules.support.forest import forest_of, probably_meant
