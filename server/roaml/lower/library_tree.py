@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
+from roaml.forest.scripts import script_attributes
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_automaton
@@ -20,7 +21,7 @@ from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
-from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
+from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.outline import MachineOutline
 from roaml.model.system import EntryOutline, System, SystemAutomaton
@@ -213,7 +214,6 @@ class _Builder:
             children[instance.number] = child
             automata[instance.number] = tuple(reversed(built))
         addresses = {n: parts[-1].address for n, parts in self.parts.items() if len(parts) > 1}
-        self.refusals = [refusal for refusal in self.refusals if refusal.reason != INVALID_SCRIPT]
         self.refusals.sort(key=lambda refusal: (refusal.origin.path, refusal.origin.span.start))
         return LibraryTree(automata, addresses, self.board, tuple(self.refusals))
 
@@ -226,8 +226,8 @@ class _Builder:
 
     def check(self, part: _Part) -> None:
         """A constant that a port of a machine has got cannot change."""
-        for attribute in part.node.node.element.attributes:
-            for name, operator in names_in(attribute.value) if attribute.name in dict(_scripts(part.node.node)) else ():
+        for attribute in script_attributes(part.node.node):
+            for name, operator in names_in(attribute.value):
                 if operator != "read" and part.node.frame.entry(name) in self.constants_of_machines:
                     raise _constant(name, Location(part.node.origin.path, attribute.value_span))
         for port, entry, _, span in part.node.ports():
@@ -283,17 +283,6 @@ def _constant(name: str, origin: Location) -> TreeRefusal:
 def _address(number: int, level: int) -> str:
     """The address of a part of an instance: the outermost one has its number."""
     return str(number) if level == 0 else f"{number}_inner" if level == 1 else f"{number}_inner{level}"
-
-
-def _scripts(node: TreeNode) -> Iterator[tuple[str, str]]:
-    yield from ((attribute.name, attribute.value) for attribute in node.scripts)
-    for port in ("code", "if"):
-        attribute = node.element.get(port)
-        if attribute is not None and node.plugin is not None and node.plugin.value in _SCRIPTED:
-            yield port, attribute.value
-
-
-_SCRIPTED = ("Script", "ScriptCondition", "Precondition")
 
 
 def _declared(automaton: SystemAutomaton) -> Node:

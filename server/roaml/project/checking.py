@@ -416,10 +416,11 @@ class _Run:
         )
 
     def _refusals(self) -> tuple[tuple[Span, str], ...]:
-        """Why nodes of this file cannot be translated, if the tree is executed as by the library."""
+        """Why nodes of this file cannot be translated, if the tree is executed as by the library; without the reasons
+        that other rules report."""
         tree = self.analysis.library_tree(self.system_path) if self.system_path else None
         refusals = () if tree is None else tree.refusals
-        return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path)
+        return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path and not r.is_reported)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The trees with which this file is checked: those of its system, or those that it includes and that include

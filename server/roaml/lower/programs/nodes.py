@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
+from roaml.libraries.scripts import script_ports
 from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
 from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
-from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
+from roaml.lower.programs.entries import BoardEntry, EntryKind, read_literal
 from roaml.lower.programs.executed import ExecutedNode
-from roaml.lower.programs.refusal import TreeRefusal
+from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.roles import NodeKind
 from roaml.text import Location
@@ -36,10 +37,10 @@ def program_of(node: ExecutedNode) -> NodeProgram | None:
         reason = f"`{node.type}` has children, and it is not known what it does with them"
         raise TreeRefusal(node.origin, reason)
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
-        raise TreeRefusal(node.origin, f"`{node.type}` needs children")
+        raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
     absent = CPP.absent.get(node.type)
     if node.known is None and absent is not None:
-        raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}")
+        raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}", is_reported=True)
     return None
 
 
@@ -47,7 +48,8 @@ def _check_children(node: ExecutedNode) -> None:
     assert node.known is not None
     least, most = node.known.children
     if not least <= len(node.children) <= most:
-        raise TreeRefusal(node.origin, f"`{node.type}` has {len(node.children)} children, which the library rejects")
+        reason = f"`{node.type}` has {len(node.children)} children, which the library rejects"
+        raise TreeRefusal(node.origin, reason, is_reported=True)
 
 
 def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
@@ -66,8 +68,17 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
                 is_condition=is_condition,
             )
         except ScriptRefusal as refusal:
-            raise TreeRefusal(Location(node.origin.path, refusal.span), refusal.reason) from None
+            at = Location(node.origin.path, refusal.span)
+            raise TreeRefusal(at, refusal.reason, is_reported=refusal.reason == INVALID_SCRIPT) from None
+    if node.type in programs():
+        for port in script_ports().get(node.type, ()):
+            if port not in result:
+                raise _missing(node, port)
     return result
+
+
+def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
+    return TreeRefusal(node.origin, f"`{node.type}` needs the port `{port}`", is_reported=True)
 
 
 def asks_world(program: NodeProgram) -> bool:
@@ -144,13 +155,11 @@ class _Reader:
             type_ = port_type(port)
             if program.name.startswith("Switch"):
                 known[port.name] = _case(text, kinds)
-            elif type_ == "NodeStatus":
-                known[port.name] = _status(text)
             else:
-                known[port.name] = self.literal(node, type_, text)
+                known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
         missing = [port for port in _needed(program) if port not in known and port not in bound]
         if missing and not program.name.startswith("Switch"):
-            raise TreeRefusal(node.origin, f"`{node.type}` needs the port `{missing[0]}`")
+            raise _missing(node, missing[0])
         if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
             program.name.startswith("Switch")
         ):
@@ -165,13 +174,6 @@ class _Reader:
         if not program.name.startswith("Switch"):
             return []
         return [board.entries[entry] for entry, _, _ in given.values() if entry is not None and entry in board.entries]
-
-    def literal(self, node: ExecutedNode, type_: str, text: str) -> Known:
-        wrong = mismatch(type_, text)
-        value = read_literal(wrong.instead if wrong is not None and wrong.ignored else text)[1]
-        if isinstance(value, str) and kind_of_cpp(type_) not in (EntryKind.TEXT, None):
-            raise TreeRefusal(node.origin, f"`{text}` is not a value for a port of the type {type_}")
-        return value
 
     def set_blackboard(
         self, node: ExecutedNode, board: Board, known: dict[str, Known], bound: dict[str, BoardEntry]
@@ -238,9 +240,24 @@ def _needed(program: NodeProgram) -> set[str]:
     return names
 
 
-def _status(text: str) -> int:
-    """The code of a status that is written as a word or, in trees of systems, as a number."""
-    return int(text) if text.strip() in ("1", "2", "3") else STATUS_CODES.get(text.strip(), RUNNING)
+def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
+    """A constant as the library reads it.
+
+    Raises:
+        TreeRefusal: the library rejects it.
+    """
+    if type_ == "NodeStatus" and text.strip() in _STATUS_NUMBERS:
+        return int(text)
+    wrong = mismatch(type_, text)
+    if wrong is not None and not wrong.ignored:
+        raise TreeRefusal(origin, f"the port `{port}` {wrong.message}, not `{text}`")
+    if type_ == "NodeStatus":
+        return STATUS_CODES.get(text.strip(), RUNNING)
+    return read_literal(wrong.instead if wrong is not None else text)[1]
+
+
+_STATUS_NUMBERS = ("1", "2", "3")
+"""Statuses as trees of systems may write them."""
 
 
 def _case(text: str, kinds: set[EntryKind]) -> Known:

@@ -6,13 +6,19 @@ from __future__ import annotations
 from roaml.text import Location
 
 INVALID_SCRIPT = "the script is not valid"
-"""The reason for a script with a syntax error, which other checks report."""
+"""The reason for a script with a syntax error."""
 
 
 class TreeRefusal(Exception):  # noqa: N818 - the tree may be correct
-    """A tree cannot be translated; `origin` is the place of the reason."""
+    """A tree cannot be translated.
 
-    def __init__(self, origin: Location, reason: str) -> None:
+    Attributes:
+        origin: the position of the reason.
+        is_reported: whether the checks of nodes, ports and scripts report the reason as well.
+    """
+
+    def __init__(self, origin: Location, reason: str, *, is_reported: bool = False) -> None:
         super().__init__(reason)
         self.origin = origin
         self.reason = reason
+        self.is_reported = is_reported
