@@ -97,3 +97,26 @@ def test_only_timers_may_not_be_declared_twice_in_the_same_way(
     text = f'<ascxml name="A" version="1.0" initial="a">{declaration * 2}<state id="a" /></ascxml>'
     diagnostics, _ = check_text(tmp_path, text)
     assert [d.severity for d in diagnostics if d.code == "duplicate-handle"] == [severity]
+
+
+@pytest.mark.parametrize(
+    ("number", "severity"),
+    [("300", Severity.WARNING), (str(2**63 - 1), Severity.WARNING), (str(2**63), Severity.ERROR)],
+)
+def test_a_port_with_a_number_that_no_model_can_have(tmp_path: Path, number: str, severity: Severity) -> None:
+    text = f"""
+-- main.xml --
+<roaml>
+    <parameters><max_time value="5" unit="s" /><bt_tick_rate value="1.0" /></parameters>
+    <behavior_tree><input type="bt.cpp-xml" src="tree.xml" /></behavior_tree>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- properties.jani --
+{{"properties": []}}
+-- tree.xml --
+<root BTCPP_format="4">
+    <BehaviorTree ID="Main"><Repeat num_cycles="{number}"><AlwaysSuccess /></Repeat></BehaviorTree>
+</root>
+"""
+    diagnostics, _ = check_text(tmp_path, text)
+    assert [(d.code, d.severity) for d in diagnostics] == [("port-value", severity)]

@@ -28,6 +28,9 @@ from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
 
+_TOO_LARGE = 1 << 63
+"""No model has an integer of this size or more."""
+
 
 def check(context: TreeContext) -> Iterator[Finding]:
     """Check ports of trees in systems; BehaviorTree.CPP itself accepts any text."""
@@ -222,7 +225,7 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     low, high = INTEGER_RANGES.get(port.type, (None, None))
     if value is not None and low is not None and high is not None and not low <= value <= high:
         message = f"{text} does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
-        return ConstantProblem(message, Severity.WARNING)
+        return ConstantProblem(message, Severity.WARNING if -_TOO_LARGE <= value < _TOO_LARGE else Severity.ERROR)
     return None
 
 
