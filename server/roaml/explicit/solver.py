@@ -795,20 +795,12 @@ class Solver:
                 continue
             self.set_of[state] = own
             if self.group[state] == state:
+                # The states of one merged state follow each other, so these numbers have the order in which they are
+                # added below.
+                self.index[state] = states
                 states += 1
             choices += self.start[state + 1] - self.start[state]
         process = SmallProcess(states, choices, choices)
-        states = 0
-        i = first
-        while i < last:
-            group = self.group[self.order[i]]
-            if self.fixed[group] != 0:
-                i += 1
-                continue
-            self.index[group] = states
-            states += 1
-            while i < last and self.group[self.order[i]] == group:
-                i += 1
         i = first
         while i < last:
             group = self.group[self.order[i]]
