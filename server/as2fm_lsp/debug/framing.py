@@ -66,7 +66,8 @@ def write_message(stream: BinaryIO, message: Mapping[str, Any]) -> None:
     Raises:
         OSError, ValueError: the stream is closed.
     """
-    body = json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace")
+    # Escapes in ASCII also keep what UTF-8 cannot encode: half of a surrogate pair, as a client may have sent.
+    body = json.dumps(message, separators=(",", ":")).encode("ascii")
     stream.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
     stream.flush()
 
