@@ -12,6 +12,7 @@ from roaml.expr.tree import Expr
 from roaml.expr.types import TypeName, parse_type
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Attribute, Document, Element
+from roaml.xml_syntax.names import SPACE
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +63,15 @@ class TypeRef:
 
 
 def name_of(attribute: Attribute | None) -> Name | None:
-    """The value of an attribute, without surrounding white space; None if it is missing or empty."""
-    if attribute is None or not attribute.value or attribute.value.isspace():
+    """The value of an attribute, without surrounding white space of XML; `None` if it is missing or empty. Other white
+    space is part of the name, as the grammar has it: no check would report a name of it otherwise."""
+    stripped = "" if attribute is None else attribute.value.strip(SPACE)
+    if attribute is None or not stripped:
         return None
     value, span = attribute.value, attribute.value_span
-    stripped = value.strip()
     if stripped == value:
         return Name(value, span)
-    lead = len(value) - len(value.lstrip())
+    lead = len(value) - len(value.lstrip(SPACE))
     return Name(stripped, Span(span.start + lead, span.end - (len(value) - lead - len(stripped))))
 
 

@@ -9,12 +9,13 @@ from roaml.diagnostics import Finding, Severity
 from roaml.expr.parse import SYNTAX
 from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
+from roaml.xml_syntax.names import SPACE
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         # invalid-value reports empty expressions
-        if isinstance(value.value, Expression) and value.value.text.strip():
+        if isinstance(value.value, Expression) and value.value.text.strip(SPACE):
             yield from (finding for finding in value.value.findings if finding.code == SYNTAX)
 
 
