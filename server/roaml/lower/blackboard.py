@@ -42,7 +42,9 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
     """The automaton; `None` if the tree uses no variables."""
     system = program.system
     if program.library is not None:
-        return board_automaton(program.library.board, program.node(ROOT_NUMBER))
+        return board_automaton(
+            program.library.board, program.node(ROOT_NUMBER), is_read=program.system.reads_blackboard
+        )
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:
         return None
@@ -64,7 +66,7 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 
-def board_automaton(board: Board, origin: Location) -> Automaton | None:
+def board_automaton(board: Board, origin: Location, *, is_read: bool) -> Automaton | None:
     """The automaton for the entries of a tree that is executed as by the library."""
     entries = [*board.entries.values(), *board.flag_of.values()]
     if not entries:
@@ -81,7 +83,7 @@ def board_automaton(board: Board, origin: Location) -> Automaton | None:
     ]
     answer = Send(ANSWER, tuple(Param(entry.variable, name(entry.variable), origin) for entry in entries), origin)
     asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
-    idle = State("idle", (), (), (*writes, asked), origin)
+    idle = State("idle", (), (), (*writes, asked) if is_read else tuple(writes), origin)
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
 
 

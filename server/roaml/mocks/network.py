@@ -158,7 +158,7 @@ class _Builder:
         root = _root(self.tree, tick, children[ROOT_NUMBER].answers, origin, self.options.counts)
         timer = Timer(root.name, f"{self.tree.name}_tick", tick, period(self.options.rate), origin)
         members = [root, *(automata[node.number] for node in self.tree.nodes)]
-        blackboard = board_automaton(board, origin)
+        blackboard = board_automaton(board, origin, is_read=bool(board.read or board.flag_of))
         if blackboard is not None:
             members.append(blackboard)
         members.append(clock([timer], self.options.max_time, origin))

@@ -104,6 +104,7 @@ class _Reader:
     typed: Mapping[str, str] | None
     kinds: dict[str, EntryKind] = field(default_factory=dict)
     readers: set[str] = field(default_factory=set)
+    stored: set[str] = field(default_factory=set)
     writers: set[str] = field(default_factory=set)
     texts: dict[str, list[str]] = field(default_factory=dict)
     mentioned: dict[str, list[int | float | str]] = field(default_factory=dict)
@@ -190,7 +191,7 @@ class _Reader:
 
     def copied(self) -> None:
         for target, source in self.copies:
-            if target in self.readers or target in (self.typed or {}):
+            if target in self.readers or target in self.stored or target in (self.typed or {}):
                 self.readers.add(source)
             for one, other in ((target, source), (source, target)):
                 if other in self.kinds:
@@ -207,7 +208,9 @@ class _Reader:
                 case Assignment(target=target, value=value, operator=operator):
                     full = node.frame.entry(target.name)
                     self.writers.add(full)
-                    self.readers.add(full)  # a value that is computed has to be stored
+                    self.stored.add(full)  # a value that is computed has to be stored
+                    if operator not in (":=", "="):
+                        self.readers.add(full)
                     if operator in (":=", "="):
                         targets.add(id(target))
                         self.add(full, _KIND.get(type_of(value, entry)))
@@ -246,7 +249,7 @@ class _Reader:
     def result(self) -> Board:
         entries: dict[str, BoardEntry] = {}
         typed = self.typed or {}
-        for name in sorted(self.readers | typed.keys()):
+        for name in sorted(self.readers | self.stored | typed.keys()):
             initial = self.given.get(name, self.tree.initial.get(name))
             if name not in self.writers and name not in typed and initial is None:
                 continue
