@@ -61,11 +61,12 @@ def translated(drawn: Drawn, ticks: int) -> Model:
 
 
 def leaves_of(drawn: Drawn) -> dict[int, tuple[str, str]]:
-    """Number -> name and type of the leaves of the program."""
+    """Number -> name and type of the leaves of the program. A `<SubTree>` has no number."""
     numbers, names = itertools.count(1000), itertools.count()
 
     def walk(node: Drawn) -> Iterator[tuple[int, tuple[str, str]]]:
-        number, name = next(numbers), f"leaf{next(names)}"
+        name = f"leaf{next(names)}"
+        number = next(numbers) if node.type != "SubTree" else 0
         if is_program_leaf(node):
             yield number, (name, node.type)
         for child in node.children:

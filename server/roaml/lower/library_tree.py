@@ -83,7 +83,7 @@ class _FrameNames:
         value = self.frame.resolve(name)
         if isinstance(value, Reference):
             return value.variable
-        variable = identifier(f"{self.frame.prefix}{name}")
+        variable = identifier(value.variable)
         self.initial[variable] = value.text
         return variable
 
