@@ -77,8 +77,8 @@ examples:
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
 combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
 where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result lists how
-many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands still;
-a warning with an example reports this.
+many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands
+still; a warning with an example reports this.
 
 exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
