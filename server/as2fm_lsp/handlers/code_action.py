@@ -62,7 +62,7 @@ def register(context: Context) -> None:
             if (candidate.title, candidate.kind, _identity(candidate)) == (
                 action.title,
                 action.kind,
-                data.get("mends"),
+                data.get("fixes"),
             ):
                 action.edit = workspace_edit(context, snapshot, candidate.make())
                 break
@@ -84,12 +84,12 @@ def _converted(
     converted = types.CodeAction(
         action.title,
         kind=action.kind,
-        diagnostics=shown.of(action.mends),
+        diagnostics=shown.of(action.diagnostic),
         is_preferred=action.preferred or None,
     )
     if _resolves(context):
         uri = context.session.convert.uri(path)
-        converted.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
+        converted.data = {"uri": uri, "start": place.start, "end": place.end, "fixes": _identity(action)}
     else:
         converted.edit = workspace_edit(context, snapshot, action.make())
     return converted
@@ -97,11 +97,11 @@ def _converted(
 
 def _identity(action: CodeAction) -> dict[str, Any] | None:
     """The key that distinguishes actions with equal titles: the diagnostic that they fix."""
-    mended = action.mends
-    if mended is None:
+    fixed = action.diagnostic
+    if fixed is None:
         return None
-    facts = facts_to_json(mended.facts) if mended.facts else None
-    return {"code": mended.code, "start": mended.span.start, "facts": facts}
+    facts = facts_to_json(fixed.facts) if fixed.facts else None
+    return {"code": fixed.code, "start": fixed.span.start, "facts": facts}
 
 
 class _ClientDiagnostics:
