@@ -126,7 +126,7 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
         return
     if forest is None or close:
         yield RULE.at(name.span, message, *replacements(name.span, close))
-    elif name.value not in forest.trees and name.value not in forest.beside:
+    elif name.value not in (*forest.trees, *forest.beside, *forest.subtree_models):
         elsewhere = "" if close else " in this file, the files that it includes, or its folder"
         yield RULE.at(name.span, f"{message}{elsewhere}", *replacements(name.span, close), severity=Severity.WARNING)
 
