@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-from mock_plugins import mock_plugin
 from random_trees import ENTRIES, Drawn, as_xml, is_program_leaf
 from translated_trees import CODES, Observed
 
 from roaml import api
 from roaml.jani.model import Model
 from roaml.mocks.mock import Mock
+from roaml.mocks.plugin import mock_plugin
 from roaml.scxml.names import sent_by
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording

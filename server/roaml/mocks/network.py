@@ -19,7 +19,16 @@ from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import (
+    EVENT_PROBABILITY,
+    PortValues,
+    asks_world,
+    compiled_scripts,
+    event_probability,
+    flags_at,
+    port_values,
+    program_of,
+)
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
@@ -49,8 +58,6 @@ DEFAULT_RATE = Fraction(10)
 """Ticks of the tree in a second."""
 DEFAULT_MAX_TIME = 600 * 10**9
 """In ns."""
-EVENT_PROBABILITY = 0.1
-"""The probability that something happens in the world at a tick, for nodes without a mock."""
 TICKS = "ticks"
 """The variable of the root with the number of ticks."""
 MAX_TEXT_LENGTH = 100
@@ -219,6 +226,9 @@ class _Builder:
         mock = mock_for(exact, node.name, node.type)
         if mock is not None:
             return mock.probability
+        probability = event_probability(node)
+        if probability is not None:
+            return probability
         self.assumed.append(node)
         return EVENT_PROBABILITY
 
