@@ -36,10 +36,10 @@ REFUSALS = """
 a.ascxml         _msg.|data              x         `data` is defined by ROS
 a.ascxml         std_msgs/|Int32         x         is defined by ROS
 tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
-a.ascxml         |transition             x         there is no name here
+a.ascxml         |transition             x         there is no name at this position
 a.ascxml         id="|p" type            n         a variable `n` already exists
 a.ascxml         id="|p" type            p         its name is already `p`
-a.ascxml         id="|p" type            _msg      the name of received data
+a.ascxml         id="|p" type            _msg      the name of an event variable
 a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      separates the parts of names
