@@ -35,7 +35,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         unread = system.may(GapAct.SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
         if not unread and event.value not in generated:
             close = close_names(event.value, sent)
-            message = f"no machine sends the event `{event.value}`{did_you_mean(close)}"
+            message = (
+                f"no machine sends the event `{event.value}`, so this transition is never taken{did_you_mean(close)}"
+            )
             drop = remove(context.document, handler.element, "Remove this transition")
             yield RULE.at(event.span, message, *replacements(event.span, close), drop)
 

@@ -61,7 +61,7 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     src, earlier = listed.input.src, before.input.src
     assert src is not None
     assert earlier is not None
-    first = Related(earlier.span, "the first one")
+    first = Related(earlier.span, "the first `<input>`")
     kind_name = "node" if listed.input.section == "node_models" else "plugin"
     if before.path == listed.path:
         # A plugin that is listed twice still exists once; a node would exist twice.
@@ -71,9 +71,8 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
         message = f"`{src.value}` is listed twice{same}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
     named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
-    return RULE.at(
-        src.span, f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`", related=[first, named]
-    )
+    message = f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`; rename one of them"
+    return RULE.at(src.span, message, related=[first, named])
 
 
 RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)
