@@ -606,9 +606,13 @@ class Analysis:
         )
         if not system.is_library_tree:
             return system
-        from roaml.lower.library_tree import entry_outlines  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
-        return replace(system, entries=entry_outlines(system, self._tree_files(system)))
+        files = self._tree_files(system)
+        builder = LibraryTreeBuilder(system, files)
+        completed = replace(system, entries=builder.entries())
+        self.memo.get("library tree builder", path, (completed, tuple(files.values())), lambda: builder)
+        return completed
 
     def _tree_files(self, system: System) -> dict[str, TreeFile]:
         return {path: file for path in system.tree_paths if (file := self.tree(path)) is not None}
@@ -618,10 +622,12 @@ class Analysis:
         system = self.system(path)
         if system is None or not system.is_library_tree:
             return None
-        from roaml.lower.library_tree import library_tree  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
         files = self._tree_files(system)
-        return self.memo.get("library tree", path, (system, tuple(files.values())), lambda: library_tree(system, files))
+        key = (system, tuple(files.values()))
+        builder = self.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
+        return self.memo.get("library tree", path, key, builder.tree)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""

@@ -140,6 +140,8 @@ def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFo
             yield _Want(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
         elif not is_read:
             yield _Want(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
+    if not system.observed:
+        return
     known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):
         yield _Want(None, name, f"whether the variable `{name}`, which a property names, exists")
