@@ -320,7 +320,7 @@ def test_nothing_is_expected_of_an_assumption() -> None:
     assumed = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.5"')
     diagnostics = errors(with_assumptions(assumed, EXISTS.format("g", "whistle")))
     assert [(error.code, error.message) for error in diagnostics] == [
-        ("property-form", "an assumption has no value, so nothing can be expected of it")
+        ("property-form", "an assumption has no probability; remove `expect`")
     ]
 
 

@@ -111,8 +111,8 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:
-    """Whether a file is written by hand: it is not a JANI model and, if no system lists it, not in a similar format
-    such as plain SCXML."""
+    """Whether a file is written by hand: it is not a JANI model, and it is listed by a system or is not in a similar
+    format such as plain SCXML."""
     kind, document = analysis.kind(path), analysis.document(path)
     if kind is FileKind.JANI_MODEL or path in analysis.memberships:
         return kind is not FileKind.JANI_MODEL

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""not-in-reference: see not_in_reference.md."""
+"""The rule `not-in-reference`, which not_in_reference.md describes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.xml_syntax import Element
 
 NEW_ELEMENTS = ("ros_action_cancel_goal", "ros_action_handle_cancel_goal")
-"""The elements that the main line of the reference translator does not read yet
+"""The elements that the main branch of the reference translator does not read yet
 (docs/spec/differences.md#accepted-machines)."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report each of these elements once in a file."""
+    """Report the first use of each element of `NEW_ELEMENTS` in a file; the finding refers to the other uses."""
     places: dict[str, list[Element]] = {}
     for element in context.machine.element.walk():
         if element.name in NEW_ELEMENTS:

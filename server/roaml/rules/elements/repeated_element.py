@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-element: see repeated_element.md."""
+"""The rule `repeated-element`, which repeated_element.md describes."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
-    """Every element with its children, without elements of other namespaces."""
+    """Every element of a document with its children. Elements of other namespaces are left out."""
     namespaces = dict(document.namespaces)
     for element in own_elements(document):
         yield element, [child for child in element.elements if not is_foreign(namespaces, child)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blocking-event-name: see blocking_event_name.md."""
+"""The rule `blocking-event-name`, which blocking_event_name.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-data-unavailable: see event_data_unavailable.md."""
+"""The rule `event-data-unavailable`, which event_data_unavailable.md describes."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
 
 
 def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> Iterator[Fix]:
-    """Change `_event.data.x` to `_msg.x`, or `_msg.x` to `_event.data.x`."""
+    """Fixes that change the name to an event variable in `known`, for example `_event.data.x` to `_msg.x`."""
     old = DATA.get(problem.name, problem.name)
     names = [name for name in known if name != "_action"]
     start = problem.span.start

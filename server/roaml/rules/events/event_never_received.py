@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-never-received: see event_never_received.md."""
+"""The rule `event-never-received`, which event_never_received.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-never-sent: see event_never_sent.md."""
+"""The rule `event-never-sent`, which event_never_sent.md describes."""
 
 from __future__ import annotations
 

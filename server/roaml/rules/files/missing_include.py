@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-include: see missing_include.md."""
+"""The rule `missing-include`, which missing_include.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cancel-never-sent: see cancel_never_sent.md."""
+"""The rule `cancel-never-sent`, which cancel_never_sent.md describes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CANCELS = InterfaceAct(SymbolKind.ACTION_CLIENT, ProtocolPart.CANCEL)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report handlers of cancel requests that no client sends. Clients that do not exist are reported by
+    """Report handlers of cancel requests that no client sends. An action without any client is reported by
     missing-client."""
     if context.system is None:
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-field: see duplicate_field.md."""
+"""The rule `duplicate-field`, which duplicate_field.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-client: see missing_client.md."""
+"""The rule `missing-client`, which missing_client.md describes."""
 
 from __future__ import annotations
 

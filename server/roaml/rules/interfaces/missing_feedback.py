@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-feedback: see missing_feedback.md."""
+"""The rule `missing-feedback`, which missing_feedback.md describes."""
 
 from __future__ import annotations
 

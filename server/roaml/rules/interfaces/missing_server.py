@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-server: see missing_server.md."""
+"""The rule `missing-server`, which missing_server.md describes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
 
 
 def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
-    """Rename an interface where it is declared, and where its name is used as the handle."""
+    """Fixes that rename an interface where it is declared, and where its name is used as the handle."""
     if not naming.literal:
         return
     spans = [naming.span]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""several-servers: see several_servers.md."""
+"""The rule `several-servers`, which several_servers.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""thread-element-outside-thread: see thread_element_outside_thread.md."""
+"""The rule `thread-element-outside-thread`, which thread_element_outside_thread.md describes."""
 
 from __future__ import annotations
 

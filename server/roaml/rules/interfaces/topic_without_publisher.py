@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""topic-without-publisher: see topic_without_publisher.md."""
+"""The rule `topic-without-publisher`, which topic_without_publisher.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""topic-without-subscriber: see topic_without_subscriber.md."""
+"""The rule `topic-without-subscriber`, which topic_without_subscriber.md describes."""
 
 from __future__ import annotations
 

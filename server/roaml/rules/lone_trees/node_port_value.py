@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-port-value: see node_port_value.md."""
+"""The rule `node-port-value`, which node_port_value.md describes."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _CODE = re.compile(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
 
 
 def _is_code(text: str) -> bool:
-    """Whether a default is a C++ expression, which models use as a description for people."""
+    """Whether a default is a C++ expression. Models contain these as descriptions for readers; they are not values."""
     return bool(_CODE.match(text))
 
 
@@ -89,8 +89,8 @@ _DOLLAR = re.compile(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
 
 
 def _without_braces(node: TreeNode, port: Port | None, setting: PortSetting, names: Set[str]) -> Iterator[Finding]:
-    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` where the library
-    cannot convert a text itself."""
+    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` where
+    BehaviorTree.CPP itself cannot convert a text."""
     text, span = setting.value.value.strip(), setting.value.span
     dollar = _DOLLAR.match(text)
     name = dollar[1] if dollar else text
@@ -130,7 +130,8 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
 
 
 def _severity(known: Node) -> Severity:
-    """The severity of a finding: only a warning for models in files, which may differ from the node."""
+    """The severity of a finding: warning if the node is described by a model in a file, which may differ from the node,
+    otherwise error."""
     return Severity.ERROR if known.library or known.kind is NodeKind.SUBTREE else Severity.WARNING
 
 

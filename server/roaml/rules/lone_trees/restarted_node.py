@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""restarted-node: see restarted_node.md."""
+"""The rule `restarted-node`, which restarted_node.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-name: see tree_name.md."""
+"""The rule `tree-name`, which tree_name.md describes."""
 
 from __future__ import annotations
 

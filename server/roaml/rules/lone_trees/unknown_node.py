@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-node: see unknown_node.md."""
+"""The rule `unknown-node`, which unknown_node.md describes."""
 
 from __future__ import annotations
 
@@ -68,7 +68,8 @@ def _check(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Fin
 
 
 def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
-    """A program may register nodes that no model describes; a name similar to that of a node is always reported."""
+    """Report a node that no model describes. The program may register it, so this is an error only if the end tag has
+    another name; a name similar to that of a known node is always reported."""
     assert node.plugin is not None
     trees = tuple(forest.trees)
     close = node.element.close_name_span

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-property-id: see repeated_property_id.md."""
+"""The rule `repeated-property-id`, which repeated_property_id.md describes."""
 
 from __future__ import annotations
 

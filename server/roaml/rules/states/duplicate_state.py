@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-state: see duplicate_state.md."""
+"""The rule `duplicate-state`, which duplicate_state.md describes."""
 
 from __future__ import annotations
 

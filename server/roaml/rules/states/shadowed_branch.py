@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadowed-branch: see shadowed_branch.md."""
+"""The rule `shadowed-branch`, which shadowed_branch.md describes."""
 
 from __future__ import annotations
 

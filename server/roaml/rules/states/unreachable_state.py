@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unreachable-state: see unreachable_state.md."""
+"""The rule `unreachable-state`, which unreachable_state.md describes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix]:
-    """Remove a state, unless another state, which is never entered either, leads to it."""
+    """A fix that removes a state. There is none if a transition of another unreachable state leads to the state."""
     others = [handler for other in chart.states if other is not state for handler in other.handlers]
     targets = [target.state.value for handler in others for target in handler.targets if target.state]
     if state.id is not None and state.id.value not in targets:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""inexact-max-time: see inexact_max_time.md."""
+"""The rule `inexact-max-time`, which inexact_max_time.md describes."""
 
 from __future__ import annotations
 

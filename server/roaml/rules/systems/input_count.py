@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""input-count: see input_count.md."""
+"""The rule `input-count`, which input_count.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.rules.rule import Rule, SystemContext
 
 @dataclass(frozen=True, slots=True)
 class InputCount(Facts):
-    """The system lists no file of `kind`."""
+    """The facts of a finding: the system lists no file of the kind `kind`."""
 
     kind: FileKind
 
@@ -30,7 +30,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     yield from _property_files(context)
     section = context.file.element.find("behavior_tree")
     kinds = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
-    # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
+    # An input with an unknown or misspelled type may be the tree; other rules report it.
     unread = "behavior_tree" in context.file.unread
     if section is not None and not unread and kinds and all(kind is FileKind.MACHINE for kind in kinds):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"

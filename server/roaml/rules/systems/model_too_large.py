@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""model-too-large: see model_too_large.md."""
+"""The rule `model-too-large`, which model_too_large.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-parameter: see repeated_parameter.md."""
+"""The rule `repeated-parameter`, which repeated_parameter.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-never-written: see blackboard_never_written.md."""
+"""The rule `blackboard-never-written`, which blackboard_never_written.md describes."""
 
 from __future__ import annotations
 

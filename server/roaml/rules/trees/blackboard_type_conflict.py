@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-type-conflict: see blackboard_type_conflict.md."""
+"""The rule `blackboard-type-conflict`, which blackboard_type_conflict.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.rules.support.blackboard import places
 
 @dataclass(frozen=True, slots=True)
 class TypeConflict(Facts):
-    """`other_type` is the type of another port that is bound to the same variable as `port`."""
+    """The facts of a finding: `other_type` is the type of another port that is bound to the same variable as `port`."""
 
     port: str
     other_type: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-model: see duplicate_model.md."""
+"""The rule `duplicate-model`, which duplicate_model.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-port: see invalid_port.md."""
+"""The rule `invalid-port`, which invalid_port.md describes."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
     if base in BASE_TYPES or base in context.struct_names:
         yield RULE.at(type_.span, "a port holds a single value, so arrays and structs are not supported")
         return
-    # A name like `Point` is meant as a struct; it is not a misspelled base type.
+    # A name like `Point` is the name of a struct, not a misspelled base type.
     is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in FOREIGN_TYPES
     candidates = close_names(base, () if is_struct else BASE_TYPES)
     close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else candidates

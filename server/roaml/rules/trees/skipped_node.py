@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""skipped-node: see skipped_node.md."""
+"""The rule `skipped-node`, which skipped_node.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-data: see duplicate_data.md."""
+"""The rule `duplicate-data`, which duplicate_data.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""struct-declaration: see struct_declaration.md."""
+"""The rule `struct-declaration`, which struct_declaration.md describes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check(context: StructsContext) -> Iterator[Finding]:
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
-    """Report another, different declaration of the struct, in this file or another file of the system."""
+    """Report a second, different declaration of a struct, in this file or in another file of the system."""
     name, outline = declaration.name, declaration.outline
     assert name is not None
     same = [other for other in context.outlines if other.name == name.value]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""foreign-namespace: see foreign_namespace.md."""
+"""The rule `foreign-namespace`, which foreign_namespace.md describes."""
 
 from __future__ import annotations
 
