@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import remove
 from roaml.interfaces.registry import NotFound
 from roaml.model.gaps import GapAct
-from roaml.model.globals import global_variables
+from roaml.model.globals import event_names
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
@@ -67,8 +67,7 @@ def _generated(context: MachineContext, system: System) -> frozenset[str]:
         interface_type = context.interface(kind, name)
         return None if isinstance(interface_type, NotFound) else interface_type
 
-    variables = global_variables(system, interface).values()
-    return frozenset((*timers, *(variable.event for variable in variables)))
+    return event_names(system, interface).union(timers)
 
 
 RULE = Rule("event-never-sent", Severity.ERROR, "No machine sends an event that a transition waits for.", machine=check)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
-from roaml.model.globals import global_variables
+from roaml.model.globals import event_names
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
@@ -36,8 +36,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
 
 def _generated(system: System) -> dict[str, str]:
     """The names of automata that the translation adds for events and threads, with phrases for them."""
-    events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
-    generated = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
+    generated = {
+        event: f"the event `{event}`, which is an automaton of the translation"
+        for event in event_names(system, lambda kind, name: None)
+    }
     for automaton in system.automata:
         for thread in automaton.outline.threads:
             servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
