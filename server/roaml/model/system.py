@@ -286,8 +286,7 @@ class System:
 
     def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
         """The facts of a tree node with a port that should contain the name of a topic, service or action, but does
-        not.
-        """
+        not."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(GapAct.VARIABLE, value.variable)} if isinstance(value, Reference) else set()
         return {*bound, (InterfaceAct(use.kind), None)}
