@@ -47,7 +47,7 @@ a.ascxml         event="|go" target      topic_x   the translation uses it for i
 types.xml        id="|Pose"              int32     cannot name a struct
 types.xml        id="|Pose"              true      cannot name a struct
 types.xml        id="|x"                 false     cannot name a member
-tree.xml         <|Walk                  Sequence  is a name of BehaviorTree.CPP
+tree.xml         <|Walk                  Sequence  is the name of a node of BehaviorTree.CPP
 tree.xml         <|Walk                  A         a state machine `A` already exists
 tree.xml         ID="|Sub"               Main      a behavior tree `Main` already exists
 tree.xml         {|own}"                 true      cannot name a blackboard variable
