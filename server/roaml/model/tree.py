@@ -192,15 +192,13 @@ def _node(element: Element) -> TreeNode:
 
 def _is_port(name: str, has_id: bool) -> bool:
     """Whether an attribute can set a port. Attributes that every node may have, and attributes with a namespace,
-    cannot.
-    """
+    cannot."""
     return name != "name" and not (has_id and name == "ID") and name != "xmlns" and ":" not in name
 
 
 def port_key(plugin: str, name: str) -> str:
     """The main name of the port of a plugin that `name` refers to. Ports of nodes of BehaviorTree.CPP may have an
-    alias.
-    """
+    alias."""
     type_ = BEHAVIOR_TREE.elements.get(plugin)
     return type_.port_key(name) if type_ else name
 
