@@ -280,7 +280,7 @@ def _required_type(request: Request, subject: CompletionSubject, part: str) -> T
 
 
 def _required_field_type(request: Request, element: Element, holder: Element) -> Type | None:
-    name, statement = element.get("name"), request.communicate(holder)
+    name, statement = element.get("name"), request.ros_send_of(holder)
     if statement is None or name is None or request.machine is None:
         return None
     declaration = find_handle(request.machine, statement)
