@@ -7,8 +7,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, Drawn, as_xml, trees
 from tree_comparison import difference_in_system
+from trees_in_systems import FOLDER, files
 
 from examples import TIMES, examples
+from roaml import api
+from roaml.lower.programs.automaton import node_automaton
 
 TICKS = 12
 
@@ -29,3 +32,35 @@ def test_a_plugin_behind_conditions() -> None:
     change = Drawn("Script", (("code", "y := 1 - y"),))
     for seed in range(3):
         compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Parallel", (), (act, change)),)), seed)
+
+
+@settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
+@given(trees(ANY))
+def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
+    """Automata of equal shape are built once; each node still gets what its own automaton answers."""
+    tree = Drawn("Sequence", (("_onHalted", "k := k"),), (drawn, drawn))
+    analysis = api.check([f"{FOLDER}/main.xml"], texts=files(tree, TICKS)).snapshot.analysis
+    library = analysis.library_tree(f"{FOLDER}/main.xml")
+    assert library is not None
+    codes = {code.address: code for parts in library.codes.values() for code in parts}
+    recorded = [child for code in codes.values() for child in code.children if child.address in codes]
+    assert recorded
+    for child in recorded:
+        built = node_automaton(codes[child.address]).child
+        assert (built.answers, built.is_stateless) == (child.answers, child.is_stateless), as_xml(tree)
+
+
+def test_a_subtree_resets_a_child_that_has_ended() -> None:
+    """The condition of `WhileDoElse` is asked at each tick, although it has ended before."""
+    for parent in ("WhileDoElse", "ReactiveFallback"):
+        asked = Drawn("SubTree", (("_autoremap", "true"),), (Drawn("Act1"),))
+        tree = Drawn("KeepRunningUntilFailure", (), (Drawn(parent, (), (asked, Drawn("Act3"), Drawn("Act2"))),))
+        for seed in range(4):
+            compare(tree, seed)
+
+
+def test_a_constant_that_two_subtrees_share() -> None:
+    """A constant that a `<SubTree>` gives stays one variable where another `<SubTree>` takes it over."""
+    change = Drawn("SubTree", (("x", "{y}"), ("y", "{x}")), (Drawn("Script", (("code", "y := 2"),)),))
+    asked = Drawn("ScriptCondition", (("code", "x == 2"),))
+    compare(Drawn("Sequence", (), (change, asked, Drawn("Check"))), 0)

@@ -24,7 +24,7 @@ def remarks(answer: Answer) -> list[str]:
     else:
         if tally.closed:
             lines.append(
-                f"its scope was not judged in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
+                f"its scope was not evaluated in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
             )
         if tally.idle:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
@@ -55,7 +55,7 @@ def warning(answer: Answer) -> str:
     if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
         return ""
     if tally.idle == 0:
-        return "the property is vacuous: its scope was not judged in any trace"
+        return "the property is vacuous: its scope was not evaluated in any trace"
     return "the property is vacuous: it was not triggered in any trace"
 
 

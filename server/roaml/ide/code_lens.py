@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.describe.markdown import plain
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
-from roaml.ide.names.lookup import SymbolUse, thing
+from roaml.ide.names.lookup import SymbolUse, symbol_group
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
 from roaml.ide.system_names import MAX_NAMES, grouped
@@ -114,7 +114,7 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     """The uses of a symbol in one system, or in the file if `system` is `None`."""
     if symbol.kind in HANDLES:
         return _handle(analysis, symbol, system)
-    uses_in_system = _within(analysis, thing(analysis, (symbol,)).uses, system)
+    uses_in_system = _within(analysis, symbol_group(analysis, (symbol,)).uses, system)
     in_trees = [use for use in uses_in_system if analysis.tree(use.path) is not None]
     match symbol.kind:
         case SymbolKind.EVENT:
@@ -154,7 +154,7 @@ _SIDES = {
 def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     """The uses of a handle: the numbers of publishers and subscribers, or of servers and clients, of its interface, or
     the callbacks of a timer."""
-    own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
+    own = [use for use in symbol_group(analysis, (symbol,)).uses if not use.occurrence.defines]
     linked = analysis.system(system) if system else None
     interfaces = tuple(
         dict.fromkeys(interface for interface in interfaces_of(analysis, symbol) if interface.path == system)
@@ -162,7 +162,9 @@ def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     if not interfaces or linked is None:
         return Counted(_count(own, "use"), _locations(own))
     shown = [_sides(linked, interface) for interface in interfaces]
-    places = [use for interface in interfaces for use in _within(analysis, thing(analysis, (interface,)).uses, system)]
+    places = [
+        use for interface in interfaces for use in _within(analysis, symbol_group(analysis, (interface,)).uses, system)
+    ]
     title = " / ".join(dict.fromkeys(shown))
     if len(interfaces) > 1:
         title = f"{len(interfaces)} {interfaces[0].kind.value}s: {title}"

@@ -58,6 +58,11 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     return table
 
 
+def event_names(system: System, interface: FindInterface) -> frozenset[str]:
+    """The names of the events of the translated system."""
+    return frozenset(event for event, _, _ in _events(system, interface))
+
+
 def event_parameters(system: System, interface: FindInterface) -> dict[str, dict[str, Type]]:
     """The parameters of each event of the translated system, with the types of the models."""
     parameters: dict[str, dict[str, Type]] = {}

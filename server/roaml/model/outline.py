@@ -90,10 +90,16 @@ class EventSent:
 
 @dataclass(frozen=True, slots=True)
 class EventReceived:
-    """A transition on an event, and the parameters of it that are read."""
+    """A transition on an event.
+
+    Attributes:
+        reads: the parameters that are read.
+        forwarded: whether the types of parameters that are sent depend on them.
+    """
 
     event: str
     reads: frozenset[str]
+    forwarded: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +197,7 @@ class MachineOutline:
 def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
     """The outline of a machine whose gaps are `gaps`."""
     types = {value.element: value.sent for value in typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)}
-    reads = _reads(typed)
+    reads, forwarding = _reads(typed), _forwarding(typed)
     return MachineOutline(
         machine.name.value if machine.name else "",
         machine.root,
@@ -211,7 +217,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
             )
         ),
         tuple(
-            EventReceived(handler.event.value, frozenset(reads[handler]))
+            EventReceived(handler.event.value, frozenset(reads[handler]), handler in forwarding)
             for handler in _handlers(machine)
             if handler.trigger is ProtocolPart.EVENT and handler.event
         ),
@@ -402,6 +408,18 @@ def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
         if handler is not None and handler.trigger is ProtocolPart.EVENT and isinstance(value.value, Expression):
             reads[handler].update(event_parameters(value.value.tree))
     return reads
+
+
+def _forwarding(typed: TypedMachine) -> set[Handler]:
+    """The handlers of plain events whose data the types of sent parameters depend on."""
+    return {
+        value.place.handler
+        for value in typed.values
+        if value.place.handler is not None
+        and value.use is ValueUse.PARAMETER
+        and isinstance(value.value, Expression)
+        and any(event_parameters(value.value.tree))
+    }
 
 
 def event_parameters(tree: Expr) -> Iterator[str]:

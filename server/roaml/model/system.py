@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 from roaml.diagnostics import Symbol
 from roaml.exhaustive import assert_never
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
+from roaml.expr.types import BASE_TYPES, Struct, StructKind, Type
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
@@ -34,6 +34,7 @@ from roaml.model.outline import (
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import Direction, NodeKind, SymbolKind
+from roaml.scxml.event_data import parameter_types
 from roaml.scxml.names import CANCEL_PREFIX
 from roaml.suggest import close_names
 
@@ -124,11 +125,7 @@ class PlainEvent:
     @property
     def data(self) -> Struct:
         """The parameters that the senders send. If their types are incompatible, the first known type is used."""
-        params: dict[str, Type] = {}
-        for _, sent in self.senders:
-            for param in sent.params:
-                known = params.get(param.name, UNKNOWN)
-                params[param.name] = join(known, param.type) or known
+        params = parameter_types((param.name, param.type) for _, sent in self.senders for param in sent.params)
         return Struct("", tuple(params.items()), f"data of event {self.name}", StructKind.EVENT, self.name)
 
 

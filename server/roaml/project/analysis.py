@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
-from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.expr.types import Struct, Type
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
@@ -56,6 +56,7 @@ from roaml.project.memo import Memo
 from roaml.project.paths import resolve
 from roaml.project.settings import folders_above
 from roaml.roles import SymbolKind
+from roaml.scxml.event_data import Round, infer_in_rounds
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
@@ -590,8 +591,8 @@ class Analysis:
         gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
-        events: Mapping[str, Struct] = {}
-        for _ in range(_ROUNDS):
+
+        def link_with(events: Mapping[str, Struct]) -> Round[System, Struct]:
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
@@ -599,10 +600,10 @@ class Analysis:
             key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
             make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
             system = self.memo.get("system", path, key, make)
-            if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
-                break
-            events = system.event_data
-        return system
+            received = (received for _, o in outlines for received in o.received)
+            return Round(system, system.event_data, frozenset(r.event for r in received if r.forwarded))
+
+        return infer_in_rounds(link_with)
 
     def _make(
         self,
@@ -622,9 +623,13 @@ class Analysis:
         )
         if not system.is_library_tree:
             return system
-        from roaml.lower.library_tree import entry_outlines  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
-        return replace(system, entries=entry_outlines(system, self._tree_files(system)))
+        files = self._tree_files(system)
+        builder = LibraryTreeBuilder(system, files)
+        completed = replace(system, entries=builder.entries())
+        self.memo.get("library tree builder", path, (completed, tuple(files.values())), lambda: builder)
+        return completed
 
     def _tree_files(self, system: System) -> dict[str, TreeFile]:
         return {path: file for path in system.tree_paths if (file := self.tree(path)) is not None}
@@ -635,10 +640,12 @@ class Analysis:
         system = self.system(path)
         if system is None or not system.is_library_tree:
             return None
-        from roaml.lower.library_tree import library_tree  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
         files = self._tree_files(system)
-        return self.memo.get("library tree", path, (system, tuple(files.values())), lambda: library_tree(system, files))
+        key = (system, tuple(files.values()))
+        builder = self.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
+        return self.memo.get("library tree", path, key, builder.tree)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
@@ -874,11 +881,6 @@ class Analysis:
         return {} if linked is None else event_parameters(linked, environment.interface)
 
 
-_ROUNDS = 4
-"""The maximum number of rounds in which the types of event data are determined. More than one round is necessary if a
-machine sends data that it has received."""
-
-
 def _stem(path: str) -> str:
     """The name of a file without its extension."""
     return path.replace("\\", "/").rpartition("/")[2].rpartition(".")[0]
@@ -888,8 +890,3 @@ def _received(machine: Machine) -> set[str]:
     """The names of the plain events for which a machine has transitions."""
     handlers = (h for chart in machine.charts for state in chart.states for h in state.handlers)
     return {handler.event.value for handler in handlers if handler.event}
-
-
-def _waits_for_events(outlines: Iterable[MachineOutline]) -> bool:
-    """Whether a machine sends a value of unknown type, which may depend on the data of another event."""
-    return any(param.type == UNKNOWN for o in outlines for sent in o.sent for param in sent.params)

@@ -105,7 +105,7 @@ class Request:
         handlers = (handler for state in states for handler in state.handlers)
         return next((handler for handler in handlers if _is_around(handler.element, self.offset)), None)
 
-    def communicate(self, element: Element) -> RosSend | None:
+    def ros_send_of(self, element: Element) -> RosSend | None:
         """The sending statement of an element; `None` if the element does not send."""
         statements = self.chart.statements if self.chart else ()
         return next(

@@ -119,7 +119,7 @@ def _constant_finding(statements: list[RosSend], why: str) -> Finding:
     assert first.goal_id is not None
     subject = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
     advice = "store `_action.goal_id` in a variable where the goal is handled, and use that"
-    related = [Related(statement.element.name_span, "here, too") for statement in others]
+    related = [Related(statement.element.name_span, "also used here") for statement in others]
     return RULE.at(first.goal_id.span, f"{subject}; {advice}", related=related)
 
 

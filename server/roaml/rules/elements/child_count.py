@@ -90,7 +90,7 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
             if calls.children == 0:
                 message = f"`{plugin.name}` allows no children: its machine never ticks a child"
             else:
-                message = f"`{plugin.name}` ticks only {_children(calls.children)}, so this one is never ticked"
+                message = f"`{plugin.name}` ticks only {_children(calls.children)}, so this child is never ticked"
             yield RULE.at(span, message, _without(context, node, index))
             return
         if index not in calls.ticked_children:

@@ -104,7 +104,7 @@ def _attribute(context: FileContext, element: Element, attribute: Attribute, kno
 
 
 def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -> Finding:
-    remove = Fix("Remove it", (removal(context.source.text, superfluous),), safe=True)
+    remove = Fix("Remove the older spelling", (removal(context.source.text, superfluous),), safe=True)
     severity = None if context.older else Severity.WARNING
     return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
 

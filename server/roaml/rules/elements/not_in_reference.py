@@ -22,10 +22,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
             places.setdefault(element.name, []).append(element)
     for name, (first, *others) in places.items():
         message = (
-            f"AS2FM does not read `<{name}>` yet: it is not in its main line; "
-            "check, verify and translate the model with this tool"
+            f"AS2FM does not read `<{name}>` yet, because its main branch does not contain the element; "
+            "check, verify and translate the model only with this tool"
         )
-        yield RULE.at(first.name_span, message, related=[Related(other.name_span, "here, too") for other in others])
+        yield RULE.at(
+            first.name_span, message, related=[Related(other.name_span, "also used here") for other in others]
+        )
 
 
 RULE = Rule("not-in-reference", Severity.INFORMATION, "An element that AS2FM does not read yet is used.", machine=check)

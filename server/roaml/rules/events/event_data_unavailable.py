@@ -53,7 +53,10 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if place.part in ("onentry", "onexit"):
         if name == "_event" and context.machine.plain:
             # Machines without any ROS or tree element are not rewritten (docs/spec/machines.md#plain-machines).
-            message = f"`_event` in `<{place.part}>` is the event of whichever transition is taken"
+            message = (
+                f"`_event` in `<{place.part}>` is the event of the transition that is taken, which may be any event; "
+                "store it in a variable in the body of the transition"
+            )
             return RULE.at(problem.span, message, severity=Severity.WARNING)
         message = f"`{name}` is not available in `<{place.part}>`; store it in a variable in the body of the transition"
         return RULE.at(problem.span, message)

@@ -74,10 +74,13 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     if not isinstance(array, Array) or array.bound is None:
         return
     if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
+        name = _text(context, tree.object)
         yield RULE.at(
             tree.index.span,
-            f"`{_text(context, tree.object)}` has at most {array.bound} elements, and no condition prevents a write "
-            "after the last one",
+            (
+                f"`{name}` has at most {array.bound} elements, and no condition prevents a write after the last one; "
+                f"test `{name}.length` first"
+            ),
             severity=Severity.WARNING,
         )
 

@@ -150,6 +150,8 @@ def _questions(system: System, interface: Callable[[str, str], InterfaceType | N
             yield _Question(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
         elif not is_read:
             yield _Question(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
+    if not system.observed:
+        return
     known = global_variables(system, lambda kind, name: _type_or_none(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):
         yield _Question(None, name, f"whether the variable `{name}`, which a property names, exists")

@@ -37,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         told.add(handler)
                         message = (
                             f"this handler is never taken: no client of `{action.name}` has a "
-                            "`<ros_action_cancel_goal>`"
+                            "`<ros_action_cancel_goal>`; add one, or remove the handler"
                         )
                         drop = remove(context.document, handler.element)
                         yield RULE.at(handler.element.name_span, message, drop)

@@ -37,8 +37,8 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     assert before.handle is not None
     related = (Related(before.handle.span, "declared first here"),)
     if _meaning(declaration) == _meaning(before):
-        message = f"`{handle.value}` is declared again with the same meaning"
-        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
+        message = f"`{handle.value}` is declared again with the same meaning; remove one of the declarations"
+        remove = Fix("Remove this declaration", (removal(context.source.text, declaration.element.span),), safe=True)
         # The reference translator rejects two timers with one name, even if their rates are equal
         # (docs/spec/ros.md#timers).
         severity = Severity.ERROR if declaration.kind is SymbolKind.TIMER else Severity.WARNING
@@ -68,7 +68,7 @@ def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> 
     else:
         end = declaration.element.name_span.end
         edit = TextEdit(Span(end, end), f' name="{new}"')
-    return Fix(f"Rename this one to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
+    return Fix(f"Rename this declaration to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
 
 
 def _meaning(declaration: Declaration) -> tuple[SymbolKind, tuple[str, ...]]:

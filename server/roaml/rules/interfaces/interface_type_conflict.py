@@ -50,7 +50,7 @@ def _conflict(context: MachineContext, system: System, declaration: Declaration,
         name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
         return RULE.at(
             declaration.type.span,
-            f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}",
+            f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}; use the same type",
             Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
             # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
             severity=Severity.WARNING if is_topic and not clash else Severity.ERROR,
@@ -80,7 +80,7 @@ def _clash(context: MachineContext, mine: str, other: str) -> str:
     fields, theirs = ({} if isinstance(m, NotFound) else dict(leaves(m.part("message"))) for m in messages)
     for path, type_ in fields.items():
         if path in theirs and not same_kind(type_, theirs[path]):
-            return f"; its field `{'.'.join(path)}` is {phrase(theirs[path])} there and {phrase(type_)} here"
+            return f", and its field `{'.'.join(path)}` is {phrase(theirs[path])} there and {phrase(type_)} here"
     return ""
 
 

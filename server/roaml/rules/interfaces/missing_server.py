@@ -39,7 +39,9 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
-    message = f"no machine serves the {kind_name} `{channel.name}`{did_you_mean(close)}"
+    message = (
+        f"no machine serves the {kind_name} `{channel.name}`, so its clients never get an answer{did_you_mean(close)}"
+    )
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 

@@ -40,7 +40,9 @@ def _same_events(declaration: Declaration, channel: Channel, other: Channel, nou
         f"the {noun}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
         f"translation, which cannot distinguish them; rename one of them"
     )
-    return RULE.at(name_span(declaration), message, related=[Related(other.sources[0].symbol, "the other one")])
+    return RULE.at(
+        name_span(declaration), message, related=[Related(other.sources[0].symbol, f"the server of `{other.name}`")]
+    )
 
 
 def _finding(

@@ -44,7 +44,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         f"this handler is never taken: there is no `<{element}>` for the "
                         f"`<{DECLARING_ELEMENTS[kind]}>` "
                     )
-                    message += f"`{declaration.handle.value}`"
+                    message += f"`{declaration.handle.value}`; add one, or remove the handler"
                     yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
 
 

@@ -77,7 +77,8 @@ def _action(
     waiting = [c for c in clients if ProtocolPart.RESULT in c.use.receives]
     if waiting and not sends(automaton, declaration, ProtocolPart.RESULT):
         message = (
-            f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
+            f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `_canceled` or `_aborted` is "
+            "missing"
         )
         yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
 

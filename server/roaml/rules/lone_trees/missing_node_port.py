@@ -32,8 +32,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if known.library or known.kind is NodeKind.SUBTREE:
             yield from _missing(node, known, known)
         elif not forest.is_partly_described(known):
-            twin = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
-            yield from _missing(node, known, twin) if twin else _without_value(node, known)
+            library_node = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
+            yield from _missing(node, known, library_node) if library_node else _without_value(node, known)
 
 
 def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:

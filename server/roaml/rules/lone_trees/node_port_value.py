@@ -65,23 +65,25 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
     if opens and closes:
         name = inner[1:-1]
         if not name.strip():
-            yield RULE.at(setting.value.span, "the braces do not contain the name of a blackboard entry")
+            yield RULE.at(
+                setting.value.span, "the braces do not contain the name of a blackboard entry; write `{name}`"
+            )
         elif _NAME.match(name.strip("{}")) and name.strip("{}") != name:
             plain = f"{{{name.strip('{}')}}}"
-            message = f"`{inner}` has too many braces, which belong to the name of the entry; write `{plain}`"
+            message = f"`{inner}` has too many braces, which become part of the name of the entry; write `{plain}`"
             yield RULE.at(
                 setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
             )
         elif name != name.strip() and "{" not in name:
             plain = f"{{{name.strip()}}}"
-            message = f"the spaces belong to the name of the entry; write `{plain}`"
+            message = f"the spaces in the braces become part of the name of the entry; write `{plain}`"
             yield RULE.at(
                 setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
             )
     elif opens != closes and inner.count("{") != inner.count("}"):
         name = inner.strip("{}").strip()
         fixes = replacements(setting.value.span, (f"{{{name}}}",)) if _NAME.match(name) else ()
-        message = f"`{inner}` has only one of two braces, so it is a string and not an entry"
+        message = f"`{inner}` has only one of two braces, so it is a string and not an entry; add the other brace"
         yield RULE.at(setting.value.span, message, *fixes, severity=Severity.WARNING)
 
 
@@ -112,7 +114,7 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
     if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
-        reason = f"`{name}` is a string" if name else "nothing is given"
+        reason = f"not the string `{name}`" if name else "not an empty value"
         message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
         yield RULE.at(span, message, *fixes, severity=_severity(known))
         return

@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             continue
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
-                message = f"no transition leads to the state `{state.id.value}`"
+                message = f"no transition leads to the state `{state.id.value}`, so it is never entered"
                 yield RULE.at(state.id.span, message, *_remove(context, chart, state), tags=(Tag.UNNECESSARY,))
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from functools import lru_cache
+from itertools import islice
 
 from roaml.language import HL_SCXML, ElementType, Grammar
 from roaml.model.machine import Machine
@@ -22,10 +23,12 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
 def only_missing(element: Element, type_: ElementType, name: str) -> tuple[str, ...]:
     """The required attribute of which `name` is probably a misspelling: the only missing one, if `name` is the only
     unknown attribute of the element. Otherwise empty."""
-    names = [a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns"]
-    unknown = [attribute for attribute in names if attribute not in type_.attributes]
+    names = (a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns")
+    unknown = list(islice((attribute for attribute in names if attribute not in type_.attributes), 2))
+    if unknown != [name]:
+        return ()
     missing = [a.name for a in type_.attributes.values() if a.required and element.get(a.name) is None]
-    return tuple(missing) if unknown == [name] and len(missing) == 1 and not type_.any_attribute else ()
+    return tuple(missing) if len(missing) == 1 and not type_.any_attribute else ()
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:

@@ -24,7 +24,7 @@ class InputCount(Facts):
 def check(context: SystemContext) -> Iterator[Finding]:
     trees = [f for f in context.files if f.required_kind is FileKind.TREE]
     for extra in trees[1:]:
-        related = (Related(trees[0].input.element.name_span, "the first one"),)
+        related = (Related(trees[0].input.element.name_span, "the first file of trees"),)
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     yield from _property_files(context)
@@ -45,7 +45,7 @@ def _property_files(context: SystemContext) -> Iterator[Finding]:
             continue
         original = first.setdefault(listed.path, listed)
         if original is not listed and listed.input.src is not None:
-            related = (Related(original.span, "the first one"),)
+            related = (Related(original.span, "the first `<input>` of this file"),)
             fix = remove(context.document, listed.input.element, "Remove this `<input>`", safe=True)
             message = f"`{listed.input.src.value}` is listed twice, so each of its properties would exist twice"
             yield RULE.at(listed.span, message, fix, related=related)

@@ -34,7 +34,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)
             else:
-                message = f"nobody reads {described(variable, written)}{did_you_mean(close)}"
+                message = f"no node reads {described(variable, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 

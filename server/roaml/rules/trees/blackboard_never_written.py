@@ -30,7 +30,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if bound.port.direction is Direction.OUT:
                 yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
             else:
-                message = f"nobody writes {described(variable, written)}{did_you_mean(close)}"
+                message = f"no node writes {described(variable, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 

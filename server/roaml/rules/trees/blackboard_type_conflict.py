@@ -36,7 +36,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(
                     span,
                     f"`{variable}` is `{bound.port.type}` at the port `{bound.port.key}` and `{other.port.type}` at "
-                    f"`{other.port.key}` of `{other.automaton.outline.name}`",
+                    f"`{other.port.key}` of `{other.automaton.outline.name}`; use the same type",
                     related=_related(bound, other),
                     facts=TypeConflict(bound.port.key, other.port.type),
                 )

@@ -26,9 +26,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if port.key is not None:
             before = first.setdefault(port.key.value, port.key)
             if before is not port.key:
-                related = (Related(before.span, "the first one"),)
-                fix = remove(context.document, port.element, "Remove this one")
-                yield RULE.at(port.key.span, f"there are two ports `{port.key.value}`", fix, related=related)
+                related = (Related(before.span, "the first declaration"),)
+                fix = remove(context.document, port.element, "Remove this declaration")
+                yield RULE.at(
+                    port.key.span,
+                    f"there are two ports `{port.key.value}`; remove or rename one of them",
+                    fix,
+                    related=related,
+                )
             yield from _key(port, port.key)
         written = port.element.get("type")
         if port.type is not None:

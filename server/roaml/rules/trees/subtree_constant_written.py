@@ -25,7 +25,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 continue
             value = automaton.port(port.key)
             if isinstance(value, PortConstant):
-                message = f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written"
+                message = (
+                    f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written; "
+                    "pass a variable"
+                )
                 yield RULE.at(setting.value.span, message)
 
 

@@ -59,11 +59,12 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
     if len(same) > 1 and not (context.forest is not None and _is_first(context, tree)):
         here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
         elsewhere = [Symbol(t.path, SymbolKind.TREE, t.id) for t in same if t.path != context.source.path]
-        related = [Related(span, "another one") for span in here]
-        related += [Related(symbol, "another one") for symbol in elsewhere]
+        related = [Related(span, "another tree with this name") for span in here]
+        related += [Related(symbol, "another tree with this name") for symbol in elsewhere]
         name = unused(tree.id.value, known)
-        rename = Fix(f"Rename this one to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
-        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
+        rename = Fix(f"Rename this tree to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
+        message = f"there are {len(same)} trees `{tree.id.value}`; give each tree its own name"
+        yield RULE.at(tree.id.span, message, rename, related=related)
 
 
 def _is_first(context: TreeContext, tree: Tree) -> bool:
