@@ -45,7 +45,7 @@ def mock_system(
         PathError: the path is not a system file.
     """
     from roaml.mocks.mock import unused  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.system_mocks import event_edits, listing, plan  # noqa: PLC0415
+    from roaml.mocks.system_mocks import defaults, event_edits, listing, plan  # noqa: PLC0415
     from roaml.project.system_leaves import missing_leaves, plugin_paths  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
@@ -62,11 +62,15 @@ def mock_system(
     section = document.root.find("behavior_tree")
     if planned and section is not None:
         edits.setdefault(main, []).append(listing(section, [os.path.basename(mock.path) for mock in planned]))
+    events = sum(map(len, edits.values())) - (main in edits)
+    tree = analysis.tree(system.tree_paths[0]) if system.tree_paths else None
+    given = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None
+    if given is not None:
+        edits.setdefault(system.tree_paths[0], []).append(given)
     for file, changes in edits.items():
         source = analysis.source(file)
         assert source is not None
         texts[file] = apply_edits(source.text, tuple(changes))
-    events = sum(len(changes) for file, changes in edits.items() if file != main)
     nodes = [(name, leaf.type) for leaf in leaves for name in leaf.names]
     nodes += [(instance.name, instance.plugin) for instance in system.instances]
     return SystemMocks(texts, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))

@@ -32,6 +32,7 @@ class SystemLeaf:
     Attributes:
         names: of its nodes, those without a name have that of the type.
         ports: all that nodes of the type set.
+        optional: the ports that some of the nodes do not set.
     """
 
     type: str
@@ -39,6 +40,7 @@ class SystemLeaf:
     is_condition: bool
     succeeds: bool
     ports: tuple[MockPort, ...]
+    optional: frozenset[str]
 
 
 _Slot: TypeAlias = tuple[str, str]
@@ -70,6 +72,7 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
             _is_condition(nodes, known[name]),
             bool((declaration := known[name]) and declaration.succeeds),
             tuple(types.ports(name)),
+            frozenset(key for node in nodes for key, _ in node.ports if not all(other.port(key) for other in nodes)),
         )
         for name, nodes in leaves.items()
     )
@@ -136,14 +139,15 @@ class _Types:
             if len(variables) < len(bound):
                 is_output = False  # a constant can be given to an input only
             elif not is_output and not all(map(self.has_writer, variables)):
-                yield MockPort(key, type_, is_output=True)  # the program that runs the tree sets it; nothing reads it
+                # The program that runs the tree sets it. Mocks read nothing, so any value will do.
+                yield MockPort(key, type_, is_output=True, values=_values(type_)[:1])
                 continue
             yield MockPort(key, type_, is_output, _values(type_) if is_output else ())
 
     def is_written(self, bound: list[PortConstant | Reference]) -> bool:
         """Whether a port that no model describes is an output: if nothing else writes its variable."""
         variables = [value.variable for value in bound if isinstance(value, Reference)]
-        return bool(variables) and not any(self.system.writes_variable(variable) for variable in variables)
+        return bool(variables) and not any(map(self.has_writer, variables))
 
     def has_writer(self, variable: str) -> bool:
         """Whether the tree or a leaf writes a variable."""

@@ -60,6 +60,30 @@ def listing(section: Element, sources: Iterable[str]) -> TextEdit:
     return TextEdit(Span(at, at), entries)
 
 
+def defaults(root: Element, leaves: Iterable[SystemLeaf]) -> TextEdit | None:
+    """The edit of a tree file that gives ports of mocks which not all nodes set a default, on the line of its end;
+    `None` if there are none."""
+    models = "".join(f"<Action ID={quoteattr(leaf.type)}>{_ports(leaf)}</Action>" for leaf in leaves if leaf.optional)
+    close = root.close_name_span
+    if not models or close is None:
+        return None
+    at = close.start - len("</")
+    return TextEdit(Span(at, at), f"<TreeNodesModel>{models}</TreeNodesModel>")
+
+
+def _ports(leaf: SystemLeaf) -> str:
+    return "".join(
+        f'<output_port name={quoteattr(port.key)} default="{{=}}" />'
+        if port.is_output
+        else f'<input_port name={quoteattr(port.key)} default="{_DEFAULTS.get(port.type, "0")}" />'
+        for port in leaf.ports
+        if port.key in leaf.optional
+    )
+
+
+_DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
+
+
 def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
     """The edits that give nodes which ask about the world the probabilities of their mocks, by file."""
     exact = [mock for mock in mocks if mock.pattern != ALL]
