@@ -19,7 +19,7 @@ from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import PortValues, compiled_scripts, flags_at, port_values, program_of
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
@@ -178,7 +178,7 @@ class _Builder:
             outputs = tuple(self.outputs(node, board))
         else:
             values = port_values(node, program, board)
-        if asks_world(program):
+        if program.asks_world:
             values.known["event"] = self.event(node)
         return NodeCode(
             str(node.number),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as a document beside the plain SCXML of their system, for SCAN and other tools
-(docs/spec/plain-scxml.md#lowered-properties).
+"""Writes the properties of a system as a document for SCAN and other tools, in addition to the plain SCXML of the
+system (docs/spec/plain-scxml.md#lowered-properties).
 
-Ports name single sendings: an event, the automaton that sends it, and one that receives it. Formulas are in past-time
+Each port selects one event, the automaton that sends it, and one automaton that receives it. Formulas are in past-time
 metric temporal logic, with times in steps of the clock.
 """
 
@@ -29,20 +29,21 @@ NOBODY_TEXT = f"""<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" n
     <state id="init"/>
 </scxml>
 """
-"""The document of an automaton that receives what nobody receives."""
+"""The document of an automaton that is the target of events that no automaton receives."""
 
 
 class _NotWrittenError(Exception):
-    """A property cannot be written; the message says why."""
+    """Raised if a property cannot be written. The message states the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoweredProperties:
-    """
+    """The document with the properties of a system.
+
     Attributes:
-        text: the document; "" if no property can be written.
-        left_out: the names of the other properties, with the reasons.
-        names_nobody: whether a port needs `NOBODY_TEXT`.
+        text: the text of the document; "" if no property can be written.
+        left_out: the properties that cannot be written, with the reasons.
+        names_nobody: whether a port refers to the automaton of `NOBODY_TEXT`.
     """
 
     text: str
@@ -51,7 +52,7 @@ class LoweredProperties:
 
 
 def lowered_properties(network: Network, properties: Sequence[ObservedProperty]) -> LoweredProperties:
-    """The guarantees in `properties`, with their assumptions."""
+    """The document with the guarantees in `properties` and their assumptions, for the system `network`."""
     writer = _Writer(network)
     guarantees: list[str] = []
     assumes: dict[str, str] = {}
@@ -60,7 +61,7 @@ def lowered_properties(network: Network, properties: Sequence[ObservedProperty])
     for property_ in properties:
         try:
             if property_.assumptions and not is_shared:
-                raise _NotWrittenError("the assumptions of a document hold for all its properties")
+                raise _NotWrittenError("the properties of a document must have the same assumptions")
             assumes |= {assumed.name: writer.property(assumed) for assumed in property_.assumptions}
             guarantees.append(writer.property(property_))
         except _NotWrittenError as error:
@@ -75,9 +76,10 @@ def lowered_properties(network: Network, properties: Sequence[ObservedProperty])
 
 
 class _Writer:
-    """
+    """Writes the properties of one system.
+
     Attributes:
-        ports: the ports that were needed; name of a variable -> the lines of its port.
+        ports: the ports that the written properties use: name of a variable -> the lines of its port.
     """
 
     def __init__(self, network: Network) -> None:
@@ -93,7 +95,7 @@ class _Writer:
         formula = _formula_of(property_)
         if formula is None:
             raise _NotWrittenError(
-                "a formula of the past cannot require what has no deadline or what the end of a scope ends"
+                "a past-time formula cannot require what has no deadline, or what only the end of a scope decides"
             )
         variables = {variable.id: (port, variable) for port in property_.ports for variable in port.variables}
 
@@ -103,12 +105,13 @@ class _Writer:
             return map_children(expr, replaced)
 
         conditions = {name: format_expr(replaced(condition)) for name, condition in property_.conditions.items()}
-        # SCAN asks for the formula at the end of a run; here and there, it is true if it was at every letter.
+        # SCAN evaluates the formula at the end of a run. With `historically`, it is true if it was true at every event.
         text = f"historically {formula_text(formula, conditions)}"
         return f'        <property id={quoteattr(property_.name)} logic="pmtl" expr={quoteattr(text)}/>'
 
     def variable(self, port: ObservedPort, variable: ObservedVariable, place: Name) -> Expr:
-        """What has the value of a variable: one of the document, or a disjunction of several."""
+        """The expression that replaces a variable of a property: a variable of the document, or a disjunction of
+        several."""
         sendings = [
             (event.name, automaton.name)
             for event in port.events
@@ -118,7 +121,8 @@ class _Writer:
         if not sendings:
             return Boolean(place.span, False) if variable.initial is None else variable.initial
         if variable.initial is not None and len(sendings) > 1:
-            raise _NotWrittenError(f"`{variable.id}` has the value that one of several machines sent last")
+            message = f"several machines send the value of `{variable.id}`; a port can have only one sender"
+            raise _NotWrittenError(message)
         names = [self.port(variable, event, origin) for event, origin in sendings]
         result: Expr = Name(place.span, names[0])
         for name in names[1:]:
@@ -126,14 +130,14 @@ class _Writer:
         return result
 
     def port(self, variable: ObservedVariable, event: str, origin: str) -> str:
-        """The name of the variable of a port."""
+        """The name of the variable of the port for `event` from the automaton `origin`; a new port is added."""
         target = self.receivers.get(event, [NOBODY])[0]
         head = f"event={quoteattr(event)} origin={quoteattr(origin)} target={quoteattr(target)}"
         if variable.initial is None:
             content = "<event_var id={}/>"
         else:
             if not isinstance(variable.type, Scalar) or variable.type.kind is ScalarKind.STRING:
-                raise _NotWrittenError(f"`{variable.id}` is neither a number nor a boolean value")
+                raise _NotWrittenError(f"the type of `{variable.id}` is neither a number nor a boolean")
             if not variable.parameter:
                 raise _NotWrittenError(f"the event `{event}` has no parameter for `{variable.id}`")
             content = (
@@ -188,7 +192,7 @@ def _sent_in(body: Body) -> Iterator[str]:
 
 
 def formula_text(formula: Formula, conditions: Mapping[str, str]) -> str:
-    """A formula in the notation that both SCAN and this project read: with parentheses around each operation."""
+    """A formula in the notation that both SCAN and this project read. Each operation is in parentheses."""
     match formula:
         case Atom(name):
             return f"{{ {conditions[name]} }}"

@@ -54,13 +54,14 @@ _WORD = re.compile(r"\S+")
 
 
 def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
-    """The topic, service or action `name` of a declaration of `kind`. Topics are identified by their sanitised name."""
+    """The symbol of the topic, service or action `name` of a declaration of `kind`. The symbol of a topic contains its
+    sanitised name."""
     channel_kind = CHANNEL_KINDS[kind]
     return Symbol(owner, channel_kind, sanitise(name) if channel_kind is SymbolKind.TOPIC else name)
 
 
 def is_implicit(declaration: Declaration) -> bool:
-    """Whether the interface itself is the handle."""
+    """Whether a declaration has no handle of its own, so that the name of the interface is used as the handle."""
     return declaration.handle is not None and declaration.handle is declaration.interface
 
 
@@ -72,10 +73,11 @@ def in_machine(
     types: Mapping[str, Mapping[str, Type]],
     environment: Environment,
 ) -> Iterator[Occurrence]:
-    """
+    """The occurrences of names in a state machine.
+
     Args:
         owner: the system file, or the machine's own file if it is analysed alone.
-        types: the types of the variables, per chart scope.
+        types: the types of the variables, by the scope of their chart.
         environment: the types that other files of the system declare.
     """
     return _Machine(text, machine, path, owner, types, environment).all()
@@ -133,7 +135,8 @@ class _Machine:
     def handle(
         self, name: Name | None, declaration: Declaration | None, access: Access = Access.TEXT
     ) -> Iterator[Occurrence]:
-        """A use of a handle. If the interface itself is the handle, the interface is used."""
+        """The occurrence of a handle. If the name of the interface is used as the handle, it is an occurrence of the
+        interface."""
         if name is None or declaration is None:
             return
         if is_implicit(declaration):
@@ -231,7 +234,7 @@ class _Machine:
                     if branch.cond is not None:
                         yield from scope.names(branch.cond)
             case RosSend():
-                yield from self.communicate(scope, statement)
+                yield from self.ros_send(scope, statement)
             case ReturnStatus():
                 if statement.status is not None and statement.status.value not in STATUSES:
                     yield from self.word(scope, statement.status)
@@ -253,7 +256,7 @@ class _Machine:
                 yield Occurrence(param.name.span, symbol, defines=True, access=Access.WRITE)
             yield from self.value(scope, param.value)
 
-    def communicate(self, scope: _Scope, statement: RosSend) -> Iterator[Occurrence]:
+    def ros_send(self, scope: _Scope, statement: RosSend) -> Iterator[Occurrence]:
         declaration = find_handle(self.machine, statement)
         yield from self.handle(statement.handle, declaration, Access.WRITE)
         part = interface_part(statement.part, declaration, self.environment)
@@ -264,7 +267,7 @@ class _Machine:
             yield from self.value(scope, argument)
 
     def field(self, field: Param, part: Type) -> Iterator[Occurrence]:
-        """The fields on a dotted path."""
+        """The occurrences of the fields on a dotted path."""
         if field.name is None or len(field.name.value) != field.name.span.end - field.name.span.start:
             return
         at, owner = field.name.span.start, part
@@ -278,7 +281,7 @@ class _Machine:
             at, owner = span.end + 1, member
 
     def word(self, scope: _Scope, name: Name | None) -> Iterator[Occurrence]:
-        """A number or the name of a variable."""
+        """The occurrence of a variable in text that is a number or the name of a variable."""
         if name is not None and not name.value.lstrip("+-").isdigit():
             symbol = variable(self.path, name.value, scope.chart.scope)
             yield Occurrence(name.span, symbol, access=Access.READ)
@@ -333,7 +336,7 @@ class _Scope:
             yield Occurrence(node.name_span, Symbol("", SymbolKind.FIELD, node.name, inner.name), access=Access.READ)
 
     def type_of(self, expr: Expr) -> Type:
-        """The type of a chain of members and indices; unknown for other expressions."""
+        """The type of a chain of members and indices; `UNKNOWN` for other expressions."""
         match expr:
             case NameExpr():
                 return self.known.get(expr.name) or self.variables.get(expr.name) or UNKNOWN
@@ -348,7 +351,7 @@ class _Scope:
 
 
 def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:
-    """The struct in a type."""
+    """The occurrence of a struct in the name of a type."""
     if type_ is not None and type_.name is not None and type_.name.base not in BASE_TYPES:
         yield Occurrence(base_span(type_.span, type_.name.base), Symbol(owner, SymbolKind.STRUCT, type_.name.base))
 
