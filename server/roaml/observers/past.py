@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Patterns as formulas of past-time logic, for tools that read only these
+"""Translates patterns to formulas of past-time logic, for tools that read only these formulas
 (docs/spec/plain-scxml.md#lowered-properties).
 
-The formula is false at the letter at which the pattern is violated. What can be missed only because nothing happens any
-more has no such formula: obligations without a deadline, and those that the end of a stretch ends.
+The formula of a property is false at the letter that violates the pattern. There is no formula if the end of a trace or
+of a stretch can violate the pattern: for obligations without a deadline, and for obligations that must be met before
+their stretch ends.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def past_formula(property_: PatternProperty, *, answers_with_clock: bool = True)
 
 
 def _inside(scope: ScopeKind) -> Formula:
-    """Whether a letter is in a stretch."""
+    """A formula that is true at letters in a stretch."""
     match scope:
         case ScopeKind.GLOBALLY:
             return TRUE
@@ -68,14 +69,14 @@ def _inside(scope: ScopeKind) -> Formula:
 
 
 def _violation(property_: PatternProperty, inside: Formula, answers_with_clock: bool) -> Formula | None:
-    """A formula that is true at letters that violate the pattern in their stretch."""
+    """A formula that is true at letters that violate the pattern in their stretch; `None` if there is none."""
 
     def earlier(condition: Formula, window: Window) -> Formula:
-        """`condition` was true in this stretch, at a distance in time."""
+        """A formula: `condition` was true in this stretch, at a distance in `window`."""
         return Since(inside, _and(inside, condition), window)
 
     left, window = Atom(LEFT), property_.window
-    # The letters at the time at which the stretch opened.
+    # True at the letters of the instant at which the stretch opened.
     first = _and(inside, Not(Since(inside, inside, _FROM_ONE)))
     match property_.pattern:
         case Pattern.UNIVERSALITY | Pattern.ABSENCE:
@@ -91,7 +92,7 @@ def _violation(property_: PatternProperty, inside: Formula, answers_with_clock: 
 
 
 def _late(property_: PatternProperty, inside: Formula, first: Formula, answers_with_clock: bool) -> Formula | None:
-    """A deadline has passed."""
+    """A formula that is true if the deadline of an obligation has passed; `None` if there is none."""
     window = property_.window
     can_close = property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.AFTER)
     if window.upper is None or can_close:

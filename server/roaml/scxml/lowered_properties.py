@@ -95,7 +95,7 @@ class _Writer:
         formula = _formula_of(property_)
         if formula is None:
             raise _NotWrittenError(
-                "a past-time formula cannot require what has no deadline, or what only the end of a scope decides"
+                "a past-time formula cannot express a requirement that has no deadline, or that ends with its scope"
             )
         variables = {variable.id: (port, variable) for port in property_.ports for variable in port.variables}
 
