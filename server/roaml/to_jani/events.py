@@ -83,8 +83,8 @@ EventParams: TypeAlias = Mapping[str, Mapping[str, Type]]
 
 
 def _infer_params(behaviors: Sequence[AutomatonMoves], known: EventParams) -> Round[EventParams, Mapping[str, Type]]:
-    """One round of the inference: the types of all parameters that are sent, on the assumption that received events have
-    the parameters `known`."""
+    """One round of the inference: the types of all parameters that are sent, on the assumption that received events
+    have the parameters `known`."""
     sent: dict[str, list[tuple[str, Type]]] = {}
     forwarded: set[str] = set()
     for behavior in behaviors:
