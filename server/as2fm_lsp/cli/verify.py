@@ -135,7 +135,7 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
-    if limits.method == ADAPTIVE:  # a fixed number: all measurements are made on the same traces
+    if limits.method == ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
         limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
@@ -462,7 +462,7 @@ class _Verification:
         else:
             text = self._story_texts(stories)
         if file == STANDARD_OUTPUT:
-            # Programs read standard output; the story is for users.
+            # With a format for programs, standard output contains only the results.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
         else:
             write_file(file, text)
@@ -612,7 +612,7 @@ def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | 
 
 
 def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:
-    """The texts of the files that a target was read from."""
+    """A function that returns the text of a file from which a target was read."""
 
     def source_of(path: str) -> SourceFile:
         source = target.source_of(path)

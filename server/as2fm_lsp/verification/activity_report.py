@@ -24,14 +24,14 @@ def remarks(answer: Answer) -> list[str]:
     else:
         if tally.closed:
             lines.append(
-                f"its scope was not judged in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
+                f"its scope was not evaluated in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
             )
         if tally.idle:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
     if tally.late:
         lines.append(
-            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), where something "
-            "was still to come; a longer time may satisfy them"
+            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), because an event "
+            "that the property requires has not occurred; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
     if opened:
@@ -55,7 +55,7 @@ def warning(answer: Answer) -> str:
     if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
         return ""
     if tally.idle == 0:
-        return "the property is vacuous: its scope was not judged in any trace"
+        return "the property is vacuous: its scope was not evaluated in any trace"
     return "the property is vacuous: it was not triggered in any trace"
 
 

@@ -183,6 +183,14 @@ def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[st
         yield prefix, type_
 
 
+def member_type(type_: Type, name: str) -> Type | None:
+    """The type of a member of a struct or, as an array, of the structs in an array; `None` if there is none
+    (docs/spec/types.md#leaves)."""
+    inner, bounds = unwrap(type_)
+    member = inner.member(name) if isinstance(inner, Struct) else None
+    return None if member is None else wrap(member, bounds)
+
+
 def is_number(type_: Type) -> bool:
     return isinstance(type_, Scalar) and type_.kind in (ScalarKind.INT, ScalarKind.REAL)
 

@@ -23,10 +23,10 @@ from roaml.expr.types import (
     StructKind,
     Type,
     leaves,
+    member_type,
     resolve_type,
     same_kind,
     unwrap,
-    wrap,
 )
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
@@ -522,12 +522,9 @@ def _leaf(part: Type, path: str) -> Type | None:
     """The type of the leaf field at a dotted path; `None` if the field does not exist, `UNKNOWN` if `part` is
     unknown."""
     type_ = part
-    bounds: tuple[int | None, ...] = ()
     for name in path.split("."):
-        inner, more = unwrap(type_)
-        bounds = (*bounds, *more)
-        member = inner.member(name) if isinstance(inner, Struct) else None
+        member = member_type(type_, name)
         if member is None:
-            return UNKNOWN if inner == UNKNOWN else None
+            return UNKNOWN if unwrap(type_)[0] == UNKNOWN else None
         type_ = member
-    return wrap(type_, bounds)
+    return type_

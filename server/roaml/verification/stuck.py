@@ -33,7 +33,7 @@ MAX_STEPS_PER_TRACE = 100_000
 MAX_STEPS = 1_000_000
 """The number of steps after which no further traces are generated; this many steps take a tenth of a second."""
 BATCH_SIZE = 10
-"""The number of traces that are generated regardless of their steps."""
+"""The number of traces in a batch. The number of steps is checked after each batch."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,21 @@ from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
-from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, ScalarKind, Struct, StructKind, Type, fits, unwrap, wrap
+from roaml.expr.types import (
+    BOOL,
+    INT,
+    UNKNOWN,
+    Array,
+    Scalar,
+    ScalarKind,
+    Struct,
+    StructKind,
+    Type,
+    fits,
+    member_type,
+    unwrap,
+    wrap,
+)
 from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
@@ -283,8 +297,5 @@ def _required_output_type(request: Request, element: Element) -> Type | None:
 
 def _at(type_: Type, path: str) -> Type:
     for name in path.split("."):
-        member = type_.member(name) if isinstance(type_, Struct) else None
-        if member is None:
-            return UNKNOWN
-        type_ = member
+        type_ = member_type(type_, name) or UNKNOWN
     return type_

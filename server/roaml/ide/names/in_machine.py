@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
+from roaml.expr.infer import infer
 from roaml.expr.tree import (
     ArrayLiteral,
     Expr,
@@ -17,8 +18,8 @@ from roaml.expr.tree import (
     walk,
 )
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, resolve_type, unwrap, wrap
-from roaml.ide.names.occurrence import Access, Occurrence, base_span, parameter, variable, without_slash
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, resolve_type, unwrap
+from roaml.ide.names.occurrence import Access, Occurrence, base_span, fields, parameter, variable, without_slash
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
 from roaml.language import HL_SCXML
@@ -31,7 +32,6 @@ from roaml.model.machine import (
     Handler,
     If,
     Machine,
-    Param,
     ReturnStatus,
     RosSend,
     Send,
@@ -261,24 +261,11 @@ class _Machine:
         yield from self.handle(statement.handle, declaration, Access.WRITE)
         part = interface_part(statement.part, declaration, self.environment)
         for field in statement.fields:
-            yield from self.field(field, part)
+            if field.name is not None:
+                yield from fields(field.name, part, Access.WRITE)
             yield from self.value(scope, field.value)
         for argument in (statement.goal_id, statement.thread_id):
             yield from self.value(scope, argument)
-
-    def field(self, field: Param, part: Type) -> Iterator[Occurrence]:
-        """The occurrences of the fields on a dotted path."""
-        if field.name is None or len(field.name.value) != field.name.span.end - field.name.span.start:
-            return
-        at, owner = field.name.span.start, part
-        for name in field.name.value.split("."):
-            inner, _ = unwrap(owner)
-            member = inner.member(name) if isinstance(inner, Struct) else None
-            if not isinstance(inner, Struct) or member is None:
-                return
-            span = Span(at, at + len(name))
-            yield Occurrence(span, Symbol("", SymbolKind.FIELD, name, inner.name), access=Access.WRITE)
-            at, owner = span.end + 1, member
 
     def word(self, scope: _Scope, name: Name | None) -> Iterator[Occurrence]:
         """The occurrence of a variable in text that is a number or the name of a variable."""
@@ -325,7 +312,7 @@ class _Scope:
             symbol = parameter(self.machine.owner, event.value, node.name)
             yield Occurrence(node.name_span, symbol, access=Access.READ)
             return
-        inner, _ = unwrap(self.type_of(node.object))
+        inner, _ = unwrap(infer(node.object, self.type_of_name)[0])
         if not isinstance(inner, Struct) or inner.member(node.name) is None:
             return
         if inner.kind is StructKind.DECLARED:
@@ -335,19 +322,8 @@ class _Scope:
         elif inner.name:
             yield Occurrence(node.name_span, Symbol("", SymbolKind.FIELD, node.name, inner.name), access=Access.READ)
 
-    def type_of(self, expr: Expr) -> Type:
-        """The type of a chain of members and indices; `UNKNOWN` for other expressions."""
-        match expr:
-            case NameExpr():
-                return self.known.get(expr.name) or self.variables.get(expr.name) or UNKNOWN
-            case Index():
-                indexed = self.type_of(expr.object)
-                return indexed.element if isinstance(indexed, Array) else UNKNOWN
-            case Member():
-                inner, bounds = unwrap(self.type_of(expr.object))
-                member = inner.member(expr.name) if isinstance(inner, Struct) else None
-                return UNKNOWN if member is None else wrap(member, bounds)
-        return UNKNOWN
+    def type_of_name(self, name: str) -> Type | None:
+        return self.known.get(name) or self.variables.get(name)
 
 
 def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:

@@ -9,9 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.tree import walk
-from roaml.expr.types import Struct, Type, unwrap
 from roaml.ide.names.frames import Frame, Piece, Trees
-from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
+from roaml.ide.names.occurrence import Access, Occurrence, fields, tree_node, without_slash
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
 from roaml.model.expand import Instance
@@ -204,13 +203,6 @@ class _PropertyFile:
             pieces = self.table.get(f"{port.name.value}__{name.value}", ())
             yield from self.pieces(pieces, name.span, len(port.name.value) + 2)
             return
-        start = name.span.start
-        owner: Type | None = part_of(port, self.find)
-        for text in name.value.split("."):
-            inner, _ = unwrap(owner) if owner is not None else (None, ())
-            member = inner.member(text) if isinstance(inner, Struct) else None
-            if not isinstance(inner, Struct) or member is None:
-                return
-            symbol = Symbol("", SymbolKind.FIELD, text, inner.name)
-            yield Occurrence(Span(start, start + len(text)), symbol, access=Access.READ)
-            start, owner = start + len(text) + 1, member
+        part = part_of(port, self.find)
+        if part is not None:
+            yield from fields(name, part, Access.READ)

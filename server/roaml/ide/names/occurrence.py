@@ -16,9 +16,11 @@ that must change together.
 from __future__ import annotations
 
 import enum
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
+from roaml.expr.types import Struct, Type, member_type, unwrap
 from roaml.language import HL_SCXML
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
@@ -76,6 +78,21 @@ def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
     """The symbol of a tree node with a name. `position` is its position in the tree, as in
     `roaml.model.expand.Source`."""
     return Symbol(path, SymbolKind.TREE_NODE, name, f"{tree}:{position}")
+
+
+def fields(name: Name, part: Type, access: Access) -> Iterator[Occurrence]:
+    """The fields on a dotted path into a message or a part of an interface."""
+    if len(name.value) != name.span.end - name.span.start:
+        return
+    start, owner = name.span.start, part
+    for field in name.value.split("."):
+        inner, _ = unwrap(owner)
+        member = member_type(owner, field)
+        if not isinstance(inner, Struct) or member is None:
+            return
+        span = Span(start, start + len(field))
+        yield Occurrence(span, Symbol("", SymbolKind.FIELD, field, inner.name), access=access)
+        start, owner = span.end + 1, member
 
 
 def base_span(span: Span, base: str) -> Span:
