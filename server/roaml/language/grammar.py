@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
-
-from lxml import etree
+from typing import TYPE_CHECKING, Any
 
 from roaml.language.resources import schema_path
 from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValueRole
+
+if TYPE_CHECKING:
+    from lxml import etree
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
@@ -195,6 +196,8 @@ class Grammar:
     @cached_property
     def validator(self) -> etree.XMLSchema:
         """The compiled schema (libxml2)."""
+        from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
+
         return etree.XMLSchema(etree.parse(str(schema_path(self.schema))))
 
     def child(self, parent: ElementType, name: str) -> ElementType | None:
@@ -264,6 +267,8 @@ class _Reader:
     """Reads one schema file into tables."""
 
     def __init__(self, schema: str) -> None:
+        from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
+
         top = etree.parse(str(schema_path(schema))).getroot()
         self.named: dict[tuple[str, str], Any] = {
             (_local(node), name): node for node in top if isinstance(node.tag, str) and (name := node.get("name"))
@@ -400,7 +405,7 @@ class _Reader:
 
 
 def _local(node: Any) -> str:
-    return str(etree.QName(node).localname)
+    return str(node.tag).rpartition("}")[2]
 
 
 def _documentation(node: Any) -> str:
