@@ -17,7 +17,8 @@ from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart
-from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Role, ScxmlEvent, Send, State, Statement
+from roaml.scxml.events import Role, ScxmlEvent
+from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Send, State, Statement
 from roaml.scxml.names import ACTION_HANDLER_PREFIX
 from roaml.text import Location
 

@@ -10,19 +10,8 @@ from roaml.expr.zero import zero
 from roaml.lower.build import event_data, integer, name
 from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.model import (
-    Assign,
-    Automaton,
-    Data,
-    EventRole,
-    Param,
-    Role,
-    ScxmlEvent,
-    Send,
-    State,
-    Target,
-    Transition,
-)
+from roaml.scxml.events import EventRole, Role, ScxmlEvent
+from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Target, Transition
 from roaml.scxml.names import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
 from roaml.text import Location
 

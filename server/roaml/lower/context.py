@@ -19,7 +19,7 @@ from roaml.model.syntax import PortRead
 from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings, find_handle, port_type
 from roaml.roles import SymbolKind
-from roaml.scxml.model import ScxmlEvent
+from roaml.scxml.events import ScxmlEvent
 from roaml.text import Decoded, Location, Span
 
 

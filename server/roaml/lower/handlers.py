@@ -11,7 +11,8 @@ from roaml.lower.build import event_data, name
 from roaml.lower.data import lower_data
 from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, ChannelEndpoint
-from roaml.scxml.model import Assign, Body, Data, Param, ScxmlEvent, Statement, Target, Transition
+from roaml.scxml.events import ScxmlEvent
+from roaml.scxml.model import Assign, Body, Data, Param, Statement, Target, Transition
 from roaml.text import Location
 
 

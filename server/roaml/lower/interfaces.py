@@ -12,7 +12,7 @@ from roaml.lower.expressions import SEPARATOR
 from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
 from roaml.roles import ProtocolPart
-from roaml.scxml.model import EventRole, ScxmlEvent
+from roaml.scxml.events import EventRole, ScxmlEvent
 from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, named, safe_name
 
 

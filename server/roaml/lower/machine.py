@@ -27,8 +27,9 @@ from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton, sanitise
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton as PlainAutomaton
-from roaml.scxml.model import Data, Role, ScxmlEvent, Send, State, Statement, Target, Transition
+from roaml.scxml.model import Data, Send, State, Statement, Target, Transition
 from roaml.scxml.names import STATUSES, named
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]

@@ -9,7 +9,8 @@ from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, sanitise
 from roaml.roles import ProtocolPart
-from roaml.scxml.model import Automaton, Role, Send, State
+from roaml.scxml.events import Role
+from roaml.scxml.model import Automaton, Send, State
 from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name
 
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)

@@ -25,7 +25,8 @@ from roaml.model.machine import CallChild, NoEffect, ReturnHalted, ReturnStatus,
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import unset_fields
 from roaml.roles import ProtocolPart
-from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, ScxmlEvent, Send, Statement
+from roaml.scxml.events import ScxmlEvent
+from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
 from roaml.scxml.names import FIELD_PREFIX, STATUSES, named
 from roaml.text import Location
 

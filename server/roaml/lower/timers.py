@@ -27,21 +27,8 @@ from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.scxml.model import (
-    Assign,
-    Branch,
-    Data,
-    EventRole,
-    If,
-    Param,
-    Role,
-    ScxmlEvent,
-    Send,
-    State,
-    Statement,
-    Target,
-    Transition,
-)
+from roaml.scxml.events import EventRole, Role, ScxmlEvent
+from roaml.scxml.model import Assign, Branch, Data, If, Param, Send, State, Statement, Target, Transition
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.names import CLOCK, CLOCK_STEP, FIELD_PREFIX, TIME_IS_OVER, TIMER_PREFIX, safe_name
 from roaml.text import Location

@@ -9,7 +9,8 @@ from roaml.lower.build import equal, event_data, integer
 from roaml.lower.interfaces import tree_event
 from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.model import Automaton, Role, ScxmlEvent, Send, State, Target, Transition
+from roaml.scxml.events import Role, ScxmlEvent
+from roaml.scxml.model import Automaton, Send, State, Target, Transition
 from roaml.scxml.names import STATUSES, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 
 ANSWER = tree_event(ROOT_NUMBER, "response")

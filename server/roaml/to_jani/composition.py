@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Destination, Edge, Element, Location, Sync, System
-from roaml.scxml.model import EventRole
+from roaml.scxml.events import EventRole
 from roaml.scxml.names import (
     CLOCK_ACTION,
     RECEIVED,

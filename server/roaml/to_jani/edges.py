@@ -17,7 +17,8 @@ from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
-from roaml.scxml.model import Assign, Body, If, Role, Send, State
+from roaml.scxml.events import Role
+from roaml.scxml.model import Assign, Body, If, Send, State
 from roaml.scxml.names import on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in

@@ -12,7 +12,8 @@ from roaml.expr.infer import infer
 from roaml.expr.tree import Expr, Name, walk
 from roaml.expr.types import UNKNOWN, Struct, Type
 from roaml.scxml.event_data import Round, infer_in_rounds, parameter_types
-from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
+from roaml.scxml.events import EventRole, ScxmlEvent
+from roaml.scxml.model import Body, Send, statements
 from roaml.text import Location
 from roaml.to_jani.moves import AutomatonMoves
 

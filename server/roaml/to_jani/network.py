@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
-from roaml.scxml.model import Data, EventRole, Network, Role
+from roaml.scxml.events import EventRole, Role
+from roaml.scxml.model import Data, Network
 from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
