@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expectations set from results: a known result is judged again at once, without new traces."""
+"""Expectations set from results: a known result is compared with them at once, without new traces."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ async def test_an_expectation_is_set_beside_a_property_in_xml(tmp_path: Path) ->
         (edits,) = answer["edit"]["changes"].values()
         expected = changed(text, edits)
         assert '<property id="heads_up" pattern="existence" expect=">= 0.9">' in expected
-        # The known result is judged at once, and is not stale: its traces are the same.
+        # The known result is compared at once. It is not stale, because its traces are the same.
         client.replace(file, expected)
         ((hint, _),) = await hints(client, file)
         assert hint.startswith("✗ 0.")
@@ -135,7 +135,7 @@ async def test_an_expectation_is_set_beside_a_property_in_xml(tmp_path: Path) ->
         assert row["stale"] is False
         assert (row["result"]["verdict"], row["result"]["traces"]) == ("not met", first["traces"])
         assert (row["result"]["probability"], row["result"]["lower"]) == (first["probability"], first["lower"])
-        # A looser one is met; what is no number is no expectation.
+        # A weaker expectation is met. A text that is not a number is not an expectation.
         assert (await set_expectation(client, main, HEADS, "often"))["problem"].startswith("an expectation compares")
         (edits,) = (await set_expectation(client, main, HEADS, "< 0.9"))["edit"]["changes"].values()
         assert 'expect="&lt; 0.9"' in changed(expected, edits)
@@ -211,6 +211,26 @@ async def test_code_actions_set_what_the_result_suggests(tmp_path: Path) -> None
         assert edit.changes is not None
         ((text_edit,),) = edit.changes.values()
         assert text_edit.new_text == ' expect=">= 1"'
+
+
+async def test_a_quick_fix_moves_expectations_to_the_configuration(tmp_path: Path) -> None:
+    _, file = coin(tmp_path)
+    configuration = tmp_path / "as2fm.toml"
+    configuration.write_text('exclude = ["attic/"]\n', encoding="utf-8")
+    text = COIN["properties.xml"].replace('id="heads_up"', 'id="heads_up" expect="&gt;= 0.4"')
+    line = next(i for i, row in enumerate(text.splitlines()) if HEADS in row)
+    async with connect(tmp_path, options=COMMANDS) as client:
+        client.open(file, text, language="xml")
+        place = types.Range(types.Position(line, 0), types.Position(line + 1, 0))
+        context = types.CodeActionContext([], only=[types.CodeActionKind.QuickFix])
+        params = types.CodeActionParams(types.TextDocumentIdentifier(file.as_uri()), place, context)
+        offered = await client.text_document_code_action_async(params) or ()
+        (action,) = (a for a in offered if isinstance(a, types.CodeAction) and a.title.startswith("Move"))
+        assert action.title == "Move the expectation to `as2fm.toml`"
+        assert action.diagnostics is not None
+        assert [diagnostic.code for diagnostic in action.diagnostics] == ["unportable-expectation"]
+        assert action.edit is not None
+        assert set(action.edit.changes or {}) == {file.as_uri(), configuration.as_uri()}
 
 
 async def test_both_sides_are_explained(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import QUICK_FIX, CodeAction, WorkspaceEdit, known
 from roaml.ide.code_actions.inputs import add_input, move_input
+from roaml.ide.code_actions.move_expectation import movable_expectations, moved
 from roaml.ide.code_actions.new_plugin import port_of, skeletons
 from roaml.ide.rename import Renaming, rename
 from roaml.language import SYSTEM
@@ -366,6 +367,20 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
         yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
 
 
+# ---------------------------------------------------------------- expectations
+
+
+def _move_expectations(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+    """Move the expectations of the property file to the configuration."""
+    analysis, path = snapshot.analysis, diagnostic.path
+    expectations = movable_expectations(analysis, path)
+    for system in analysis.memberships.get(path, ())[:1] if expectations else ():
+        file = snapshot.configuration_of(system)
+        what = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
+        make = partial(moved, analysis, path, expectations, file)
+        yield _action(diagnostic, f"Move {what} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
+
+
 # -------------------------------------------------------------------- helpers
 
 
@@ -389,7 +404,7 @@ def _all_nodes(analysis: Analysis, path: str) -> Iterator[TreeNode]:
 
 
 def _node_at(analysis: Analysis, diagnostic: Diagnostic) -> TreeNode | None:
-    """The innermost node around a diagnostic."""
+    """The innermost node of a tree that contains the span of a diagnostic."""
     around = [n for n in _all_nodes(analysis, diagnostic.path) if _holds(n.element.span, diagnostic.span)]
     return min(around, key=lambda n: n.element.span.end - n.element.span.start, default=None)
 
@@ -399,7 +414,7 @@ def _holds(outer: Span, inner: Span) -> bool:
 
 
 def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
-    """The tree files of all systems of a file."""
+    """The tree files of all systems to which a file belongs."""
     return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
 
 
@@ -414,6 +429,7 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "tree-element-in-node": _element_in_node,
     "unknown-plugin": _unknown_plugin,
     "unknown-port": _unknown_port,
+    "unportable-expectation": _move_expectations,
     "unused-plugin": _unused_plugin,
     "unused-port": _unused_port,
 }
