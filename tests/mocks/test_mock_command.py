@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -180,6 +181,15 @@ def test_events_of_the_world_in_a_system(tmp_path: Path, capsys: pytest.CaptureF
     assert probability(capsys, path) == 0
     tree(tmp_path, asks.format("x"))
     assert "must be a number from 0 to 1" in refused(capsys, path)
+
+
+def test_a_trace_of_a_plugin_with_conditions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The plugin is behind an automaton for its conditions; the story tells what it answers."""
+    path = system(tmp_path, '<Sequence name="root"><Mine code="{c}" _skipIf="c == 5"/><AlwaysSuccess/></Sequence>')
+    run(["verify", path, "--mock", "Mine: 0.5", "--max-traces", "20", "--scheduler", "uniform", "--explain"])
+    text = capsys.readouterr().out
+    assert re.search(r"Mine \(bt_1001\) +is ticked in idle → failed: FAILURE", text)
+    assert "_inner_" not in text
 
 
 def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
