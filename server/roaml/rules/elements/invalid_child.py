@@ -23,8 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     most = max(counts)
                     children = "no children" if most == 0 else f"{most} {'child' if most == 1 else 'children'}"
                     message = (
-                        f"there is no child {name.value}: in the tree the node has {children}, and children are counted "
-                        "from 0"
+                        f"there is no child {name.value}: in the tree the node has {children}, and children are "
+                        "counted from 0"
                     )
                     yield RULE.at(name.span, message)
             else:
