@@ -32,9 +32,9 @@ SCHEDULERS = 256
 TRIED = 16
 """The number of traces for each scheduler in the first round; it doubles in each further round."""
 SURE = 3
-"""The number of rounds after which a scheduler is selected that has never, or always, succeeded."""
+"""The number of rounds after which the search ends if all traces of a scheduler have failed, or all have succeeded."""
 USUAL = 100
-"""The number of rounds after which a scheduler may be selected whose traces have all failed, or all succeeded."""
+"""The number of traces with uniform choices, to measure their length."""
 PROBED = 6
 """The number of traces for each scheduler with a small budget."""
 LARGE = 1 << 40
