@@ -129,7 +129,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
-    """A description of a topic, service or action without its type, for descriptions of the machines that use it."""
+    """The description of a topic, service or action without its type, as a part of other descriptions."""
     connected = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
