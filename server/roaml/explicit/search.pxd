@@ -8,9 +8,9 @@ from roaml.smc.kernel cimport Kernel
 ctypedef unsigned long long u64
 ctypedef long long i64
 
-cdef u64 MASK, HASH_1, HASH_2, HIGH, MOST
-cdef i64 MOST_NUMBERS, MANY
-cdef int LEARNED, LEARNED_STEPS
+cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
+cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
+cdef int SAMPLED_TRACES, SAMPLED_STEPS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES

@@ -7,10 +7,10 @@ cimport cython
 ctypedef unsigned long long u64
 ctypedef long long i64
 
-cdef u64 MASK, GOLDEN, MIX_1, MIX_2
-cdef i64 MOST, LEAST
-cdef double TO_UNIT, HUGE, TINY
-cdef u64 FEW
+cdef u64 UINT64_MASK, GOLDEN, MIX_1, MIX_2
+cdef i64 MAX_INT64, MIN_INT64
+cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
+cdef u64 MAX_DRAWN_COMBINATIONS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
 

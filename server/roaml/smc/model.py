@@ -37,7 +37,7 @@ from roaml.smc.run import (
 )
 from roaml.smc.size import check_size
 
-DEPTH = 15_000
+RECURSION_LIMIT = 15_000
 """Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""
 
 
@@ -75,7 +75,7 @@ class ModelChecker:
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
-        sys.setrecursionlimit(max(depth, DEPTH))
+        sys.setrecursionlimit(max(depth, RECURSION_LIMIT))
         try:
             check_size(model, chosen)
             read: list[Formula] = [expression for each in outputs.values() for expression in each.expressions]
