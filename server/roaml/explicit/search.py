@@ -217,12 +217,12 @@ class StateSearch:
 
     def choices_of(self, state: int) -> list[tuple[float, float, list[tuple[float, int]]]]:
         """The choices of a state: weight, expected reward, and destinations with their probabilities."""
-        found = []
+        choices = []
         at = self.start[state]
         while at < self.start[state + 1]:
             size = self.code[at]
             if size >= 0:
-                found.append((1.0, 0.0, [(1.0, size)]))
+                choices.append((1.0, 0.0, [(1.0, size)]))
                 at += 1
                 continue
             weight, reward = self.reals[self.code[at + 1]], self.reals[self.code[at + 2]]
@@ -231,8 +231,8 @@ class StateSearch:
             for _ in range(-size):
                 branches.append((self.reals[self.code[at + 1]], self.code[at]))
                 at += 2
-            found.append((weight, reward, branches))
-        return found
+            choices.append((weight, reward, branches))
+        return choices
 
     def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
         """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
@@ -262,8 +262,8 @@ class StateSearch:
 
     def fault(self) -> tuple[int, int, int, int, float]:
         """The undefined operation that ended the search; see `Kernel.problem`."""
-        found: tuple[int, int, int, int, float] = self.kernel.problem()
-        return found
+        problem: tuple[int, int, int, int, float] = self.kernel.problem()
+        return problem
 
     def visit(self, state: int) -> None:
         """Restore the kernel to the state with a number."""
@@ -724,11 +724,11 @@ class StateSearch:
         """Collect the enabled edges of each slot that has an effect, and the probabilities of their ways; return the
         number of these slots."""
         count = 0
-        found = 0
+        edge_count = 0
         for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
             slot = self.kernel.active_slot[i]
             self.slots[count] = slot
-            self.edge_from[count] = found
+            self.edge_from[count] = edge_count
             count += 1
             place = self.kernel.place[self.kernel.slot_instance[slot]]
             group = self.kernel.group_start[place]
@@ -740,11 +740,11 @@ class StateSearch:
                 guard = self.kernel.guard[edge]
                 if end - first > 1 and guard >= 0 and self.kernel._execute(guard) == 0:
                     continue
-                self.edges[found] = edge
-                found += 1
+                self.edges[edge_count] = edge
+                edge_count += 1
                 if self.kernel.way_chance[self.kernel.way_start[edge]] >= 0:
                     self._weigh(edge)
-        self.edge_from[count] = found
+        self.edge_from[count] = edge_count
         return count
 
     def _weigh(self, edge: int) -> None:
@@ -871,7 +871,7 @@ class StateSearch:
                 self.now[i] = self.keys[state * self.words + i]
             for cell in range(self.cells):
                 self._pack(cell)
-        found = self._find(state)
+        successor = self._find(state)
         # Restore the kernel to the state.
         for j in range(count):
             way = self.ways[j]
@@ -884,4 +884,4 @@ class StateSearch:
         for k in range(self.kernel.note_count):
             self.kernel.noted[self.kernel.notes[k]] = 0
         self.kernel.note_count = 0
-        return found
+        return successor

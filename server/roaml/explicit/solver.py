@@ -468,8 +468,8 @@ class Solver:
     def _needs_lasting(self, state: int) -> int:
         """Whether paths are accepted only if the lasting condition holds for ever."""
         label = self.label[state]
-        wanted = LASTS if self.accepts == AS_JUDGED else FAILS
-        return 1 if self.accepts != NOTHING and label & (LASTS | FAILS) == wanted else 0
+        accepting = LASTS if self.accepts == AS_JUDGED else FAILS
+        return 1 if self.accepts != NOTHING and label & (LASTS | FAILS) == accepting else 0
 
     def _accept_ends(self) -> None:
         """Give accepted end components the value 1. An end component is accepted if a scheduler can stay in an accepted

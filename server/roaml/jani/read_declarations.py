@@ -49,14 +49,14 @@ class DeclarationReader(FormulaReader):
 
     def actions_of(self, model: Members) -> tuple[Action, ...]:
         actions: list[Action] = []
-        for members in self.each(model, "actions", _ACTION):
+        for members in self.objects(model, "actions", _ACTION):
             if name := self.declare(members, self.actions):
                 actions.append(Action(name, comment=members.comment(), origin=members.origin))
         return tuple(actions)
 
     def constants(self, model: Members) -> tuple[Constant, ...]:
         constants: list[Constant] = []
-        for members in self.each(model, "constants", _CONSTANT):
+        for members in self.objects(model, "constants", _CONSTANT):
             if name := self.declare(members, self.variables):
                 value = self.optional(members, "value")
                 type_ = self.type(members, "type")
@@ -66,7 +66,7 @@ class DeclarationReader(FormulaReader):
     def variables_of(self, owner: Members, names: DeclaredNames) -> tuple[Variable, ...]:
         """The variables of a model or an automaton."""
         variables: list[Variable] = []
-        for members in self.each(owner, "variables", _VARIABLE):
+        for members in self.objects(owner, "variables", _VARIABLE):
             if name := self.declare(members, names):
                 variable = Variable(
                     name,
@@ -82,10 +82,10 @@ class DeclarationReader(FormulaReader):
     def datatypes(self, model: Members) -> tuple[Datatype, ...]:
         datatypes: list[Datatype] = []
         names = DeclaredNames("datatype", self.notes)
-        for members in self.each(model, "datatypes", _DATATYPE):
+        for members in self.objects(model, "datatypes", _DATATYPE):
             parts: list[DatatypeMember] = []
             part_names = DeclaredNames("member", self.notes)
-            for part in self.each(members, "members", _DATATYPE_MEMBER):
+            for part in self.objects(members, "members", _DATATYPE_MEMBER):
                 if name := self.declare(part, part_names):
                     type_ = self.type(part, "type")
                     parts.append(DatatypeMember(name, type_, comment=part.comment(), origin=part.origin))
@@ -96,10 +96,10 @@ class DeclarationReader(FormulaReader):
     def functions_of(self, owner: Members, names: DeclaredNames) -> tuple[Function, ...]:
         """The functions of a model or an automaton."""
         functions: list[Function] = []
-        for members in self.each(owner, "functions", _FUNCTION):
+        for members in self.objects(owner, "functions", _FUNCTION):
             parameters: list[Parameter] = []
             parameter_names = DeclaredNames("parameter", self.notes)
-            for part in self.each(members, "parameters", _PARAMETER):
+            for part in self.objects(members, "parameters", _PARAMETER):
                 if name := self.declare(part, parameter_names):
                     type_ = self.type(part, "type")
                     parameters.append(Parameter(name, type_, comment=part.comment(), origin=part.origin))
@@ -153,7 +153,7 @@ class DeclarationReader(FormulaReader):
 
     # ---------------------------------------------------------------- members
 
-    def each(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
+    def objects(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
         """The objects of the list `key`."""
         for item in owner.items(key):
             if members := self.members(item, form):

@@ -155,7 +155,7 @@ class _ModelReader(DeclarationReader):
     # ---------------------------------------------------------------- automata
 
     def automata_of(self, model: Members) -> tuple[Automaton, ...]:
-        return tuple(self.automaton(members) for members in self.each(model, "automata", _AUTOMATON))
+        return tuple(self.automaton(members) for members in self.objects(model, "automata", _AUTOMATON))
 
     def automaton(self, members: Members) -> Automaton:
         locations = DeclaredNames("location", self.notes)
@@ -173,7 +173,7 @@ class _ModelReader(DeclarationReader):
 
     def locations(self, automaton: Members, names: DeclaredNames) -> tuple[Location, ...]:
         locations: list[Location] = []
-        for members in self.each(automaton, "locations", _LOCATION):
+        for members in self.objects(automaton, "locations", _LOCATION):
             if name := self.declare(members, names):
                 location = Location(
                     name,
@@ -187,14 +187,14 @@ class _ModelReader(DeclarationReader):
 
     def transient_values(self, location: Members) -> tuple[TransientValue, ...]:
         values: list[TransientValue] = []
-        for members in self.each(location, "transient-values", _TRANSIENT_VALUE):
+        for members in self.objects(location, "transient-values", _TRANSIENT_VALUE):
             target = self.target(members)
             value = self.required(members, "value")
             values.append(TransientValue(target, value, comment=members.comment(), origin=members.origin))
         return tuple(values)
 
     def edges(self, automaton: Members, locations: DeclaredNames) -> Iterator[Edge]:
-        for members in self.each(automaton, "edges", _EDGE):
+        for members in self.objects(automaton, "edges", _EDGE):
             yield Edge(
                 self.use(members, "location", locations) or "",
                 tuple(self.destinations(members, locations)),
@@ -206,7 +206,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def destinations(self, edge: Members, locations: DeclaredNames) -> Iterator[Destination]:
-        for members in self.each(edge, "destinations", _DESTINATION):
+        for members in self.objects(edge, "destinations", _DESTINATION):
             yield Destination(
                 self.use(members, "location", locations) or "",
                 self.clause(members, "probability"),
@@ -216,7 +216,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def assignments(self, destination: Members) -> Iterator[Assignment]:
-        for members in self.each(destination, "assignments", _ASSIGNMENT):
+        for members in self.objects(destination, "assignments", _ASSIGNMENT):
             yield Assignment(
                 self.target(members),
                 self.required(members, "value"),
@@ -237,7 +237,7 @@ class _ModelReader(DeclarationReader):
         return System(elements, syncs, comment=members.comment(), origin=members.origin)
 
     def elements(self, system: Members) -> Iterator[Element]:
-        for members in self.each(system, "elements", _ELEMENT):
+        for members in self.objects(system, "elements", _ELEMENT):
             yield Element(
                 self.use(members, "automaton", self.automata) or "",
                 self.uses(members, "input-enable", self.actions),
@@ -246,7 +246,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def syncs(self, system: Members, size: int) -> Iterator[Sync]:
-        for members in self.each(system, "syncs", _SYNC):
+        for members in self.objects(system, "syncs", _SYNC):
             participants: list[tuple[int, str]] = []
             if vector := members.array("synchronise"):
                 for index, item in vector.items_but_nulls:
@@ -265,7 +265,7 @@ class _ModelReader(DeclarationReader):
         """The properties of a model or a property file."""
         properties: list[Property] = []
         names = DeclaredNames("property", self.notes)
-        for members in self.each(owner, "properties", _PROPERTY):
+        for members in self.objects(owner, "properties", _PROPERTY):
             value = members.values.get("expression")
             formula = Missing(origin=members.origin) if value is None else self.formula(value)
             name = self.declare(members, names) or ""

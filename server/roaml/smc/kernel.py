@@ -260,12 +260,12 @@ class Kernel:
     def open_ways(self, instance: int) -> list[int]:
         """The first way of each edge of `instance` whose guard is true."""
         location = self.place[instance]
-        found = []
+        ways = []
         for group in range(self.group_start[location], self.group_start[location + 1]):
             for edge in range(self.edge_start[group], self.edge_start[group + 1]):
                 if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
-                    found.append(self.way_start[edge])
-        return found
+                    ways.append(self.way_start[edge])
+        return ways
 
     def problem(self) -> tuple[int, int, int, int, float]:
         """The error: its code, the place in the bytecode, and the values that its message shows."""
@@ -332,7 +332,7 @@ class Kernel:
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. Each is described by its number, the number of choices that differ only in slots without
         effect, and, for each slot that has an effect, the probabilities of the ways of each enabled edge."""
-        found = []
+        vectors = []
         for i in range(self.enabled_count):
             vector = self.enabled[i]
             slots = []
@@ -345,8 +345,8 @@ class Kernel:
                 combinations *= self.ready[slot]
                 edges = [self._chances(self._edge(slot, pick)) for pick in range(self.ready[slot])]
                 slots.append(edges)
-            found.append((vector, weight // combinations, slots))
-        return found
+            vectors.append((vector, weight // combinations, slots))
+        return vectors
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
         """Take a given choice; return the same as `step`.
@@ -556,15 +556,15 @@ class Kernel:
         for i in range(self.enabled_count):
             total += self._share(self.enabled[i], top)
         aim = (self._toss() >> 11) * TO_UNIT * total
-        found = self.enabled[0]
+        chosen = self.enabled[0]
         for i in range(self.enabled_count):
             share = self._share(self.enabled[i], top)
             if share > 0.0:
-                found = self.enabled[i]
+                chosen = self.enabled[i]
                 if aim < share:
-                    return found
+                    return chosen
                 aim -= share
-        return found
+        return chosen
 
     def _toss(self) -> int:
         """The next number that decides between choices: a random one, or a hash of the scheduler and the state."""
@@ -580,8 +580,8 @@ class Kernel:
         self.tossed = 0
         self._notice(self.choice)
         bias = (self.scheduler >> 57) & 3
-        found = -1
-        found_rank = 0
+        chosen = -1
+        chosen_rank = 0
         greatest = 0
         for i in range(self.enabled_count):
             vector = self.enabled[i]
@@ -591,11 +591,11 @@ class Kernel:
                 if bias == 1:
                     rank = 1 - rank
             value = self._mixed((self.choice ^ self._mixed(vector + 1)) & UINT64_MASK)
-            if found < 0 or rank > found_rank or (rank == found_rank and value > greatest):
-                found = vector
-                found_rank = rank
+            if chosen < 0 or rank > chosen_rank or (rank == chosen_rank and value > greatest):
+                chosen = vector
+                chosen_rank = rank
                 greatest = value
-        return found
+        return chosen
 
     def _takes_part(self, vector: int, instance: int) -> int:
         """Whether `instance` has a slot in `vector` that has an effect."""
@@ -754,7 +754,7 @@ class Kernel:
         end = self.way_start[edge + 1]
         unit = (self._draw() >> 11) * TO_UNIT
         total = 0.0
-        found = -1
+        drawn = -1
         last = -1
         for way in range(first, end):
             register = self._execute(self.way_chance[way])
@@ -767,24 +767,24 @@ class Kernel:
             total += chance
             if chance > 0.0:
                 last = way
-            if found < 0 and unit < total:
-                found = way
+            if drawn < 0 and unit < total:
+                drawn = way
         if total < 0.999999 or total > 1.000001:
             self._fail(6, self.way_chance[first])
             return -1
-        return last if found < 0 else found
+        return last if drawn < 0 else drawn
 
     def _chances(self, edge: int) -> list[float]:
         """The probability of each way of `edge`."""
-        found = []
+        chances = []
         before = 0.0
         for way in range(self.way_start[edge], self.way_start[edge + 1]):
             if self.way_chance[way] >= 0:
-                found.append(self.reals[self._execute(self.way_chance[way])])
+                chances.append(self.reals[self._execute(self.way_chance[way])])
             else:
-                found.append(self.way_sum[way] - before)
+                chances.append(self.way_sum[way] - before)
                 before = self.way_sum[way]
-        return found
+        return chances
 
     def _execute_phases(self) -> None:
         """Execute the assignments of ways that depend on each other: for each index, first compute all values, then
@@ -994,13 +994,13 @@ class Kernel:
 
     def _reason(self, repeats: int) -> int:
         """Why the state does not change any more: the smallest mark of the current locations."""
-        found = 0
+        reason = 0
         for i in range(self.instances):
             mark = self.location_mark[self.place[i]]
-            if mark != 0 and (found == 0 or mark < found):
-                found = mark
-        if found != 0:
-            return found
+            if mark != 0 and (reason == 0 or mark < reason):
+                reason = mark
+        if reason != 0:
+            return reason
         return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:

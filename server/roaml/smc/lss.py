@@ -80,18 +80,18 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
 
 
 def candidates(
-    automata: int, each: int = 2, memoryless: int = INITIAL_SCHEDULERS, memory: int = INITIAL_SCHEDULERS // 4
+    automata: int, per_automaton: int = 2, memoryless: int = INITIAL_SCHEDULERS, memory: int = INITIAL_SCHEDULERS // 4
 ) -> list[int]:
     """The numbers of the schedulers that are tried.
 
     Args:
         automata: the number of automata of the system.
-        each: the number of schedulers of both kinds for each automaton.
+        per_automaton: the number of schedulers of both kinds for per_automaton automaton.
         memoryless, memory: the numbers of schedulers of these kinds.
     """
     biased = [
         kind | (automaton << _AUTOMATON_SHIFT) | number
-        for number in range(1, each + 1)
+        for number in range(1, per_automaton + 1)
         for automaton in range(automata)
         for kind in (STARVE, FAVOUR)
     ]
@@ -122,7 +122,7 @@ class Search:
         done: the number of these that have been tried.
         best: the best share of successes in the last round; `None` before the end of the first one.
         tried: the initial number of schedulers.
-        found: the selected scheduler of each side and its traces so far.
+        selected: the selected scheduler of each side and its traces so far.
     """
 
     side: str = LEAST
@@ -132,7 +132,7 @@ class Search:
     done: int = 0
     best: float | None = None
     tried: int = 0
-    found: dict[str, Side] = field(default_factory=dict)
+    selected: dict[str, Side] = field(default_factory=dict)
 
 
 def search(
@@ -163,9 +163,9 @@ def search(
     for side in SIDES:
         state.side, state.round, state.best = side, 0, None
         best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, told, pulse)
-        state.found[side] = Side(best, Tally())
+        state.selected[side] = Side(best, Tally())
         plain = sampling_options(options)
-        tally = state.found[side].tally
+        tally = state.selected[side].tally
         answer(payload, question, plain, pool, tally, lambda _: told(state), pulse, scheduler=best)
 
 

@@ -78,7 +78,7 @@ class ModelChecker:
         sys.setrecursionlimit(max(depth, RECURSION_LIMIT))
         try:
             check_size(model, chosen)
-            read: list[Formula] = [expression for each in outputs.values() for expression in each.expressions]
+            read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
             read += [property_.expression for property_ in (*chosen, *assumptions.values())]
             self._compilation = Compilation(model, read)
             self.asked: tuple[CompiledProperty, ...] = ()
@@ -145,7 +145,7 @@ class ModelChecker:
 
     def payload(self, *asked: CompiledProperty) -> Payload:
         """The data that workers need to answer questions."""
-        goals = [goal for each in asked for goal in (each.goal, each.assumptions) if goal is not None]
+        goals = [goal for question in asked for goal in (question.goal, question.assumptions) if goal is not None]
         return pack(Compiled(self.program, merged(goals)))
 
     def answer(
@@ -183,9 +183,9 @@ class ModelChecker:
             tallies: the states to continue from; they are updated after each batch.
             watch: called for each question after each of its batches.
         """
-        questions = [each.question for each in asked]
+        questions = [property_.question for property_ in asked]
         inquiries = [Inquiry(*parts) for parts in zip(questions, tallies, columns_of(questions), strict=True)]
-        names = {each.question.name: each for each in asked}
+        names = {property_.question.name: property_ for property_ in asked}
         answer_together(
             self.payload(*asked), inquiries, options, pool, lambda i: watch(names[i.question.name], i.tally), pulse
         )

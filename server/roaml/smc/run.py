@@ -411,8 +411,8 @@ def wanted_traces(options: Options) -> int | None:
 def _limit(question: Question, options: Options) -> int | None:
     """The maximum number of traces; `None` if there is no limit. Okamoto's number is not a limit for a question with
     assumptions, because it is not known in advance how many traces they accept."""
-    wanted = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
-    limits = [limit for limit in (options.max_traces, wanted) if limit is not None]
+    required = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
+    limits = [limit for limit in (options.max_traces, required) if limit is not None]
     return min(limits) if limits else None
 
 

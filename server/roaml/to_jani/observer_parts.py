@@ -143,7 +143,7 @@ class ObserverParts:
             due = self.outputs.due if self.is_timed else program.FALSE
             needed = {self.outputs.violated.name} | _registers(self.outputs.pending) | _registers(due)
         if self.has_activity:
-            needed |= {each.name for each in (self.outputs.exercised, self.outputs.opened) if each is not None}
+            needed |= {output.name for output in (self.outputs.exercised, self.outputs.opened) if output is not None}
         while True:
             read = {
                 name
