@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> the declarations of a model or an automaton: actions, constants, variables, datatypes, functions."""
+"""Reads the declarations of a model or an automaton from JSON: actions, constants, variables, datatypes and
+functions."""
 
 from __future__ import annotations
 
@@ -116,7 +117,7 @@ class DeclarationReader(FormulaReader):
         return tuple(functions)
 
     def type(self, members: Members, key: str) -> Type:
-        """The type at `key`; types can be nested as deeply as expressions."""
+        """The type in the member `key`. Types can be nested as deeply as expressions, so this is a loop."""
         value = members.values.get(key)
         wrappers: list[type[ArrayType | OptionType]] = []
         while isinstance(value, JsonObject) and (kind := value.get("kind")) and isinstance(kind, JsonString):
@@ -154,7 +155,7 @@ class DeclarationReader(FormulaReader):
     # ---------------------------------------------------------------- members
 
     def objects(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
-        """The objects of the list `key`."""
+        """The members of each object in the list `key`. Items that are not objects are reported and left out."""
         for item in owner.items(key):
             if members := self.members(item, form):
                 yield members
@@ -167,7 +168,7 @@ class DeclarationReader(FormulaReader):
         return name.value
 
     def use(self, members: Members, key: str, names: DeclaredNames) -> str | None:
-        """The name at `key`, which must be declared."""
+        """The name in the member `key`. A name that is not declared is reported."""
         name = members.string(key)
         if name is None:
             return None
@@ -175,7 +176,7 @@ class DeclarationReader(FormulaReader):
         return name.value
 
     def uses(self, members: Members, key: str, names: DeclaredNames) -> tuple[str, ...]:
-        """The names in the list `key`, which must be declared."""
+        """The names in the list `key`. Names that are not declared are reported."""
         used: list[str] = []
         for item in members.items(key):
             if isinstance(item, JsonString):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> JANI models and property lists, with all errors in them.
+"""Reads JANI models and lists of properties from JSON, and reports the errors in them.
 
-- Never fails: parts that cannot be read are reported and left out, the rest is read. A model that was read without
-  errors can be written, checked and run.
-- Codes of findings: `jani-syntax` (not of the shape that JANI defines), `jani-name` (undefined or declared twice),
-  `jani-type`. Errors in the JSON itself were reported by `roaml.json_syntax.parse` and are not reported again.
+- Reading raises no exception: parts that cannot be read are reported and left out, and the other parts are read. A
+  model that is read without errors can be written, checked and run.
+- The findings have the codes `jani-syntax` (JANI does not allow the shape), `jani-name` (undefined or declared twice)
+  and `jani-type`. Errors in the JSON itself are not reported again; `roaml.json_syntax.parse` reports them.
 - Every origin is a position in the file.
 """
 
@@ -39,7 +39,8 @@ from roaml.json_syntax import JsonObject, JsonString, JsonValue
 
 
 def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Finding, ...]]:
-    """The model in `value`, the JSON of the file `path`; `None` if it is not an object."""
+    """The model in `value`, the JSON of the file `path`, and the findings. The model is `None` if `value` is not an
+    object."""
     notes = Notes()
     model = _ModelReader(path, notes).model(value)
     if model is None:
@@ -49,10 +50,11 @@ def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Fi
 
 
 def read_properties(value: JsonValue, path: str = "") -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
-    """The properties in `value`, the JSON of a property file or of a model: an object with a list `properties`.
+    """The properties in `value`, and the findings. `value` is the JSON of a property file or of a model: an object with
+    a list `properties`.
 
-    Its other members are ignored. Names and types are not checked, since the variables are declared elsewhere; use
-    `typecheck.check_property` and `properties.identifiers` for that.
+    Other members of the object are ignored. Names and types are not checked, because the variables are declared in
+    another file; `typecheck.check_property` and `properties.identifiers` do this.
     """
     notes = Notes()
     reader = _ModelReader(path, notes)
@@ -85,7 +87,8 @@ _PROPERTY = shape("a property", "name expression", "comment")
 
 
 class _ModelReader(DeclarationReader):
-    """Reads one file. Declarations are read before the parts that can refer to them, so names are resolved at once."""
+    """Reads one file. Declarations are read before the parts that refer to them, so that names can be resolved at
+    once."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)

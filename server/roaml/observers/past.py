@@ -32,12 +32,19 @@ from roaml.observers.properties import (
 
 TRUE = Constant(True)
 _FROM_ONE = Window(1)
+_NOW = Window(0, 0)
+_ONE = Window(1, 1)
 
 
-def past_formula(property_: PatternProperty) -> Formula | None:
-    """The formula that is false at the first letter that violates the property; `None` if there is none."""
+def past_formula(property_: PatternProperty, *, answers_with_clock: bool = True) -> Formula | None:
+    """The formula that is false at the first letter that violates the property; `None` if there is none.
+
+    Args:
+        answers_with_clock: whether the second condition can become true with a step of the clock, for example because
+            it requires that an event is not sent. Without this, the formula of a response is shorter.
+    """
     inside = _inside(property_.scope)
-    violation = _violation(property_, inside)
+    violation = _violation(property_, inside, answers_with_clock)
     if violation is None:
         return None
     match property_.scope:
@@ -61,7 +68,7 @@ def _inside(scope: ScopeKind) -> Formula:
             return Since(Not(Atom(CLOSE)), And(Atom(OPEN), Not(Atom(CLOSE))))
 
 
-def _violation(property_: PatternProperty, inside: Formula) -> Formula | None:
+def _violation(property_: PatternProperty, inside: Formula, answers_with_clock: bool) -> Formula | None:
     """A formula that is true at letters that violate the pattern in their stretch; `None` if there is none."""
 
     def earlier(condition: Formula, window: Window) -> Formula:
@@ -81,10 +88,10 @@ def _violation(property_: PatternProperty, inside: Formula) -> Formula | None:
         case Pattern.RECURRENCE:
             return _and(inside, Not(earlier(Or(first, left), window)))
         case Pattern.EXISTENCE | Pattern.RESPONSE:
-            return _late(property_, inside, first)
+            return _late(property_, inside, first, answers_with_clock)
 
 
-def _late(property_: PatternProperty, inside: Formula, first: Formula) -> Formula | None:
+def _late(property_: PatternProperty, inside: Formula, first: Formula, answers_with_clock: bool) -> Formula | None:
     """A formula that is true if the deadline of an obligation has passed; `None` if there is none."""
     window = property_.window
     can_close = property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.AFTER)
@@ -95,7 +102,14 @@ def _late(property_: PatternProperty, inside: Formula, first: Formula) -> Formul
         if window.lower:
             return None
         waits = _and(inside, Not(Atom(RIGHT)))
-        return Since(waits, And(waits, Atom(LEFT)), over)
+        request = And(waits, Atom(LEFT))
+        late = Since(waits, request, over)
+        if not answers_with_clock:
+            return late
+        # All letters since the deadline are answers, and the last letter before them left a request unanswered.
+        due = Since(waits, request, Window(window.upper, window.upper))
+        was_due = And(once(due, _ONE), Not(Since(Not(due), Atom(RIGHT), _ONE)))
+        return Or(late, And(historically(Atom(RIGHT), _NOW), was_due))
     is_in_window = And(Atom(LEFT), Since(inside, first, window))
     happened = Since(inside, _and(inside, is_in_window))
     return And(Since(inside, first, over), Not(happened))

@@ -15,12 +15,13 @@ from collections.abc import Callable, Iterable, Mapping
 from roaml.disk import Roots
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import CONFIG_FILE, FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
 from roaml.project.memo import Memo, go_on
+from roaml.project.paths import folder_of, full, is_below
 from roaml.project.settings import Settings
 from roaml.text import SourceFile, decode
 
@@ -32,6 +33,7 @@ class Snapshot:
     """The state of a workspace at one moment: the models (`analysis`) and the diagnostics (`checker`).
 
     Args:
+        roots: the open folders.
         listed: the files in the folders, and the documents of the editor that were never saved.
         opened: the open buffers.
         again: returns a snapshot in which some files have other texts.
@@ -41,12 +43,14 @@ class Snapshot:
         self,
         analysis: Analysis,
         checker: RuleRunner,
+        roots: tuple[str, ...],
         listed: tuple[str, ...],
         opened: Iterable[str],
         again: Callable[[Mapping[str, SourceFile]], Snapshot],
     ) -> None:
         self.analysis = analysis
         self.checker = checker
+        self.roots = roots
         self.listed = tuple(dict.fromkeys((*listed, *opened)))
         self._listed = listed
         self._again = again
@@ -66,6 +70,11 @@ class Snapshot:
         if origin := self.checker.settings.origin:  # the configuration may be outside of the folders
             files[origin] = None
         return tuple(path for path in files if analysis.source(path) is not None)
+
+    def configuration_of(self, system: str) -> str:
+        """The configuration file that applies to a system; it need not exist."""
+        around = [root for root in self.roots if is_below(system, root)]
+        return self.checker.settings.origin or full(max(around, key=len, default=folder_of(system)), CONFIG_FILE)
 
     def candidates(self) -> tuple[str, ...]:
         """The files of the workspace whose names are those of supported files, the files of systems, and the open
@@ -151,7 +160,7 @@ class Workspace:
         registry = self._registry.reading(files.text)
         listed, settings = (*self._listed, *new), self.settings
         analysis = Analysis(files, registry, memo, systems, settings.overrides, settings.trees, listed)
-        return Snapshot(analysis, RuleRunner(analysis, self.settings), self._listed, new, again)
+        return Snapshot(analysis, RuleRunner(analysis, self.settings), self.roots, self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
         """A new view of the disk. The folder of each named system is part of the workspace, also its folder after links

@@ -9,16 +9,17 @@ metric temporal logic, with times in steps of the clock.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from roaml.expr.format import format_expr
 from roaml.expr.operators import Operator
 from roaml.expr.transform import map_children
-from roaml.expr.tree import Binary, Boolean, Expr, Name
+from roaml.expr.tree import Binary, Boolean, Expr, Name, walk
 from roaml.expr.types import Scalar, ScalarKind
 from roaml.observers.past import past_formula
-from roaml.observers.properties import And, Atom, Constant, Formula, FormulaProperty, Not, Or, Since, Window
+from roaml.observers.properties import RIGHT, And, Atom, Constant, Formula, FormulaProperty, Not, Or, Since, Window
 from roaml.scxml.model import Automaton, Body, If, Network, Send
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.scxml.writer import NOBODY, receivers_of
@@ -91,11 +92,10 @@ class _Writer:
         self.names: dict[str, str] = {}
 
     def property(self, property_: ObservedProperty) -> str:
-        written = property_.property
-        formula = written.formula if isinstance(written, FormulaProperty) else past_formula(written)
+        formula = _formula_of(property_)
         if formula is None:
             raise _NotWrittenError(
-                "a past-time formula cannot require what has no deadline, or what only the end of a scope decides"
+                "a past-time formula cannot express a requirement that has no deadline, or that ends with its scope"
             )
         variables = {variable.id: (port, variable) for port in property_.ports for variable in port.variables}
 
@@ -153,6 +153,24 @@ class _Writer:
                 self.ports[name] = "\n".join((*lines, "        </scxml_event_send>"))
             number += 1
         return self.names[key]
+
+
+def _formula_of(property_: ObservedProperty) -> Formula | None:
+    written = property_.property
+    if isinstance(written, FormulaProperty):
+        return written.formula
+    events = {variable.id for port in property_.ports for variable in port.variables if variable.initial is None}
+    answer = property_.conditions.get(RIGHT)
+    return past_formula(written, answers_with_clock=answer is not None and not _is_monotonic(answer, events))
+
+
+def _is_monotonic(condition: Expr, events: AbstractSet[str]) -> bool:
+    """Whether a condition that is false stays false when the event variables become false."""
+    if isinstance(condition, Binary) and condition.operator in (Operator.AND, Operator.OR):
+        return _is_monotonic(condition.left, events) and _is_monotonic(condition.right, events)
+    if isinstance(condition, Name):
+        return True
+    return not any(isinstance(part, Name) and part.name in events for part in walk(condition))
 
 
 def _sent(automaton: Automaton) -> Iterator[str]:

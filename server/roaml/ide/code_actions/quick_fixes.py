@@ -17,6 +17,7 @@ from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import QUICK_FIX, CodeAction, WorkspaceEdit, known
 from roaml.ide.code_actions.inputs import add_input, move_input
+from roaml.ide.code_actions.move_expectation import movable_expectations, moved
 from roaml.ide.code_actions.new_plugin import port_of, skeletons
 from roaml.ide.rename import Renaming, rename
 from roaml.language import SYSTEM
@@ -366,6 +367,20 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
         yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
 
 
+# ---------------------------------------------------------------- expectations
+
+
+def _move_expectations(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+    """Move the expectations of the property file to the configuration."""
+    analysis, path = snapshot.analysis, diagnostic.path
+    expectations = movable_expectations(analysis, path)
+    for system in analysis.memberships.get(path, ())[:1] if expectations else ():
+        file = snapshot.configuration_of(system)
+        what = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
+        make = partial(moved, analysis, path, expectations, file)
+        yield _action(diagnostic, f"Move {what} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
+
+
 # -------------------------------------------------------------------- helpers
 
 
@@ -414,6 +429,7 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "tree-element-in-node": _element_in_node,
     "unknown-plugin": _unknown_plugin,
     "unknown-port": _unknown_port,
+    "unportable-expectation": _move_expectations,
     "unused-plugin": _unused_plugin,
     "unused-port": _unused_port,
 }
