@@ -10,6 +10,7 @@ import inspect
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -93,3 +94,41 @@ print(*(name for name in {HEAVY!r} if name in sys.modules))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == ""
+
+
+NOT_FOR_JANI = ("lxml", "multiprocessing", "roaml.expr.tree", "roaml.scxml.model", "roaml.views.story", "xml.etree")
+"""What a quick verification of a model in JANI does not need."""
+
+
+def test_a_verification_of_jani_imports_little(tmp_path: Path) -> None:
+    model = tmp_path / "model.jani"
+    model.write_text(COIN)
+    code = f"""
+import sys
+from as2fm_lsp.cli.main import run
+run(["verify", {str(model)!r}, "--jobs", "1"])
+print(*(name for name in {NOT_FOR_JANI!r} if name in sys.modules))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "two" in done.stdout
+    assert done.stdout.splitlines()[-1] == ""
+
+
+COIN = """{
+    "jani-version": 1, "name": "coin", "type": "dtmc", "actions": [],
+    "variables": [{
+        "name": "n", "type": {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 2}, "initial-value": 0
+    }],
+    "automata": [{
+        "name": "A", "locations": [{"name": "l"}], "initial-locations": ["l"],
+        "edges": [{"location": "l", "guard": {"exp": {"op": "<", "left": "n", "right": 1}}, "destinations": [
+            {"location": "l", "probability": {"exp": 0.5}, "assignments": [{"ref": "n", "value": 1}]},
+            {"location": "l", "probability": {"exp": 0.5}, "assignments": [{"ref": "n", "value": 2}]}
+        ]}]
+    }],
+    "system": {"elements": [{"automaton": "A"}], "syncs": [{"synchronise": [null]}]},
+    "properties": [{"name": "two", "expression": {
+        "op": "filter", "fun": "values", "states": {"op": "initial"},
+        "values": {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 2}}}
+    }}]
+}"""

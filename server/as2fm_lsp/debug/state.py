@@ -104,7 +104,7 @@ class StateRequests:
         return {"sources": [self._session.client.source(path) for path in files]}
 
     def _source_request(self, arguments: Arguments) -> Body:
-        raise RequestError("all sources are files")
+        raise RequestError("the text of a source cannot be requested, because all sources are files")
 
 
 def _by_name(scopes: list[ScopeEntries]) -> dict[tuple[str, str], Any]:

@@ -382,7 +382,7 @@ class StateSearch:
         unit = 1
         least = self.low[cell]
         if cell < self.places:
-            # All locations of the instance.
+            # The cell of a location gets enough bits for all locations of the instance.
             last = self.kernel.first_location[cell + 1] if cell + 1 < self.places else len(self.kernel.location_mark)
             least = self.kernel.first_location[cell]
             value = last - 1

@@ -4,20 +4,20 @@
 from __future__ import annotations
 
 import hashlib
-import multiprocessing
 import pickle
 import signal
 import threading
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from multiprocessing.connection import wait
-from multiprocessing.synchronize import Event
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
+
+if TYPE_CHECKING:
+    from multiprocessing.synchronize import Event
 
 STEPS_BETWEEN_PULSES = 200_000
 """The number of steps after which Python can handle an interrupt: some hundredths of a second."""
@@ -160,6 +160,8 @@ def start_worker(stopping: Event) -> None:
         stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
             that is killed may leave an incomplete result, for which the main process would wait for ever.
     """
+    import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+
     global _stopping  # noqa: PLW0603
     _stopping = stopping
     # Only the main process handles interrupts from the keyboard, and notifies its workers. If the main process is
@@ -171,6 +173,8 @@ def start_worker(stopping: Event) -> None:
 
 
 def _end_with(sentinel: int) -> None:
+    from multiprocessing.connection import wait  # noqa: PLC0415 - most questions are answered without workers
+
     wait([sentinel])
     signal.raise_signal(signal.SIGTERM)
 

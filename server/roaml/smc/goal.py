@@ -53,7 +53,7 @@ _MIRRORED = {
     BinaryOperator.GREATER: BinaryOperator.LESS,
     BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
 }
-"""Each comparison, with the operator for exchanged sides."""
+"""Comparison -> the operator with the same meaning after an exchange of the two sides."""
 
 
 @dataclass(frozen=True, slots=True)

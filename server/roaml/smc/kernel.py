@@ -40,7 +40,7 @@ FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
 """The reason why a trace has ended, see `end.End`."""
 ASKED = 2
-"""The activity of a question that every trace answers, see `goal.Activity`."""
+"""The activity of a question without code for its activity, see `goal.Activity`."""
 
 
 def compiled() -> bool:

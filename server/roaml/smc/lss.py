@@ -31,10 +31,10 @@ INITIAL_SCHEDULERS = 256
 """The initial number of memoryless schedulers."""
 FIRST_ROUND_TRACES = 16
 """The number of traces for each scheduler in the first round; it doubles in each further round."""
-ROUNDS_BEFORE_CERTAIN = 3
-"""The number of rounds after which a scheduler is selected that has never, or always, succeeded."""
+MIN_ROUNDS_IF_CERTAIN = 3
+"""The number of rounds after which the search ends if all traces of a scheduler have failed, or all have succeeded."""
 UNIFORM_TRACES = 100
-"""The number of rounds after which a scheduler may be selected whose traces have all failed, or all succeeded."""
+"""The number of traces with uniform choices, to measure their length."""
 MAX_PROBE_TRACES = 6
 """The number of traces for each scheduler with a small budget."""
 FIRST_SELECTION_TRACE = 1 << 40
@@ -271,7 +271,7 @@ def _best(
         successes, traces = candidates[ranked[0]]
         state.best = successes / traces
         candidates = {number: candidates[number] for number in ranked[: (len(ranked) + 1) // 2]}
-        if state.round >= ROUNDS_BEFORE_CERTAIN and state.best == max(sign, 0):
+        if state.round >= MIN_ROUNDS_IF_CERTAIN and state.best == max(sign, 0):
             return ranked[0]  # A more extreme value is impossible.
         first += tried
         tried *= 2

@@ -7,18 +7,18 @@ if a worker dies, its batch is run again.
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from concurrent.futures import TimeoutError as FutureTimeoutError
-from multiprocessing.synchronize import Event
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, start_worker
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
+    from multiprocessing.synchronize import Event
 
 WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started, because most questions are answered in less time."""
@@ -92,6 +92,8 @@ class Pool:
         yield from self._distributed(waiting, pulse)
 
     def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, BatchOutcome]]:
+        from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
+
         running: deque[tuple[Task, Future[BatchOutcome] | None]] = deque()
         lost = 0
         try:
@@ -128,6 +130,9 @@ class Pool:
 
     def _submit(self, task: Task) -> Future[BatchOutcome] | None:
         """Submit a batch; return `None` if this fails because workers have just been lost."""
+        import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+        from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
+
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
@@ -139,6 +144,9 @@ class Pool:
             return None
 
     def _wait(self, task: Task, future: Future[BatchOutcome] | None, pulse: Pulse | None) -> BatchOutcome:
+        from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
+        from concurrent.futures import TimeoutError as FutureTimeoutError  # noqa: PLC0415
+
         if future is None:
             raise BrokenExecutor("a worker has ended")
         while True:

@@ -99,7 +99,7 @@ class _PropertyFile:
 
     def port(self, port: Port, name: Name) -> Iterator[Occurrence]:
         if len(name.value) != name.span.end - name.span.start:
-            return  # written with entities
+            return  # the name is written with entities
         if port.kind is PortKind.NODE:
             yield from self.node(name)
         elif port.kind is PortKind.PLAIN:

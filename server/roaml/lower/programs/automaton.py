@@ -46,19 +46,8 @@ from roaml.lower.programs.steps import (
     update_steps,
 )
 from roaml.lower.programs.values import RESULT, ProgramValues, expr, negated
-from roaml.scxml.model import (
-    Assign,
-    Automaton,
-    Data,
-    Param,
-    Role,
-    ScxmlEvent,
-    Send,
-    State,
-    Statement,
-    Target,
-    Transition,
-)
+from roaml.scxml.events import Role, ScxmlEvent
+from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Statement, Target, Transition
 
 MAX_STATES = 20_000
 """The maximum number of states of one node."""
