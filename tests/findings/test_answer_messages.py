@@ -36,7 +36,7 @@ def test_both_answers_in_one_body_are_named(tmp_path: Path) -> None:
 def test_the_first_answer_of_an_earlier_step_is_named(tmp_path: Path) -> None:
     title = "answered at once and again when the response comes"
     [(message, related)] = said(tmp_path, "paths_tick", title, "repeated-answer")
-    assert "it was already answered by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
+    assert "the tick was already answered by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
     assert [text for _, text in related] == ["the first answer", "the second answer"]
     assert related[0][0] < related[1][0]
 
