@@ -178,7 +178,7 @@ class _Tree:
 
     @property
     def is_cut(self) -> bool:
-        """Whether there are more folders than are searched."""
+        """Whether some folders were not searched because there are more than `MAX_FOLDERS`."""
         return self._listed().is_cut
 
     def files(self, package: str) -> _Files:
