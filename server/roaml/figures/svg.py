@@ -41,6 +41,7 @@ def _group(group: Group) -> str:
     classes = [group.role, f"tone-{group.tone.value}", *(f"is-{kind}" for kind in group.kind.split())]
     data = f' data-node="{group.node}"' if group.node is not None else ""
     data += f' data-edges="{" ".join(map(str, group.edges))}"' if group.edges else ""
+    data += f' data-step="{group.step}"' if group.step is not None else ""
     hint = f"<title>{escape(group.hint)}</title>" if group.hint else ""
     items = "".join(_group(item) if isinstance(item, Group) else "".join(_item(item)) for item in group.items)
     return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
@@ -55,7 +56,7 @@ def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
             place = f'x="{_n(item.x)}" y="{_n(item.y)}" font-size="{_n(item.size)}"'
             yield f'<text class="{role}" {place}>{escape(item.text, quote=False)}</text>'
         case Polyline():
-            yield f'<path class="{item.role}" d="{path(_shortened(item))}"/>'
+            yield f'<path class="{item.role}" d="{path(_shortened(item), _CORNER if item.is_round else 0.0)}"/>'
             if item.has_arrow:
                 yield f'<polygon class="head" points="{_points(_head(item.points))}"/>'
         case Glyph():
@@ -104,6 +105,8 @@ def _rectangle(box: Box, radius: float, role: str) -> str:
 
 def path(points: Sequence[Point], radius: float = _CORNER) -> str:
     """A polyline with round corners, as the `d` of a path."""
+    if not radius:
+        return "M " + " L ".join(f"{_n(point.x)} {_n(point.y)}" for point in points)
     parts = [f"M {_n(points[0].x)} {_n(points[0].y)}"]
     for before, corner, after in zip(points, points[1:], points[2:], strict=False):
         bend = min(radius, math.dist(before, corner) / 2, math.dist(corner, after) / 2)

@@ -25,6 +25,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#0969da",
         "purple": "#8250df",
         "orange": "#bc4c00",
+        "red": "#cf222e",
         "yellow": "#8a6100",
     },
     "dark": {
@@ -38,6 +39,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#6cb6ff",
         "purple": "#c8a2ff",
         "orange": "#f0a45d",
+        "red": "#ff8b85",
         "yellow": "#e5c454",
     },
     "high-contrast": {
@@ -51,6 +53,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#6fc3df",
         "purple": "#d7afff",
         "orange": "#ffb266",
+        "red": "#ff9b94",
         "yellow": "#ffe066",
     },
     "high-contrast-light": {
@@ -64,6 +67,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#0f4a85",
         "purple": "#5b2a9d",
         "orange": "#8a3500",
+        "red": "#a1121d",
         "yellow": "#5f4300",
     },
 }
