@@ -22,6 +22,7 @@ from as2fm_lsp.debug.launch import Launch, launch_of, load, warm_up
 from as2fm_lsp.debug.movement import MovementRequests
 from as2fm_lsp.debug.session import Body, ClientFormat, DebugSession, Handler, MessageWriter
 from as2fm_lsp.debug.state import StateRequests
+from as2fm_lsp.debug.timeline import TimelineRequests
 from roaml.debugging.debugger import Unit
 from roaml.debugging.evaluate import WatchError
 
@@ -56,6 +57,7 @@ class Adapter:
             **by_hand.handlers,
             **MovementRequests(session).handlers,
             **ChoiceRequests(session).handlers,
+            **TimelineRequests(session).handlers,
             **self._breakpoints.handlers,
         }
 

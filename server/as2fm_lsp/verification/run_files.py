@@ -16,7 +16,7 @@ from as2fm_lsp.verification.trace_files import cells_of, csv_line, step_row, suf
 from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing
 from roaml.figures.geometry import Extent
-from roaml.figures.svg import svg_file
+from roaml.figures.svg import TIMELINE_STYLES, svg_file
 from roaml.simulation import Session, SystemState
 from roaml.smc.record import Plain
 from roaml.timeline import Axis, Timeline, View, draw_names, draw_timeline, position_of
@@ -72,7 +72,7 @@ def stretch_svg(timeline: Timeline, view: View, title: str, theme: str) -> str:
     names, rows = draw_names(timeline, NAMES_WIDTH), draw_timeline(timeline, view)
     size = Extent(NAMES_WIDTH + rows.size.width, rows.size.height)
     groups = (*names.groups, *(moved(group, NAMES_WIDTH, 0.0) for group in rows.groups))
-    return svg_file(Drawing(size, groups, {}), title, theme)
+    return svg_file(Drawing(size, groups, {}), title, theme, TIMELINE_STYLES)
 
 
 def json_text(session: Session, target: VerificationTarget) -> str:

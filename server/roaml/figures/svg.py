@@ -18,7 +18,10 @@ _HEAD = (9.0, 4.5)
 """The length and half the width of an arrow head."""
 
 
-def svg_file(drawing: Drawing, title: str, theme: str = "light") -> str:
+PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css")
+
+
+def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[str, ...] = PICTURE_STYLES) -> str:
     """The text of a file."""
     width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
     area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
@@ -26,7 +29,7 @@ def svg_file(drawing: Drawing, title: str, theme: str = "light") -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(-MARGIN)} {_n(-MARGIN)} {_n(width)} {_n(height)}" '
         f'width="{_n(width)}" height="{_n(height)}" role="img">\n'
         f"<title>{escape(title)}</title>\n"
-        f"<style>\n{style_sheet(theme)}</style>\n"
+        f"<style>\n{style_sheet(theme, styles)}</style>\n"
         f'<rect {area} fill="{THEMES[theme]["background"]}"/>\n'
         f"{svg_scene(drawing)}</svg>\n"
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style sheet of pictures in files: `figure.css` with the colors of a theme.
+"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, with the colors of a theme.
 
 Many programs that show SVG do not read variables of CSS, therefore files contain the colors themselves.
 """
@@ -75,9 +75,13 @@ THEMES: Mapping[str, Mapping[str, str]] = {
 
 
 @cache
-def style_sheet(theme: str) -> str:
-    """The rules for a file, with the colors of a theme: for each rule that uses a tone, one for every tone."""
-    css = (Path(__file__).parent / "figure.css").read_text(encoding="utf-8")
+def style_sheet(theme: str, names: tuple[str, ...]) -> str:
+    """The rules for a file, with the colors of a theme: for each rule that uses a tone, one for every tone.
+
+    Args:
+        names: the style sheets in this folder.
+    """
+    css = "".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in names)
     css = re.sub(r"/\*.*?\*/", "", css, flags=re.DOTALL)
     values = {f"--figure-{name}": color for name, color in THEMES[theme].items()} | {"--figure-font": _FONT}
     css = re.sub(r"var\((--figure-[\w-]+)\)", lambda match: values[match[1]], css)

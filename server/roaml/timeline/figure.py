@@ -147,19 +147,21 @@ class _Painter:
             distance = max(1.0, distance)
         unit = " s" if view.axis is Axis.TIME and self._timeline.times else ""
         digits = max(0, -math.floor(math.log10(distance)))
-        items: list[Item] = []
+        rules: list[Item] = []
+        names: list[Item] = [Shape(Box(0.0, 0.0, view.width, AXIS), Outline.RECTANGLE, "axis-card")]
         last = min(view.end, extent(self._timeline, view.axis))
         free_from = 0.0
         for number in range(math.ceil(view.start / distance - 1e-9), math.floor(last / distance + 1e-9) + 1):
             x = (number * distance - view.start) * self._scale
-            items.append(Polyline((Point(x, AXIS), Point(x, height_of(self._timeline))), role="rule"))
+            rules.append(Polyline((Point(x, AXIS), Point(x, height_of(self._timeline))), role="rule"))
             text = f"{number * distance:,.{digits}f}{unit}"
             width = text_width(text, SMALL)
             left = min(max(x - width / 2, 0.0), view.width - width)
             if left >= free_from:
-                items.append(TextItem(text, left, AXIS - 8.0, SMALL, "muted"))
+                names.append(TextItem(text, left, AXIS - 8.0, SMALL, "muted"))
                 free_from = left + width + 6.0
-        yield Group("axis", Tone.PLAIN, tuple(items))
+        yield Group("axis", Tone.PLAIN, tuple(rules))
+        yield Group("axis-names", Tone.PLAIN, tuple(names))
 
     # ------------------------------------------------------------ lanes
 

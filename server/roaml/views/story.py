@@ -128,13 +128,17 @@ def heading(story: Story) -> str:
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
 
-def as_mermaid(story: Story, place_of: PlaceOf) -> str:
-    """A sequence diagram. An event is an arrow from its sender to its receiver, drawn when it arrives."""
-    return "\n".join(_mermaid(story, place_of)) + "\n"
+def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
+    """A sequence diagram. An event is an arrow from its sender to its receiver, drawn when it arrives.
+
+    Args:
+        first: turns that end before this step are left out.
+    """
+    return "\n".join(_mermaid(story, place_of, first)) + "\n"
 
 
-def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
-    told = turns(story)
+def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
+    told = [turn for turn in turns(story) if turn.last >= first]
     folded = _folded(story, told)
     lanes = {turn.instance for turn in told}
     names: dict[str, str] = {}
