@@ -48,7 +48,7 @@ def test_the_timeline_follows_the_run(client: Client) -> None:
     steps = client.ask("timeline", axis="steps", **{"from": 40, "to": 60})
     assert (steps["step"], steps["steps"], steps["cursor"], steps["extent"]) == (50, 201, 50, 201)
     assert "names" not in steps
-    assert 'data-step="42"' in steps["scene"]
+    assert 'data-step="41"' in steps["scene"]
     for wrong in ({"width": 0}, {"width": 1e9}, {"from": 5, "to": 4}, {"from": "a"}):
         assert client.refusal("timeline", **wrong)
 

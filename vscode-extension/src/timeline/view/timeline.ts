@@ -230,7 +230,7 @@ class TimelineView {
             this.drag = undefined;
             if (!drag || drag.moved) return;
             const below = document.elementFromPoint(event.clientX, event.clientY);
-            const step = below?.closest<SVGElement>("[data-step]")?.dataset["step"];
+            const step = below?.closest<SVGElement>(".event[data-step]")?.dataset["step"];
             if (step === undefined) editor.postMessage({ type: "goTo", axis: this.axis, position: drag.at });
             else editor.postMessage({ type: "goToStep", step: Number(step) });
         });
