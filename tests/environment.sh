@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by examples/run and tests/run: makes .venv in the tree and installs the project into it.
+# Sourced by examples/run and tests/run: creates .venv in the checkout and installs the project into it.
 #
-# prepare EXTRAS   EXTRAS is "" or a list such as "[dev]". Quick when nothing has changed.
+# prepare EXTRAS   EXTRAS is "" or a list such as "[dev]". Takes no time if nothing has changed.
 
 fail() {
     echo "$1" >&2
@@ -12,7 +12,7 @@ is_recent() {
     "$1" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null
 }
 
-# Says why a Python cannot be used, or nothing if it does not start.
+# Prints why a Python cannot be used; nothing if it does not start.
 too_old() {
     version=$("$1" -c 'import sys; print("%d.%d.%d" % sys.version_info[:3])' 2>/dev/null) || return 0
     echo "Python $version at $(command -v "$1") is too old; "

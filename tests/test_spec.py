@@ -207,7 +207,7 @@ def test_nodes() -> None:
     described |= {f"Switch{cases}" for cases in range(2, 7)}
     described |= set(words(section("nodes", "decorators").rpartition("|\n")[2]))
     refused = set(words(section("nodes", "differences-from-behaviortree-cpp").rpartition("cannot be translated:")[2]))
-    programs = set(words(section("nodes", "library").partition("make a tree such a tree:")[2].partition("\n\n")[0]))
+    programs = set(words(section("nodes", "library").partition("The nodes of this list are:")[2].partition("\n\n")[0]))
     for name in nodes.keys() - generic:
         element = nodes[name]
         kinds = (element.translated and not element.program_only, not element.translated, element.program_only)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# The VS Code extension: lint, types, unit tests, the package, and what it does in a real workbench.
-# Arguments choose end-to-end tests by name.
+# Checks the VS Code extension: lint, types, unit tests, the package, and end-to-end tests in a real workbench.
+# Arguments select end-to-end tests by name.
 set -eu
 cd "$(dirname "$0")/../vscode-extension"
 . ../tests/environment.sh

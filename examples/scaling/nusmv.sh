@@ -14,7 +14,7 @@ python3 -m pip download --quiet --no-deps --no-binary :all: pynusmv==1.0rc8 ||
     { echo "the source package of pynusmv cannot be had from the package index" >&2; exit 1; }
 tar xzf pynusmv-1.0rc8.tar.gz
 tar xzf pynusmv-1.0rc8/dependencies/NuSMV/NuSMV-2.5.4.tar.gz
-# The sources are of 2011: an older C, and a type that is not in today's <sys/wait.h>.
+# The sources of 2011 need an older C, and a type that today's <sys/wait.h> does not define.
 printf '#!/bin/sh\nexec gcc -std=gnu89 -fcommon -w "$@"\n' >cc89
 chmod +x cc89
 cd NuSMV-2.5.4

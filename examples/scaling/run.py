@@ -2,8 +2,8 @@
 """How the time of a verification grows with the size of a model: `python run.py [SIZE...]`.
 
 A robot on a grid of SIZE × SIZE cells and the behavior tree that brings it to its goal, verified by `as2fm-lsp verify`
-(folder `robot`) and by BehaVerify with NuSMV (`grid.tree`). Each row is the wall time of whole commands. What is not
-installed is left out, and the table says so.
+(folder `robot`) and by BehaVerify with NuSMV (`grid.tree`). Each row is the wall time of whole commands. Tools that
+are not installed are omitted, and the table says so.
 
     python -m venv behaverify && behaverify/bin/pip install behaverify
     sh nusmv.sh nusmv
@@ -24,7 +24,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 MAX_SIZE = 100
-"""`Math.random()` has 100 values, so no more cells than that are drawn in a row."""
+"""The maximum size: `Math.random()` has 100 values in a model, so a random cell is one of at most 100 in a row."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -2,7 +2,7 @@
 """Atomic writes of files.
 
 A file is written under another name, `.as2fm-writing-…`, in the same folder, and then renamed. The writer holds a lock
-on it. A file with such a name and without a lock was left behind by a killed process; the next writer in the folder
+on it. A file with this prefix that nobody has locked was left behind by a killed process; the next writer in the folder
 removes it.
 """
 
@@ -39,7 +39,8 @@ def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
         else:
             _replace(os.path.realpath(path), data)
     except OSError as error:
-        # Report the requested name, not the temporary one, nor none at all, as for a full disk.
+        # The error names the requested file: the original error names the temporary file, or no file if the disk is
+        # full.
         error.filename, error.filename2 = path, None
         raise
 
@@ -66,7 +67,7 @@ def _replace(path: str, data: Iterable[bytes]) -> None:
 
 
 def _temporary(folder: str) -> tuple[int, str]:
-    """A new file, open and locked; and its name."""
+    """Create a temporary file in `folder`, open and locked. Return its descriptor and its path."""
     while True:
         handle, path = tempfile.mkstemp(dir=folder, prefix=PREFIX)
         if fcntl is not None:
@@ -74,7 +75,7 @@ def _temporary(folder: str) -> tuple[int, str]:
                 fcntl.flock(handle, fcntl.LOCK_EX)
         if fcntl is None or os.fstat(handle).st_nlink:
             return handle, path
-        os.close(handle)  # it was removed before it was locked
+        os.close(handle)  # another process removed the file before it was locked
 
 
 def sweep(folder: str) -> None:
@@ -92,8 +93,10 @@ def sweep(folder: str) -> None:
 
 
 def _remove_unlocked(path: str) -> None:
-    """Raises:
-    OSError: another process is writing the file, or it cannot be removed.
+    """Remove a leftover file.
+
+    Raises:
+        OSError: another process is writing the file, or it cannot be removed.
     """
     handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     try:

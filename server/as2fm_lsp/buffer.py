@@ -41,8 +41,10 @@ class Units:
         return len(text) + sum(character > "\uffff" for character in text)
 
     def column(self, line: str, units: int) -> tuple[int, bool]:
-        """The column in code points at `units` units, and whether this position splits a character. A
-        column beyond the end of the line is replaced by the end."""
+        """Convert a column from units to code points. Return it, and whether the position splits a character.
+
+        A column beyond the end of the line is replaced by the end.
+        """
         if self._encoding is types.PositionEncodingKind.Utf32 or line.isascii():
             return min(units, len(line)), False
         done = 0
@@ -55,8 +57,8 @@ class Units:
         return len(line), False
 
     def place(self, text: str, lines: LineIndex, position: types.Position) -> tuple[int, bool]:
-        """The offset of a position in a text with these lines, and whether the position splits a character
-        there."""
+        """The offset of a position in a text, and whether the position splits a character. `lines` is the index of the
+        text's lines."""
         if position.line >= lines.line_count:
             return len(text), False
         start = lines.line_start(position.line)

@@ -88,7 +88,7 @@ class Client:
             await self._endpoint.window_show_document_async(params)
 
     def refresh_diagnostics(self) -> None:
-        """The diagnostics that the client fetches itself have changed."""
+        """Ask the client to request diagnostics again, if it requests them itself."""
         workspace = self.capabilities.workspace
         if workspace is not None and workspace.diagnostics and workspace.diagnostics.refresh_support:
             self._endpoint.workspace_diagnostic_refresh(None)
@@ -123,14 +123,16 @@ class Client:
         registration = types.Registration("as2fm-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
         try:
             await self._endpoint.client_register_capability_async(types.RegistrationParams([registration]))
-        except Exception as error:  # without it, files are checked again with each change of a document
+        except Exception as error:  # then every change of a document makes the session read the files again
             log.warning("files cannot be watched: %s", error)
 
     # --------------------------------------------------------------- progress
 
     async def create_progress(self, token: str) -> None:
-        """Raises:
-        Exception: the client does not support it.
+        """Register a progress token with the client.
+
+        Raises:
+            Exception: the client does not support it.
         """
         await self._endpoint.work_done_progress.create_async(token)
 

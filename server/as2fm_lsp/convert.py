@@ -58,8 +58,8 @@ class Converter:
     # ------------------------------------------------------------- positions
 
     def mark(self, path: str, is_marked: bool) -> None:
-        """Whether the client has a byte order mark before the text of a document. It is included in the columns of the
-        first line and is not part of the text."""
+        """Store whether the client has a byte order mark before the text of a document. The mark is included in the
+        columns of the first line, but it is not part of the text."""
         (self._marked.add if is_marked else self._marked.discard)(path)
 
     def position(self, source: SourceFile, offset: int) -> types.Position:
@@ -72,8 +72,8 @@ class Converter:
         return types.Range(self.position(source, span.start), self.position(source, span.end))
 
     def columns(self, source: SourceFile, spans: Iterable[Span]) -> Iterator[tuple[int, int, int]]:
-        """The line and the first and last column of each span; none extends over the end of a line. Faster than
-        `range`, for whole files."""
+        """The line, the first column and the last column of each span. No span may extend over the end of a line.
+        Faster than `range`, for whole files."""
         text, lines = source.text, source.lines
         units = len if text.isascii() else self.units.count
         line = begin = following = hidden = 0
@@ -144,5 +144,6 @@ def _file(uri: str) -> str:
 
 
 def rule_uri(code: str) -> str:
-    """The document of a rule, as installed with the server: it needs no network and has the right version."""
+    """The URI of a rule's document. The document is installed with the server, so it needs no network and has the right
+    version."""
     return document_file(code).as_uri()

@@ -46,9 +46,11 @@ MAX_INTERRUPTIONS = 5
 
 
 class Diagnostics:
-    """Attributes:
-    pushes: whether diagnostics are sent to the client; otherwise the client requests them.
-    finished: called when all diagnostics after a change have been sent.
+    """Computes the diagnostics of all files, sends them to the client or returns them on request.
+
+    Attributes:
+        pushes: whether diagnostics are sent to the client; otherwise the client requests them.
+        finished: called when all diagnostics after a change have been sent.
     """
 
     def __init__(self, client: Client, session: Session, inbox: Inbox, progress: ProgressReporter) -> None:
@@ -65,8 +67,10 @@ class Diagnostics:
         self._all_waiting = False
 
     def checkpoint(self) -> None:
-        """Raises:
-        Interrupted: a message has arrived.
+        """Stop a computation that must give way to messages.
+
+        Raises:
+            Interrupted: a message has arrived.
         """
         if self._gives_way and self._inbox.waiting:
             raise Interrupted
@@ -74,7 +78,7 @@ class Diagnostics:
     # ------------------------------------------------------------------ push
 
     def schedule(self, *paths: str) -> None:
-        """Files have changed; if none are given, any may have changed."""
+        """Schedule a check, because the files at `paths` have changed. Without paths, any file may have changed."""
         self._all_waiting |= not paths
         self._waiting = dict.fromkeys((*paths, *self._waiting))
         if self._task is not None:
@@ -129,7 +133,9 @@ class Diagnostics:
             self._send(path, diagnostics, moment.versions.get(path))
 
     async def _giving_way(self, compute: Callable[[], T]) -> T:
-        """A computation between messages. A steady stream of messages does not delay it for ever."""
+        """The result of a computation that stops when a message arrives and begins again afterwards. After
+        `MAX_INTERRUPTIONS` attempts it runs to its end, so that a steady stream of messages cannot delay it for ever.
+        """
         for _ in range(MAX_INTERRUPTIONS):
             await self._let_messages_by()
             self._gives_way = True
@@ -202,5 +208,5 @@ class Diagnostics:
 
 
 def result_id(diagnostics: list[types.Diagnostic]) -> str:
-    """Equal diagnostics have equal ids."""
+    """The `resultId` of a list of diagnostics. Equal lists have equal ids."""
     return hashlib.blake2b(repr(diagnostics).encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()

@@ -3,7 +3,7 @@
 
     {"inlayHints": {"types": false}, "codeLens": {"references": false}}
 
-Each may also be a plain true or false. Missing and invalid values have the defaults below.
+Instead of an object, each section may also be `true` or `false`. Missing and invalid values have the defaults below.
 """
 
 from __future__ import annotations

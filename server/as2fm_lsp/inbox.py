@@ -38,8 +38,11 @@ CANCELLATIONS = {types.CANCEL_REQUEST: "id", types.WINDOW_WORK_DONE_PROGRESS_CAN
 
 
 class Inbox:
-    """`alive` are the ids of requests and the tokens of work that can still be cancelled, in addition to those in the
-    queue."""
+    """The queue of the client's messages.
+
+    Attributes:
+            alive: the ids of requests and the tokens of work that can still be cancelled, besides those in the queue.
+    """
 
     def __init__(self) -> None:
         self.alive: set[object] = set()
@@ -111,7 +114,7 @@ class Inbox:
         return self
 
     async def __anext__(self) -> Any:
-        """The next message as plain data; the error if it is not JSON."""
+        """The next message as plain data, or an error if the message is not valid JSON."""
         while not self._messages:
             if self._ended:
                 raise StopAsyncIteration
@@ -121,11 +124,11 @@ class Inbox:
         message = self._messages.popleft()
         cancelled = _cancelled(message)
         if cancelled is not None and cancelled not in self.alive:
-            self._cancelled.discard(cancelled)  # it was answered before
+            self._cancelled.discard(cancelled)  # the request was answered before
         return message
 
     def forget(self, id_: object) -> None:
-        """A request was answered, or work has ended."""
+        """Discard the state of a request that was answered, or of work that has ended."""
         self.alive.discard(id_)
         self._cancelled.discard(id_)
 
@@ -138,7 +141,7 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
         if match:
             length = int(match[1])
         elif line.strip():
-            length = length if _FIELD.match(line) else 0  # the header has ended without a length
+            length = length if _FIELD.match(line) else 0  # not a header line: the length before it is invalid
         elif length:
             if length <= MAX_MESSAGE_BYTES:
                 body = b"".join(_pieces(stream, length))
@@ -149,7 +152,8 @@ def bodies(stream: BinaryIO) -> Iterator[bytes]:
 
 
 def _pieces(stream: BinaryIO, length: int) -> Iterator[bytes]:
-    """Memory is allocated for received data, not for the announced length."""
+    """The next `length` bytes of a stream, in pieces. Memory is allocated for received data, not for the announced
+    length."""
     while length and (piece := stream.read(min(length, _PIECE_BYTES))):
         length -= len(piece)
         yield piece
@@ -173,7 +177,7 @@ def _cancelled(message: object) -> str | int | None:
 
 
 def is_id(value: object) -> TypeGuard[int | str]:
-    """Whether a value is a valid id of a request, or token of work."""
+    """Whether a value is a valid id of a request, or a valid token of work."""
     return isinstance(value, (int, str)) and not isinstance(value, bool)
 
 

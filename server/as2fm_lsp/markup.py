@@ -11,7 +11,8 @@ from roaml.ide.describe.markdown import plain
 
 
 def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent:
-    """`formats` are those that the client has declared, the preferred one first; the default is plain text."""
+    """A text as markup in the first supported format of `formats`, which the client has declared, the preferred one
+    first. The default is plain text."""
     if formats and formats[0] == types.MarkupKind.Markdown:
         return types.MarkupContent(types.MarkupKind.Markdown, text)
     return types.MarkupContent(types.MarkupKind.PlainText, plain(text))

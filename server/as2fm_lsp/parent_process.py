@@ -19,7 +19,7 @@ UNEXPECTED_END = 1
 
 
 def watch(process_id: int, ended: Callable[[], None]) -> None:
-    """Wait in a separate thread for the end of a process; a process that does not exist has ended.
+    """Wait in a separate thread for the end of a process. A process that does not exist is treated as ended.
 
     Args:
         ended: called in that thread, once. The server then has `EXIT_TIMEOUT_S` seconds to end by itself.

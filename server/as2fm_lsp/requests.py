@@ -25,9 +25,11 @@ from roaml.project.memo import Interrupted
 
 @dataclass
 class _Request:
-    """Attributes:
-    ids: of the request, and the tokens of the work that is shown for it.
-    uri: of the document whose change makes the answer useless; empty if none does.
+    """A request that is being handled.
+
+    Attributes:
+        ids: the id of the request, and the tokens of the progress that is shown for it.
+        uri: the document whose change makes the answer useless; empty if there is none.
     """
 
     ids: list[object]
@@ -77,8 +79,10 @@ class Requests:
         return _current.get() is not None
 
     def checkpoint(self) -> None:
-        """Raises:
-        Interrupted: the answer to the current request is no longer needed.
+        """Stop the handling of a request whose answer is not needed.
+
+        Raises:
+            Interrupted: the answer to the current request is no longer needed.
         """
         request = _current.get()
         if request is not None and (self._is_cancelled(request) or self._is_stale(request)):
@@ -86,7 +90,8 @@ class Requests:
 
     @contextmanager
     def cancelled_by(self, token: str) -> Iterator[None]:
-        """The current request can also be cancelled by the progress that the client shows."""
+        """Let the user also cancel the current request in the progress with this token, for the duration of the `with`
+        statement."""
         request = _current.get()
         if request is not None:
             request.ids.append(token)

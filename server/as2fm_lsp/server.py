@@ -76,8 +76,10 @@ class Server:
         self.endpoint.serve(source, target)
 
     def _checkpoint(self) -> None:
-        """Raises:
-        Interrupted: the result is not needed, or something else has priority.
+        """Stop a computation that is not needed now.
+
+        Raises:
+            Interrupted: the result is not needed, or a message must be handled first.
         """
         if self.requests.is_handled:
             self.requests.checkpoint()

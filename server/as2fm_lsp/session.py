@@ -53,8 +53,11 @@ class Moment:
         self._snapshots: dict[int, Snapshot] = {}
 
     def snapshot(self, path: str) -> Snapshot:
-        """The snapshot for a file: that of the innermost folder around it in which a system names it, otherwise of any
-        folder in which one does, otherwise of the innermost folder alone, otherwise outside of all folders."""
+        """The snapshot in which a file is analysed.
+
+        It is the first of: the innermost folder around the file in which a system uses the file; any folder in which a
+        system uses it; the innermost folder around it; the workspace for a file outside all folders.
+        """
         near = sorted((folder for folder in self._folders if is_below(path, folder)), key=len, reverse=True)
         for folder in dict.fromkeys((*near, *self._folders)):
             snapshot = self._frozen(self._folders[folder])
@@ -80,9 +83,11 @@ class Moment:
 
 
 class Session:
-    """Attributes:
-    problems: errors in the configuration that have not been shown yet.
-    checkpoint: called repeatedly during all work (`Workspace`).
+    """The open documents, the folders and the settings of one client.
+
+    Attributes:
+        problems: errors in the configuration that have not been shown yet.
+        checkpoint: called repeatedly during all work (`Workspace`).
     """
 
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
@@ -170,7 +175,7 @@ class Session:
             workspace.refresh()
 
     def configure(self, client_settings: object = None) -> None:
-        """The client's settings, or a configuration file, have changed."""
+        """Apply new settings of the client, or a changed configuration file."""
         if client_settings is not None:
             self._client_settings = client_settings
         self.problems.clear()
@@ -252,7 +257,7 @@ _CLIENT_KEYS = {
 
 
 def _kebab(settings: object) -> dict[str, Any]:
-    """The client's settings under the names of the configuration file, without those for the client itself."""
+    """The client's settings under the names of the configuration file, without settings that only the client uses."""
     if not isinstance(settings, Mapping):  # a client may send anything
         return {}
     return {_CLIENT_KEYS[key]: value for key, value in settings.items() if key in _CLIENT_KEYS and value}

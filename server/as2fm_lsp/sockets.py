@@ -2,9 +2,9 @@
 """Waiting for one client on sockets.
 
 Anyone who can reach a port can send data to it: other users of the machine, and every web page that is open in a
-browser, which can send any data. So a client is served only after its first message, and that must be an `initialize`
-with the token that the server was started with. Who begins in any other way, as HTTP does, is disconnected before
-anything that it has sent is looked at. A socket file needs no token: the system lets nobody but its owner connect.
+browser. So a client is served only after its first message, which must be an `initialize` with the token that the
+server was started with. A connection that begins in any other way, such as with HTTP, is closed before its data are
+processed. A socket file needs no token: the operating system allows only its owner to connect.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _HEADER = re.compile(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]
 _BEGIN = b"content-"
 _MAX_HEADER_LINE_BYTES = 1000
 _ABSENT = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
-"""A name may have addresses that this machine does not support, such as IPv6."""
+"""Errors of addresses that this machine does not support, such as IPv6. A host name may have other addresses."""
 
 
 class RemoteError(ValueError):
@@ -221,7 +221,7 @@ def _first_body(source: BufferedReader) -> bytes | None:
     """The first body; `None` if a header line does not follow the protocol."""
     length = 0
     begin = source.peek(len(_BEGIN))[: len(_BEGIN)].lower()
-    if not _BEGIN.startswith(begin):  # it need not be a line
+    if not _BEGIN.startswith(begin):  # checked first, because reading a line would wait for its end
         return None
     for line in iter(lambda: source.readline(_MAX_HEADER_LINE_BYTES), b""):
         if length and line in (b"\r\n", b"\n"):
@@ -237,7 +237,8 @@ def _first_body(source: BufferedReader) -> bytes | None:
 
 
 def _objection(message: Any, token: str) -> JsonRpcException | None:
-    """Why a first message is rejected; "" if it is valid. The token is removed from it."""
+    """The error with which a first message is rejected; `None` if the message is valid. The token is removed from the
+    message."""
     if not isinstance(message, dict) or message.get("method") != types.INITIALIZE:
         return JsonRpcServerNotInitialized("the first message must be `initialize`")
     if not token:

@@ -14,7 +14,7 @@ from roaml.smc.forms import BOUNDS, bounds_in
 
 
 class OutputError(ValueError):
-    """The output file is part of the system; the message states that."""
+    """The output file is one of the files of the system."""
 
 
 def jani_path(system: str) -> str:
@@ -23,8 +23,10 @@ def jani_path(system: str) -> str:
 
 
 def keep_off(path: str, system: api.LoadedSystem) -> None:
-    """Raises:
-    OutputError: `path` is one of the files of the system.
+    """Check that an output file does not overwrite a file of the system.
+
+    Raises:
+        OutputError: `path` is one of the files of the system.
     """
     if os.path.realpath(path) in {os.path.realpath(file) for file in system.files}:
         raise OutputError(f"{path} is part of the system; write the translation to another file")

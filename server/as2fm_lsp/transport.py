@@ -2,11 +2,13 @@
 """One connection to a client, on top of pygls: reading, checking, dispatching and answering messages.
 
 This is the only module that uses private parts of pygls, or derives from its classes. It is written for pygls 2.1 and
-the other versions that `pyproject.toml` allows (`pygls>=2.1,<3`); review this module when that range changes:
+the other versions that `pyproject.toml` allows (`pygls>=2.1,<3`). Review this module when that range changes.
+
+It corrects these properties of pygls:
 
 - pygls keeps an unused second copy of every document, splits lines differently and moves the positions of changes while
-  it applies them; and it keeps a future for every notification. This module avoids both.
-- It does not answer requests at the wrong time, and accepts any value as a token.
+  it applies them. It also keeps a future for every notification.
+- pygls executes requests that are not allowed yet or any more, and accepts any value as a token.
 """
 
 from __future__ import annotations
@@ -141,14 +143,14 @@ class Protocol(LanguageServerProtocol):
     def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: Any = None) -> None:
         def done(future: Future[Any]) -> None:
             self._request_futures.pop(msg_id, None)
-            with suppress(asyncio.CancelledError):  # as at the end of the session: nothing waits for it
+            with suppress(asyncio.CancelledError):  # for example at the end of the session, when nothing waits for it
                 callback(future)
 
         super()._execute_handler(msg_id, handler, done, args, kwargs)
 
 
 def _check_folders(params: types.InitializeParams) -> None:
-    """pygls fails with an internal error if it cannot parse a URI."""
+    """Reject folders with invalid URIs, for which pygls would fail with an internal error."""
     folders = (("workspaceFolders", folder.uri) for folder in params.workspace_folders or ())
     for name, uri in (("rootUri", params.root_uri), *folders):
         try:
@@ -158,7 +160,7 @@ def _check_folders(params: types.InitializeParams) -> None:
 
 
 def _check_cancellation(message: dict[str, Any]) -> None:
-    """pygls accepts any value as a token."""
+    """Reject an invalid id or token, because pygls accepts any value."""
     params, name = message.get("params"), CANCELLATIONS[message["method"]]
     if not isinstance(params, dict) or not is_id(params.get(name)):
         raise JsonRpcInvalidParams(f"`{name}` must be a number or a string")
@@ -264,7 +266,8 @@ class Endpoint(LanguageServer):
             log.warning("a message is ignored: %s", error)
 
     def report_server_error(self, error: Exception, source: type[PyglsError]) -> None:  # type: ignore[override]
-        """An error of the server: logged, without a pop-up for each keystroke. A rejected request is not an error."""
+        """Log an error of the server, without a message in the client for each keystroke. A rejected request is not an
+        error."""
         if not isinstance(error, JsonRpcException) or isinstance(error, JsonRpcInternalError):
             known = error.data if isinstance(error, JsonRpcException) and isinstance(error.data, dict) else {}
             log.error("%s\n%s", source.__name__, "".join(known.get("traceback", ())), exc_info=error)

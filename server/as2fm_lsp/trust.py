@@ -22,8 +22,10 @@ class NotTrustedError(JsonRpcException):
 
 
 class Trust:
-    """Attributes:
-    is_granted: whether files may be written and long computations may run.
+    """Whether the client's user trusts the workspace.
+
+    Attributes:
+        is_granted: whether files may be written and long computations may run.
     """
 
     def __init__(self) -> None:

@@ -13,14 +13,14 @@ _FORM = re.compile(r"\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`relation` is one of `>=`, `<=`, `>`, `<` and `==`."""
+    """A comparison with `number`. `relation` is one of `>=`, `<=`, `>`, `<` and `==`."""
 
     relation: str
     number: float
 
 
 def read_comparison(text: str) -> Comparison | None:
-    """The comparison in `text`; `None` if it is not of the form."""
+    """The comparison in `text`; `None` if `text` is not an operator followed by a number."""
     match = _FORM.fullmatch(text)
     try:
         number = float(match[2]) if match else math.nan

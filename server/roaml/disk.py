@@ -56,7 +56,7 @@ def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | UnreadableRe
         return UnreadableReason.MISSING
     except (OSError, ValueError):
         return UnreadableReason.UNREADABLE
-    return _judged(status, most) or status
+    return _unreadable_reason(status, most) or status
 
 
 def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | UnreadableReason:
@@ -66,14 +66,14 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | U
         most: the maximum size in bytes; a larger file is not read.
         head: the maximum number of bytes to read, however large the file is.
     """
-    status = status_of(path, most) if head is None else status_of(path, _ANY)
+    status = status_of(path, most) if head is None else status_of(path, _NO_LIMIT)
     if isinstance(status, UnreadableReason):
         return status
     try:
         # If the path has become a pipe in the meantime, opening it must not block.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(handle, "rb") as file:
-            problem = _judged(os.fstat(handle), _ANY if head is not None else most)
+            problem = _unreadable_reason(os.fstat(handle), _NO_LIMIT if head is not None else most)
             return problem or file.read(most if head is None else head)
     except FileNotFoundError:
         return UnreadableReason.MISSING
@@ -87,16 +87,17 @@ def required(path: str, most: int = MAX_BYTES) -> bytes:
     Raises:
         NotReadableError: the file cannot be read.
     """
-    found = read(path, most)
-    if isinstance(found, UnreadableReason):
-        raise NotReadableError(path, found, most)
-    return found
+    content = read(path, most)
+    if isinstance(content, UnreadableReason):
+        raise NotReadableError(path, content, most)
+    return content
 
 
-_ANY = 1 << 62
+_NO_LIMIT = 1 << 62
 
 
-def _judged(status: os.stat_result, most: int) -> UnreadableReason | None:
+def _unreadable_reason(status: os.stat_result, most: int) -> UnreadableReason | None:
+    """Why a file with this status may not be read; `None` if it may be read."""
     if stat.S_ISDIR(status.st_mode):
         return UnreadableReason.FOLDER
     if not stat.S_ISREG(status.st_mode):
@@ -108,7 +109,7 @@ class Roots:
     """The folders that contain the user's files. Links in them are followed only if their target is in one of them.
 
     Args:
-        folders: the workspace. The target of a link in it must be in one of the roots.
+        folders: the folders of the workspace. The target of a link in them must be in one of `folders` or `trusted`.
         trusted: folders of the environment or the configuration with ROS interface packages, as `colcon build
             --symlink-install` creates them: links in them are always followed.
     """

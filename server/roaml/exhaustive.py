@@ -23,5 +23,5 @@ class Vocabulary(enum.Enum):
 
 def assert_never(value: NoReturn) -> NoReturn:
     """Marks a case that a type checker proves to be unreachable, like `typing.assert_never` of Python 3.11: the checker
-    reports the kinds that the other cases omit."""
+    reports the kinds of values for which the `match` has no case."""
     raise AssertionError(f"a value of an unexpected kind: {value!r}")

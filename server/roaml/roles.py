@@ -15,8 +15,8 @@ class RoleValue(Vocabulary):
 
 
 class SymbolKind(RoleValue):
-    """The kind of symbol that the value of an attribute defines or refers to, or that the editor describes
-    otherwise."""
+    """The kind of a symbol. Values of attributes define or name symbols of most kinds; symbols of the kinds in
+    `ELSEWHERE` appear only in the features of the editor."""
 
     ACTION = "action"
     ACTION_CLIENT = "action-client"
@@ -43,7 +43,7 @@ class SymbolKind(RoleValue):
     TREE_NODE = "tree-node"
     VARIABLE = "variable"
 
-    # Not in the schemas: `ELSEWHERE`.
+    # The kinds in `ELSEWHERE`, which no schema uses.
     ATTRIBUTE = "attribute"
     BASE_TYPE = "base-type"
     BLACKBOARD = "blackboard"
@@ -77,8 +77,8 @@ executed tree, and variables of the translation."""
 
 
 class ProtocolPart(RoleValue):
-    """The thing that an element sends or receives: a part of a ROS interface or of the tree protocol, an event, the
-    tick of a timer."""
+    """The kind of message that an element sends or receives: a part of a ROS interface or of the tree protocol, an
+    event, or the tick of a timer."""
 
     BLACKBOARD = "blackboard"
     BT_HALT = "bt-halt"
@@ -150,7 +150,7 @@ class Direction(RoleValue):
 
 
 class ValueRole(RoleValue):
-    """What a value is that neither defines nor names a symbol."""
+    """The meaning of an attribute's value that neither defines nor names a symbol."""
 
     CHILD_INDEX = "child-index"
     CONSTANT = "constant"

@@ -114,10 +114,11 @@ def are_similar(name: str, other: str) -> bool:
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The first of the `known` names with the shortest part that differs from `name`; `None` if all differ too much.
+    """The known name whose differing part is the shortest; `None` if all known names differ too much from `name`. If
+    several are equally near, the first one is returned.
 
-    The part is what remains without the common beginning and end: one character for a missing, additional or wrong
-    letter, and two characters for two letters in the wrong order.
+    The differing part of two names is what remains without their common beginning and end. Its length is 1 for a
+    missing, additional or wrong letter, and also for two adjacent letters in the wrong order.
     """
     limit = min(len(name) // 3, 1 + len(name) // 5)
     best: str | None = None
@@ -128,6 +129,7 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
 
 
 def _stretch(left: str, right: str) -> int:
+    """The length of the part in which two names differ."""
     start = _shared(left, right)
     left, right = left[start:], right[start:]
     end = _shared(left[::-1], right[::-1])

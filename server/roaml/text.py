@@ -35,12 +35,12 @@ class Span(NamedTuple):
         return self.start <= offset <= self.end
 
     def cover(self, other: Span) -> Span:
-        """The smallest span that contains both."""
+        """The smallest span that contains both spans."""
         return Span(min(self.start, other.start), max(self.end, other.end))
 
 
 def span_of(ends: tuple[int, int]) -> Span:
-    """A span with these ends; twice as fast as `Span(...)`, for callers that create one for each word."""
+    """A span with these ends. It takes half the time of `Span(...)`, for callers that create a span for each word."""
     return tuple.__new__(Span, ends)
 
 
@@ -202,7 +202,7 @@ class SourceFile:
         return LineIndex(self.text)
 
     def encode(self, text: str) -> bytes:
-        """The bytes of this file if it contained another text."""
+        """The bytes of the file if its text is replaced by `text`: in its encoding, with its byte order mark."""
         return self.mark + text.encode(self.encoding)
 
 
@@ -241,7 +241,7 @@ def decode(path: str, data: bytes) -> SourceFile:
 
 
 def _ignored_encoding(text: str, encoding: str) -> Span | None:
-    """The place where a text declares an encoding other than the one with which it was read; `None` if there is none.
+    """The place where a text declares an encoding other than the one with which it was read; `None` if it does not.
 
     Names that Python does not know are reported by the XML parser.
     """

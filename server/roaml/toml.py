@@ -26,14 +26,16 @@ Path: TypeAlias = "tuple[str | int, ...]"
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """The positions of the keys and values of a document. The value of a table with a header is the header."""
+    """The positions of the keys and values of a document. For a table with a header, `values` has the span of the
+    header."""
 
     keys: Mapping[Path, Span]
     values: Mapping[Path, Span]
 
 
 class TomlError(ValueError):
-    """A text is not valid TOML: the message of the parser, without its position, and the position."""
+    """Raised for text that is not valid TOML. The message is that of the parser without the position; `span` is the
+    position."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
@@ -67,7 +69,7 @@ def loads(text: str) -> dict[str, Any]:
 
 
 _MAX_DEPTH = 8
-"""The maximum nesting depth of values with positions of their own."""
+"""The maximum nesting depth of values whose positions are recorded."""
 
 _SPACE = re.compile(r"[ \t]*")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
@@ -81,7 +83,7 @@ _WORD = re.compile(r"[^,=\[\]{}#\s\"']+")
 
 
 def places(text: str) -> Places:
-    """The positions in a valid document."""
+    """The positions of the keys and values in `text`, which must be valid TOML."""
     scanner = _Scanner(text)
     scanner.document()
     return Places(scanner.keys, scanner.values)
@@ -125,25 +127,25 @@ class _Scanner:
 
     def _blank(self) -> bool:
         """Skip white space and comments; return whether anything follows."""
-        found = _BLANK.match(self.text, self.at)
-        assert found is not None
-        self.at = found.end()
+        match = _BLANK.match(self.text, self.at)
+        assert match is not None
+        self.at = match.end()
         return self.at < len(self.text)
 
     def _space(self) -> None:
-        found = _SPACE.match(self.text, self.at)
-        assert found is not None
-        self.at = found.end()
+        match = _SPACE.match(self.text, self.at)
+        assert match is not None
+        self.at = match.end()
 
     def _key(self) -> Iterator[tuple[str, Span]]:
         """The parts of a dotted key."""
         while True:
             self._space()
-            found = _KEY.match(self.text, self.at)
-            if found is None:  # only in a text that is not valid TOML
+            match = _KEY.match(self.text, self.at)
+            if match is None:  # only in a text that is not valid TOML
                 return
-            self.at = found.end()
-            yield _decoded(found[0]), Span(found.start(), found.end())
+            self.at = match.end()
+            yield _decoded(match[0]), Span(match.start(), match.end())
             self._space()
             if not self._sees("."):
                 return
@@ -171,7 +173,7 @@ class _Scanner:
         self.values[path] = Span(start, self.at)
 
     def _items(self, path: Path, end: str, depth: int) -> None:
-        """The items between brackets, separated by commas."""
+        """Read the items of an array or inline table up to the bracket `end`."""
         self.at += 1
         index = 0
         while self._blank() and not self._sees(end):
@@ -186,9 +188,9 @@ class _Scanner:
         self.at += 1
 
     def _scalar(self) -> None:
-        found = _STRING.match(self.text, self.at)
-        if found is not None:
-            self.at = found.end()
+        match = _STRING.match(self.text, self.at)
+        if match is not None:
+            self.at = match.end()
             return
         bare = _BARE.match(self.text, self.at)
         assert bare is not None
@@ -208,8 +210,8 @@ class _Scanner:
             elif character in ",=":
                 self.at += 1
             else:
-                found = _STRING.match(self.text, self.at) or _WORD.match(self.text, self.at)
-                self.at = found.end() if found else self.at + 1
+                match = _STRING.match(self.text, self.at) or _WORD.match(self.text, self.at)
+                self.at = match.end() if match else self.at + 1
             if depth <= 0:
                 return
 

@@ -173,7 +173,7 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
     ("text", "at", "complaint"),
     [
         ("ingore = []", "ingore", "there is no setting `ingore`; did you mean `ignore`?"),
-        ("[x]\na = 1", "x", "there is no setting `x`; there are behaviortree-cpp, exclude, "),
+        ("[x]\na = 1", "x", "there is no setting `x`; valid settings are behaviortree-cpp, exclude, "),
         ("ignore = 1", "1", "`ignore` must be a list of strings"),
         ('ignore = ["undeclared-variable", 1]', '["undeclared-variable", 1]', "`ignore` must be a list of strings"),
         ('ignore = ["no-such-rule"]', '"no-such-rule"', "there is no rule `no-such-rule`"),
@@ -196,7 +196,7 @@ def test_the_nearest_configuration_holds(check: Command, tmp_path: Path) -> None
         ("roots = { a = 1 }", "{ a = 1 }", "`roots` must be a list of strings"),
         ("ros-path = [[]]", "[[]]", "`ros-path` must be a list of strings"),
         ("exclude = 2026-01-01 07:32:00 # day", "2026-01-01 07:32:00", "`exclude` must be a list of strings"),
-        ('exclude = ["a", "!"]', '"!"', "`!` is not a pattern as in `.gitignore` files"),
+        ('exclude = ["a", "!"]', '"!"', "`!` is not a valid pattern; use the syntax of `.gitignore` files"),
         ('exclude = "a*b*c*d*.xml"', '"a*b*c*d*.xml"', "`a*b*c*d*.xml` contains more than 3 `*` without a `/` between"),
         ('exclude = ["**/a/**/b/**/c/**/d"]', '"**/a/**/b/**/c/**/d"', "`**/a/**/b/**/c/**/d` contains more than 3"),
     ],

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Drives the debug adapter with dap-mode of Emacs, which apt-get installs: a breakpoint, a step, a step back, a value.
+# Tests the debug adapter with dap-mode of Emacs, which apt-get installs: a breakpoint, a step, a step back, a value.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/environment.sh

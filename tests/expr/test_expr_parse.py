@@ -412,9 +412,9 @@ a ? b
 """,
     """
 a and b OR not c
-  ^^^ write `&&`
-        ^^ write `||`
-           ^^^ write `!`
+  ^^^ `and` is not an operator; write `&&`
+        ^^ `OR` is not an operator; write `||`
+           ^^^ `not` is not an operator; write `!`
 => (|| (&& a b) (! c))
 """,
     """

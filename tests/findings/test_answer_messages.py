@@ -69,4 +69,4 @@ def test_one_mistake_with_an_id_gives_one_advice(tmp_path: Path) -> None:
 def test_constants_name_the_client_that_they_mean(tmp_path: Path) -> None:
     [(message, related)] = said(tmp_path, "paths_goal", "a constant id with two clients", "wrong-goal-id")
     assert "which is always the id of `Client`, but `/draw` has 2 clients" in message
-    assert [text for _, text in related] == ["here, too"]
+    assert [text for _, text in related] == ["also used here"]

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml import api
-from roaml.ide.names.lookup import SymbolGroup, thing
+from roaml.ide.names.lookup import SymbolGroup, symbol_group
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
@@ -71,7 +71,7 @@ class System:
                 for occurrence in uses(analysis, path, system).all:
                     if occurrence.symbol in done:
                         continue
-                    group = thing(analysis, (occurrence.symbol,))
+                    group = symbol_group(analysis, (occurrence.symbol,))
                     done.update(group.symbols)
                     if not isinstance(prepare(analysis, path, occurrence.span.start), RenameRefusal):
                         yield Case(group, path, occurrence.span.start)

@@ -331,7 +331,7 @@ def test_quick_fixes_are_tied_to_their_diagnostics() -> None:
         ("Remove `<log>`", True),
         ("Fix all `ignored-element` in this file", False),
     ]
-    assert all(fix.mends is not None and fix.mends.code == "ignored-element" for fix in fixes)
+    assert all(fix.diagnostic is not None and fix.diagnostic.code == "ignored-element" for fix in fixes)
 
 
 def test_files_that_are_missing() -> None:

@@ -42,18 +42,18 @@ a.ascxml state s
 a.ascxml subscriber input
   subscriber input : std_msgs/Int32
   Topic /a/b
-  Published by Walk · heard by A
+  Published by Walk · subscribed to by A
   In plain SCXML event topic_a__b_msg
   In properties topic_a__b_msg.valid, topic_a__b_msg__ros_fields__data
 plugin.ascxml publisher pub
   publisher pub : std_msgs/Int32
   Its name comes from port topic
   Topic /a/b
-  Published by Walk · heard by A
+  Published by Walk · subscribed to by A
   In plain SCXML event topic_a__b_msg
   In properties topic_a__b_msg.valid, topic_a__b_msg__ros_fields__data
   Topic /c
-  Published by Walk · heard by nobody
+  Published by Walk · subscribed to by nobody
   In plain SCXML event topic_c_msg
   In properties topic_c_msg.valid, topic_c_msg__ros_fields__data
 plugin.ascxml port goal
@@ -94,7 +94,7 @@ main.xml member x Pose
 main.xml tree Sub
   tree Sub
   One node · tree.xml
-  Named once
+  Used once
 tree.xml blackboard own Sub
   {own} : int32
   Blackboard variable of tree Sub

@@ -7,7 +7,7 @@ from ide_case import FOLDER, path_of
 
 from roaml.ide.completion import complete, document
 from roaml.ide.hover import hover
-from roaml.ide.names.lookup import thing_at
+from roaml.ide.names.lookup import symbol_group_at
 from roaml.ide.rename import Renaming, rename
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
@@ -176,26 +176,26 @@ def test_an_automatically_remapped_entry_is_one() -> None:
 
 def test_the_definition_of_a_node_is_its_model() -> None:
     analysis = snapshot_of(**FILES).analysis
-    thing = thing_at(analysis, path_of("main.xml"), MAIN.index("<Grasp") + 2)
-    assert thing is not None
-    assert [(place.path, MAIN[place.span.start - 4 : place.span.end]) for place in thing.definitions] == [
+    group = symbol_group_at(analysis, path_of("main.xml"), MAIN.index("<Grasp") + 2)
+    assert group is not None
+    assert [(place.path, MAIN[place.span.start - 4 : place.span.end]) for place in group.definitions] == [
         (path_of("main.xml"), 'ID="Grasp')
     ]
 
 
 def test_the_definition_of_a_subtree_is_in_its_file() -> None:
     analysis = snapshot_of(**FILES).analysis
-    thing = thing_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
-    assert thing is not None
-    assert [place.path for place in thing.definitions] == [path_of("inner.xml")]
+    group = symbol_group_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
+    assert group is not None
+    assert [place.path for place in group.definitions] == [path_of("inner.xml")]
 
 
 def test_a_subtree_without_a_name_is_no_tree_without_a_name() -> None:
     text = """<root main_tree_to_execute="A"><BehaviorTree ID="A"><Sequence><SubTree/><Grasp force="{x}"/></Sequence>
         </BehaviorTree><BehaviorTree><AlwaysSuccess/></BehaviorTree></root>"""
-    thing = thing_at(snapshot_of(tree=text).analysis, path_of("tree.xml"), text.index("{x}") + 1)
-    assert thing is not None
-    assert len(thing.uses) == 1
+    group = symbol_group_at(snapshot_of(tree=text).analysis, path_of("tree.xml"), text.index("{x}") + 1)
+    assert group is not None
+    assert len(group.uses) == 1
 
 
 def test_entries_are_offered_in_scripts() -> None:

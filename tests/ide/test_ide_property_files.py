@@ -149,7 +149,7 @@ def test_renaming(robot: Robot, file: str, piece: str, new: str, expected: list[
         ("properties.xml", 'property id="cha|rges"', "polite", "a property `polite` already exists"),
         ("properties.xml", 'property id="cha|rges"', "fills", "a property `fills` already exists"),
         ("properties.xml", 'field="stamp.s|ec"', "x", "`sec` is defined by ROS, not by this model"),
-        ("tree.xml", 'Pick name="p|ick"', "right_pick", "a property names nodes of the tree, and another one"),
+        ("tree.xml", 'Pick name="p|ick"', "right_pick", "properties refer to nodes of the tree by their names"),
     ],
 )
 def test_refused_renaming(robot: Robot, file: str, piece: str, new: str, reason: str) -> None:

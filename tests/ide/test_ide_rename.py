@@ -36,10 +36,10 @@ REFUSALS = """
 a.ascxml         _msg.|data              x         `data` is defined by ROS
 a.ascxml         std_msgs/|Int32         x         is defined by ROS
 tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
-a.ascxml         |transition             x         there is no name here
+a.ascxml         |transition             x         there is no name at this position
 a.ascxml         id="|p" type            n         a variable `n` already exists
 a.ascxml         id="|p" type            p         its name is already `p`
-a.ascxml         id="|p" type            _msg      the name of received data
+a.ascxml         id="|p" type            _msg      the name of an event variable
 a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      separates the parts of names
@@ -47,7 +47,7 @@ a.ascxml         event="|go" target      topic_x   the translation uses it for i
 types.xml        id="|Pose"              int32     cannot name a struct
 types.xml        id="|Pose"              true      cannot name a struct
 types.xml        id="|x"                 false     cannot name a member
-tree.xml         <|Walk                  Sequence  is a name of BehaviorTree.CPP
+tree.xml         <|Walk                  Sequence  is the name of a node of BehaviorTree.CPP
 tree.xml         <|Walk                  A         a state machine `A` already exists
 tree.xml         ID="|Sub"               Main      a behavior tree `Main` already exists
 tree.xml         {|own}"                 true      cannot name a blackboard variable

@@ -207,11 +207,11 @@ geometry_msgs/point p
     """,
     """
 std_srvs/srv/Empty e
-^^^^^^^^^^^^^^^^^^ a field contains messages; `std_srvs/srv/Empty` is a service
+^^^^^^^^^^^^^^^^^^ the type of a field must be a message; `std_srvs/srv/Empty` is a service
     """,
     """
 p/action/Go g
-^^^^^^^^^^^ a field contains messages; `p/action/Go` is an action
+^^^^^^^^^^^ the type of a field must be a message; `p/action/Go` is an action
     """,
     """
 a/b/c/D d

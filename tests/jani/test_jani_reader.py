@@ -90,20 +90,20 @@ def test_the_model_of_the_examples_is_sound() -> None:
 
 SYNTAX = [
     ("type", "⟦'mdpp'⟧", "there is no model type `mdpp`; did you mean `mdp`?"),
-    ("type", "⟦1⟧", "a model type must be a string, not as a number"),
+    ("type", "⟦1⟧", "a model type must be a string, not a number"),
     ("features", "['⟦array⟧']", "there is no feature `array`; did you mean `arrays`?"),
     ("features", "[⟦'edge-priorities'⟧]", "the feature `edge-priorities` of JANI is not supported"),
-    ("features", "[⟦1⟧]", "a feature must be a string, not as a number"),
-    ("metadata", "⟦'me'⟧", "metadata must be an object `{ }`, not as a string"),
+    ("features", "[⟦1⟧]", "a feature must be a string, not a number"),
+    ("metadata", "⟦'me'⟧", "metadata must be an object `{ }`, not a string"),
     ("metadata", "{'⟦autor⟧': 'me'}", "metadata has no member `autor`; did you mean `author`?"),
-    ("metadata", "{'url': ⟦1⟧}", "`url` must be a string, not as a number"),
+    ("metadata", "{'url': ⟦1⟧}", "`url` must be a string, not a number"),
     (
         "constants",
         "[{'name': 'C', 'type': {'kind': 'bounded', 'base': ⟦'bool'⟧}}]",
         "only int and real can have bounds",
     ),
-    ("variables", "⟦{}⟧", "`variables` must be a list `[ ]`, not as an object"),
-    ("variables", "[⟦1⟧]", "a variable must be an object `{ }`, not as a number"),
+    ("variables", "⟦{}⟧", "`variables` must be a list `[ ]`, not an object"),
+    ("variables", "[⟦1⟧]", "a variable must be an object `{ }`, not a number"),
     ("variables", "[⟦{⟧}]", "a variable needs `name` and `type`"),
     ("variables", "[{'name': ⟦''⟧, 'type': 'int'}]", "`name` must not be empty"),
     ("variables", "[{'name': 'n', 'type': ⟦'integer'⟧}]", "there is no type `integer`"),
@@ -115,11 +115,11 @@ SYNTAX = [
     ("variables", "[{'name': 'n', 'type': ⟦{⟧'base': 'int'}}]", "a type needs `kind`"),
     ("variables", "[{'name': 'n', 'type': ⟦{⟧'kind': 'array'}}]", "an array type needs `base`"),
     ("variables", "[{'name': 'n', 'type': 'int', 'transient': ⟦1⟧}]", "`transient` must be true or false"),
-    ("guard", "⟦null⟧", "an expression must be a number, true, false, a name or an object `{ }`, not as null"),
+    ("guard", "⟦null⟧", "an expression must be a number, true, false, a name or an object `{ }`, not null"),
     ("guard", "⟦1e999⟧", "this number is too large"),
     ("guard", "⟦''⟧", "a name must not be empty"),
     ("guard", "⟦{⟧}", "an expression needs `op`"),
-    ("guard", "{'op': ⟦1⟧}", "`op` must be a string, not as a number"),
+    ("guard", "{'op': ⟦1⟧}", "`op` must be a string, not a number"),
     ("guard", "{'op': '⟦xor⟧', 'left': true, 'right': true}", "there is no operator `xor`; did you mean `or`?"),
     ("guard", "⟦{⟧'op': '∧', 'left': true}", "`∧` needs `right`"),
     (
@@ -129,7 +129,7 @@ SYNTAX = [
     ),
     ("guard", "⟦{'op': 'deadlock'}⟧", "this is only allowed in a property, not in an expression"),
     ("guard", "{'constant': '⟦pi⟧'}", "there is no constant `pi`"),
-    ("guard", "{'constant': ⟦3⟧}", "`constant` must be a string, not as a number"),
+    ("guard", "{'constant': ⟦3⟧}", "`constant` must be a string, not a number"),
     ("guard", "{'op': '=', 'left': {'distribution': '⟦Uniforn⟧', 'args': []}, 'right': 1}", "did you mean `Uniform`?"),
     (
         "guard",
@@ -140,15 +140,19 @@ SYNTAX = [
     (
         "assignments",
         "[{'ref': ⟦{'op': '+', 'left': 'n', 'right': 1}⟧, 'value': 1}]",
-        "only a variable or a part of one",
+        "the target of an assignment must be a variable or a part of one",
     ),
-    ("assignments", "[{'ref': ⟦{'op': 'aa', 'exp': 1, 'index': 0}⟧, 'value': 1}]", "only a variable or a part of one"),
+    (
+        "assignments",
+        "[{'ref': ⟦{'op': 'aa', 'exp': 1, 'index': 0}⟧, 'value': 1}]",
+        "the target of an assignment must be a variable or a part of one",
+    ),
     ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦1.5⟧}]", "`index` must be a whole number"),
-    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` must be a whole number, not as true"),
+    ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` must be a whole number, not true"),
     ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "an assignment has no member `guard`"),
     ("edges", "[⟦{⟧'location': 'idle'}]", "an edge needs `destinations`"),
     ("syncs", "[{'synchronise': ⟦['go', null]⟧}]", "the vector has 2 entries, but the system has 1 elements"),
-    ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action must be a string or null, not as a number"),
+    ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action must be a string or null, not a number"),
     (
         "property",
         "{'op': '⟦Pmn⟧', 'exp': {'op': 'F', 'exp': true}}",
@@ -167,7 +171,7 @@ SYNTAX = [
     (
         "property",
         "{'op': 'Pmin', 'exp': {'op': 'F', 'exp': true, 'step-bounds': ⟦3⟧}}",
-        "an interval must be an object `{ }`, not as a number",
+        "an interval must be an object `{ }`, not a number",
     ),
     (
         "property",
@@ -179,10 +183,10 @@ SYNTAX = [
 NAMES = [
     ("actions", "[{'name': 'go'}, {'name': '⟦go⟧'}]", "action `go` is declared twice"),
     ("variables", "[{'name': '⟦C⟧', 'type': 'int'}]", "variable `C` is declared twice"),
-    ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides that of the model"),
+    ("locals", "[{'name': '⟦n⟧', 'type': 'int'}]", "variable `n` hides the variable of the model with the same name"),
     ("locations", "[{'name': 'idle'}, {'name': '⟦idle⟧'}]", "location `idle` is declared twice"),
     ("initial", "['⟦idel⟧']", "there is no location `idel`; did you mean `idle`?"),
-    ("initial", "[⟦3⟧]", "an entry of `initial-locations` must be a string, not as a number"),
+    ("initial", "[⟦3⟧]", "an entry of `initial-locations` must be a string, not a number"),
     ("edges", "[{'location': '⟦x⟧', 'destinations': []}]", "there is no location `x`"),
     ("edges", "[{'location': 'idle', 'destinations': [{'location': '⟦x⟧'}]}]", "there is no location `x`"),
     ("edges", "[{'location': 'idle', 'action': '⟦goo⟧', 'destinations': []}]", "there is no action `goo`; did you"),
@@ -235,7 +239,7 @@ TYPES = [
     (
         "guard",
         "⟦{'op': '=', 'left': 'n', 'right': 'ok'}⟧",
-        "the two values must have one type, but they are an int and a bool",
+        "the two values must have the same type, but they are an int and a bool",
     ),
     ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': 'a', 'index': ⟦'r'⟧}, 'right': 1}", "an index must be an int"),
     ("guard", "{'op': '=', 'left': {'op': 'aa', 'exp': ⟦'n'⟧, 'index': 0}, 'right': 1}", "only an array has elements"),
@@ -262,7 +266,7 @@ TYPES = [
     (
         "guard",
         "{'op': '=', 'left': ⟦{'op': 'dv', 'type': 'P', 'values': []}⟧, 'right': 'p'}",
-        "a `P` needs a value for `x`",
+        "a value of `P` needs the member `x`",
     ),
     ("guard", "{'op': 'ite', 'if': ⟦1⟧, 'then': true, 'else': false}", "a condition must be true or false"),
     (
@@ -300,7 +304,7 @@ TYPES = [
     (
         "assignments",
         "[{'ref': 'a', 'value': {'op': 'av', 'elements': [1, ⟦true⟧]}}]",
-        "the two values must have one type",
+        "the two values must have the same type",
     ),
     ("assignments", "[{'ref': 'n', 'value': {'distribution': 'DiscreteUniform', 'args': [0, 9]}}]", None),
     (

@@ -155,7 +155,7 @@ ERRORS = [
     (op("∧", "'yes'", "⟦1⟧"), "this must be true or false, not 1"),
     ("⟦" + op("<", "'a'", 1) + "⟧", "`<` cannot be applied to an array of 3 elements and 1"),
     ("⟦{'op': 'oa', 'exp': {'op': 'empty'}}⟧", "the option is empty"),
-    ("⟦{'op': 'da', 'exp': 'n', 'member': 'x'}⟧", "this has no member `x`"),
+    ("⟦{'op': 'da', 'exp': 'n', 'member': 'x'}⟧", "the value has no member `x`"),
     ("⟦{'op': 'call', 'function': 'f', 'args': []}⟧", "there is no function `f`"),
     ("⟦{'op': 'call', 'function': 'factorial', 'args': []}⟧", "`factorial` takes 1 arguments, not 0"),
     ("{'op': 'call', 'function': 'endless', 'args': []}", "the calls of `endless` do not terminate"),

@@ -219,8 +219,8 @@ MISTAKES = [
     (
         """
         [True, None, undefined]
-         ^^^^ JSON writes `true`
-               ^^^^ JSON writes `null`
+         ^^^^ `True` is not a JSON literal; write `true`
+               ^^^^ `None` is not a JSON literal; write `null`
                      ^^^^^^^^^ `undefined` is a string and needs double quotes
         """,
         [True, None, "undefined"],

@@ -213,6 +213,26 @@ async def test_code_actions_set_what_the_result_suggests(tmp_path: Path) -> None
         assert text_edit.new_text == ' expect=">= 1"'
 
 
+async def test_a_quick_fix_moves_expectations_to_the_configuration(tmp_path: Path) -> None:
+    _, file = coin(tmp_path)
+    configuration = tmp_path / "as2fm.toml"
+    configuration.write_text('exclude = ["attic/"]\n', encoding="utf-8")
+    text = COIN["properties.xml"].replace('id="heads_up"', 'id="heads_up" expect="&gt;= 0.4"')
+    line = next(i for i, row in enumerate(text.splitlines()) if HEADS in row)
+    async with connect(tmp_path, options=COMMANDS) as client:
+        client.open(file, text, language="xml")
+        place = types.Range(types.Position(line, 0), types.Position(line + 1, 0))
+        context = types.CodeActionContext([], only=[types.CodeActionKind.QuickFix])
+        params = types.CodeActionParams(types.TextDocumentIdentifier(file.as_uri()), place, context)
+        offered = await client.text_document_code_action_async(params) or ()
+        (action,) = (a for a in offered if isinstance(a, types.CodeAction) and a.title.startswith("Move"))
+        assert action.title == "Move the expectation to `as2fm.toml`"
+        assert action.diagnostics is not None
+        assert [diagnostic.code for diagnostic in action.diagnostics] == ["unportable-expectation"]
+        assert action.edit is not None
+        assert set(action.edit.changes or {}) == {file.as_uri(), configuration.as_uri()}
+
+
 async def test_both_sides_are_explained(tmp_path: Path) -> None:
     main, _ = coin(tmp_path)
     async with connect(tmp_path) as client:

@@ -18,10 +18,11 @@ from random_trees import (
     trees,
 )
 from test_mock_library import modelled
-from trees_in_systems import observe_system
+from trees_in_systems import FOLDER, files, observe_system
 
 from examples import TIMES, examples
 from roaml import api
+from roaml.lower.programs.automaton import node_automaton
 
 TICKS = 12
 ANY_TREE = trees({**CONTROLS, **NAV2_CONTROLS}, {**DECORATORS, **TIMED, **NAV2_DECORATORS}, {**LEAVES, **SLEEP})
@@ -54,3 +55,19 @@ def test_a_plugin_behind_conditions() -> None:
     change = Drawn("Script", (("code", "y := 1 - y"),))
     for seed in range(3):
         compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Parallel", (), (act, change)),)), seed)
+
+
+@settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
+@given(ANY_TREE)
+def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
+    """Automata of equal shape are built once; each node still gets what its own automaton answers."""
+    tree = Drawn("Sequence", (("_onHalted", "k := k"),), (drawn, drawn))
+    analysis = api.check([f"{FOLDER}/main.xml"], texts=files(tree, TICKS)).snapshot.analysis
+    library = analysis.library_tree(f"{FOLDER}/main.xml")
+    assert library is not None
+    codes = {code.address: code for parts in library.codes.values() for code in parts}
+    recorded = [child for code in codes.values() for child in code.children if child.address in codes]
+    assert recorded
+    for child in recorded:
+        built = node_automaton(codes[child.address]).child
+        assert (built.answers, built.is_stateless) == (child.answers, child.is_stateless), as_xml(tree)

@@ -62,7 +62,7 @@ def test_spans_of_atoms_and_braces_in_strings() -> None:
         ("{a} &&", "", "expected a condition in braces: `{ level < 30 }`"),
         ("level", "level", "expected a condition in braces instead of `level`: `{ level < 30 }`"),
         ("{ }", "{ }", "there is no condition in these braces"),
-        ("({a}", "", "`)` is expected"),
+        ("({a}", "", "expected `)`"),
         ("{a} {b}", "{b}", "expected an operator or the end of the formula before `{b}`"),
         ("{a} S[5] {b}", "[5]", "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),
         ("O[-1:2] {b}", "[-1:2]", "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),

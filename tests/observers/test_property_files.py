@@ -95,5 +95,5 @@ def test_names_are_unique_over_all_files() -> None:
     findings = checked(PROPERTIES, json.dumps({"properties": [{"name": "one", "expression": expression}]}))
     assert (
         "repeated-property-id",
-        "another property of the system is called `one`, in `properties.xml`",
+        "another property of the system is called `one`, in `properties.xml`; rename one of them",
     ) in findings

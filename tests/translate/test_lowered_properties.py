@@ -39,6 +39,21 @@ def test_a_deadline_can_be_lowered_and_an_answer_at_any_time_cannot() -> None:
     assert "since[3:]" in lowered.text
 
 
+def test_an_answer_that_comes_with_the_clock_is_late() -> None:
+    """The clock makes a step after `heads`, which then is not true any more: later than the deadline."""
+    response = """<property id="p" pattern="response">
+        <events><event>heads &amp;&amp; count == 1</event><event>!heads</event></events>
+        <scope type="globally" /><time_interval time="0" time_unit="s" /></property>"""
+    original = system(response)
+    source = loaded(original)
+    lowered = lowered_properties(api.to_scxml(source), source.observed)
+    before = exact(api.to_jani(source), "p")
+    after = exact(api.to_jani(loaded({**original, "properties.xml": lowered.text})), "p")
+    assert (before.least, before.greatest) == pytest.approx((0.7**6, 0.7**6), abs=1e-6)
+    # The formula is not violated by `heads` after the last step of the clock. The coin can be tossed a second late.
+    assert (after.least, after.greatest) == pytest.approx((0.7**5, 0.7**4), abs=1e-6)
+
+
 def test_ports_name_machines_of_the_folder() -> None:
     absence = """<property id="p" pattern="absence"><event>tails || count == 3</event>
         <scope type="globally" /></property>"""

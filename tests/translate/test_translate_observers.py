@@ -320,7 +320,7 @@ def test_nothing_is_expected_of_an_assumption() -> None:
     assumed = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.5"')
     diagnostics = errors(with_assumptions(assumed, EXISTS.format("g", "whistle")))
     assert [(error.code, error.message) for error in diagnostics] == [
-        ("property-form", "an assumption has no value, so nothing can be expected of it")
+        ("property-form", "an assumption has no probability; remove `expect`")
     ]
 
 
@@ -349,9 +349,9 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     assert rows["dead"]["vacuous"] == {"scope_not_judged": 0, "not_triggered": 300}
     assert warning(results["dead"]) == "the property is vacuous: it was not triggered in any trace"
     assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
-    assert warning(results["unopened"]) == "the property is vacuous: its scope was not judged in any trace"
+    assert warning(results["unopened"]) == "the property is vacuous: its scope was not evaluated in any trace"
     text = one_as_text(results["scoped"], str)
-    assert re.search(r"\n  its scope was not judged in [0-9]+ of 300 traces \(", text)
+    assert re.search(r"\n  its scope was not evaluated in [0-9]+ of 300 traces \(", text)
     assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)
     assert "failed traces fail at the end of time (max_time)" in text
 

@@ -76,11 +76,11 @@ export function systems(stage: Stage): void {
             .first()
             .click();
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
-        // Verifying all the same leads there, too.
+        // A verification opens the place of the error, too.
         await window.openFile("tree.xml");
         await window.run("AS2FM: Verify");
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
-        // Once it is mended, the lenses are as ever.
+        // After the error is fixed, the lenses offer the translation again.
         await window.openFile("main.xml");
         const file = path.join(window.folder, "nodes/battery.ascxml");
         fs.writeFileSync(file, fs.readFileSync(file, "utf8").replace("levle", "level"));

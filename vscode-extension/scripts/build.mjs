@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bundles the extension and its view into dist/, with the files of the repository that they carry.
+// Bundles the extension and its view into dist/, with the files of the repository that they contain.
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { fileURLToPath } from "node:url";
@@ -41,7 +41,7 @@ await esbuild.build({
     target: "es2022",
 });
 fs.copyFileSync(path.join(here, "src/timeline/view/timeline.css"), path.join(dist, "timeline.css"));
-// The pictures have the same style in the editor and in the files of the command line.
+// Pictures have the same style in the editor and in the files that the command line writes.
 const styles = [
     path.join(root, "server/roaml/figures/figure.css"),
     path.join(root, "server/roaml/figures/timeline.css"),
@@ -49,7 +49,7 @@ const styles = [
 ];
 fs.writeFileSync(path.join(dist, "view.css"), styles.map((file) => fs.readFileSync(file, "utf8")).join(""));
 
-// The schemas, with a catalog under whose names the XML extension finds them.
+// The schemas, with a catalog that maps their names for the XML extension.
 fs.cpSync(path.join(root, "schemas"), path.join(dist, "schemas"), {
     recursive: true,
     filter: (file) => !file.endsWith(".json"),
@@ -71,7 +71,7 @@ fs.copyFileSync(path.join(here, "requirements.txt"), path.join(dist, "requiremen
 fs.cpSync(path.join(here, "templates"), path.join(dist, "templates"), { recursive: true });
 fs.cpSync(path.join(root, "docs/ci"), path.join(dist, "ci"), { recursive: true });
 
-// The sample of the walkthrough is the system that `init` writes, with one mistake in it.
+// The sample of the walkthrough is the system that `init` writes, with one error in it.
 const sample = path.join(dist, "sample");
 fs.cpSync(path.join(root, "server/as2fm_lsp/templates/delivery_robot"), sample, { recursive: true });
 const mistaken = path.join(sample, "nodes/battery.ascxml");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
-// `--measure` measures instead; `--pictures` renews those of the README and of the walkthrough afterwards.
+// `--measure` takes measurements instead; `--pictures` also renews the pictures of the README and of the walkthrough.
 import { execFileSync, spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";
@@ -36,7 +36,7 @@ if (done.status === 0 && first === "--pictures") {
     for (const folder of ["screenshots", "walkthrough"]) {
         for (const name of fs.readdirSync(path.join(here, folder))) {
             const renewed = path.join(here, "out", "e2e-output", name);
-            // With a pattern, only some are taken.
+            // With a pattern, only some pictures are taken.
             if (fs.existsSync(renewed)) fs.copyFileSync(renewed, path.join(here, folder, name));
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders icons/as2fm.svg as the PNG that marketplaces want.
+// Renders icons/as2fm.svg as PNG, which marketplaces require.
 import * as fs from "node:fs";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";

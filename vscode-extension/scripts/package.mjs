@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes as2fm.vsix. `npm ci && npm run package` is all it takes in a clean checkout.
+// Creates as2fm.vsix. In a clean checkout, `npm ci && npm run package` is enough.
 import * as fs from "node:fs";
 import { fileURLToPath } from "node:url";
 import { createVSIX } from "@vscode/vsce";

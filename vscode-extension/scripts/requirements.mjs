@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renews requirements.txt: the packages that the private environment of the extension is made of, each with its version
-// and the hashes of all its files, for every system and every Python that the server runs on. Needed when the
-// dependencies in pyproject.toml change, and to take newer versions.
+// Renews requirements.txt, which lists the packages in the private environment of the extension: each with its version
+// and the hashes of all its files, for every system and every Python that the server supports. Run it when the
+// dependencies in pyproject.toml change, and to use newer versions.
 import { execFileSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as os from "node:os";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the unit tests: what decides and words without the editor, and the grammars.
+// Runs the unit tests: of the modules that do not depend on the editor, and of the grammars.
 import { spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the wheel that the extension carries, for every platform: without compiled parts.
+// Builds the wheel in the extension. It is valid for every platform, because it contains no compiled parts.
 import { execFileSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as os from "node:os";
@@ -15,7 +15,7 @@ const own = path.join(root, ".venv", "bin", "python");
 const python = process.env.PYTHON ?? (fs.existsSync(own) ? own : "python3");
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "as2fm-wheel-"));
 try {
-    // A copy: what an earlier build left in the tree must not get into the wheel.
+    // Files that an earlier build left in the tree must not get into the wheel, so it is built from a copy.
     for (const name of SOURCES) {
         fs.cpSync(path.join(root, name), path.join(work, "source", name), {
             recursive: true,
@@ -23,11 +23,11 @@ try {
         });
     }
     const options = ["-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps", "--wheel-dir", work];
-    // The environment of the tests has what is needed to build; elsewhere pip gets it.
+    // The environment of the tests contains the packages for building; elsewhere pip installs them.
     if (python === own) options.push("--no-build-isolation");
     execFileSync(python, [...options, path.join(work, "source")], {
         stdio: "inherit",
-        // The same sources give the same bytes, and so the same private environment.
+        // The same sources give the same bytes, so the private environment is not created again.
         env: { ...process.env, AS2FM_PURE_PYTHON: "1", SOURCE_DATE_EPOCH: "315532800" },
     });
     const wheel = fs.readdirSync(work).find((name) => name.endsWith(".whl"));

@@ -14,7 +14,7 @@ import { PlainScxmlPreview } from "./editor/plainScxml";
 import { onInterpreterChange } from "./editor/pythonExtensions";
 import { LanguageServer } from "./editor/server";
 import { StatusItem } from "./editor/statusItem";
-import { done, watchMending } from "./editor/steps";
+import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
 import { LitPictures } from "./editor/litPictures";
@@ -58,7 +58,7 @@ export function activate(context: vscode.ExtensionContext): void {
         new TimelineView(context, sessions),
         new LitPictures(sessions, pictures),
         ...debugging.register(),
-        watchMending(),
+        watchErrors(),
     );
     server.onState((state) => {
         status.show(state);
@@ -66,7 +66,7 @@ export function activate(context: vscode.ExtensionContext): void {
     const shown = { plain, jani, pictures, tests, counterexamples, debugging };
     registerCommands({ context, log, server, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
-    watchWishes(context, server, log);
+    watchSettings(context, server, log);
     void start(context, server, log);
 }
 
@@ -83,8 +83,8 @@ export async function deactivate(): Promise<void> {
     await server?.stop();
 }
 
-/** Search the server again when a setting or an interpreter changes. */
-function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, log: vscode.LogOutputChannel): void {
+/** Search for the server again when a setting or an interpreter changes. */
+function watchSettings(context: vscode.ExtensionContext, server: LanguageServer, log: vscode.LogOutputChannel): void {
     const again = () => void server.start();
     context.subscriptions.push(
         vscode.workspace.onDidGrantWorkspaceTrust(again),
@@ -96,7 +96,7 @@ function watchWishes(context: vscode.ExtensionContext, server: LanguageServer, l
             }
         }),
     );
-    // A running server from another source does not depend on the interpreter.
+    // A running server that was not found in a Python environment does not depend on the interpreter.
     const onChange = () => {
         if (server.state.kind === "failed" || usesPython(server)) void server.look();
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The requests and notifications between client and server in addition to LSP. */
+/** The requests and notifications between client and server that are not part of LSP. */
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
@@ -87,7 +87,7 @@ export interface Wrong extends Partial<Place> {
     readonly message: string;
 }
 
-/** The result of a property: numbers, or an error. Infinite numbers are strings, because JSON has none. */
+/** The result of a property: numbers, or an error. Infinite numbers are strings, because JSON has no such numbers. */
 export interface Verified {
     readonly property: string;
     /** What the property requires, in a sentence. */
@@ -104,43 +104,46 @@ export interface Verified {
         readonly expected: string;
         readonly met: boolean;
         readonly certain: boolean;
-        /** Whether it is met under uniform choices, but not known to be met under all schedulers. */
+        /** Whether the expectation is met under uniform choices, but not known to be met under all schedulers. */
         readonly under_uniform_choices_only?: boolean;
         /** The number of traces if none of them contradicts an expected 0 or 1. */
         readonly unanimous?: number;
     }[];
-    /** Why the number is doubtful (traces got stuck), or is not the minimum or maximum that the property asks for. */
+    /** Why the number is doubtful because traces got stuck, or is not the minimum or maximum that the property asks for. */
     readonly warning?: string;
-    /** `no expectation set` if the result is compared with nothing, and so is neither good nor bad. */
+    /** The text `no expectation set` if nothing is expected of the result. */
     readonly verdict?: string;
     /** Whether there is a counterexample: a trace that contradicts the expectation. */
     readonly counterexample?: boolean;
-    /** Whether there is a trace that speaks for the property. */
+    /** Whether there is a trace that supports the property. */
     readonly witness?: boolean;
     readonly error?: Wrong;
 }
 
-/** The result about traces in which the system gets stuck: all automata wait for each other. */
+/** The result about traces in which the system gets stuck: its automata wait for one another. */
 export interface Stuckness {
-    /** How severe it is that a trace gets stuck. */
+    /** How a trace that gets stuck is reported. */
     readonly level: "warning" | "error";
-    /** Which automaton waits for which in the example, in several lines. */
+    /** Which automaton waits for which in the example, as several lines of text. */
     readonly text: string;
     /** Null if no trace got stuck. */
     readonly example: { readonly trace: number } | null;
 }
 
-/** `errors` are those of the model; if there are any, there are no results. */
+/** The results of properties. `errors` are those of the model; if there are any, there are no results. */
 export interface Verification {
     readonly results: readonly Verified[];
     readonly errors: readonly Wrong[];
     readonly stuck?: Stuckness | null;
 }
 
-/** The name of the property that every system has: that it gets stuck. */
+/** The name of the property that every system has: the probability that it gets stuck. */
 export const STUCK = "stuck";
 
-/** A property; `stale` and `result` are missing while it has no result. The result is judged by what is expected now. */
+/**
+ * A property. `stale` and `result` are missing while it has no result. The result is compared with the current
+ * expectations.
+ */
 export interface Property extends Place {
     readonly name: string;
     readonly comment: string;
@@ -189,7 +192,7 @@ export interface PropertyParams extends DocumentParams {
     readonly property: string;
 }
 
-/** With `witness`, the trace that speaks for the property. */
+/** With `witness`, the trace that supports the property is requested. */
 export interface CounterexampleParams extends PropertyParams {
     readonly witness?: boolean;
 }
@@ -210,7 +213,7 @@ export interface StateRow {
     readonly rows: readonly StateRow[];
 }
 
-/** The expectations that the known result suggests, those that are set, and the name of the file for one. */
+/** The expectations that the known result suggests, the current ones, and the name of the file in which one is set. */
 export interface Expectations {
     readonly suggestions: readonly string[];
     readonly current: readonly string[];

@@ -107,7 +107,7 @@ test("a server that crashes repeatedly is not restarted, one that crashes seldom
     const count = MAX_CRASHES + 1;
     const failure = { kind: "crashes", server: SERVER, count, detail: "last words" };
     assert.deepEqual(supervisor.state, { kind: "failed", failure });
-    await supervisor.start(); // the user's wish counts anew
+    await supervisor.start(); // a request of the user resets the count of crashes
     for (let i = 0; i < 3 * MAX_CRASHES; i++) {
         fake.time += CRASH_WINDOW / 2;
         await crash(fake);

@@ -36,7 +36,7 @@ class ArgumentParser(argparse.ArgumentParser):
 
     def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
         if file is sys.stdout:
-            print_text(message)  # which fails if it cannot be written
+            print_text(message)  # unlike argparse, raises an error if the stream cannot be written
         else:
             super()._print_message(message, file)
 

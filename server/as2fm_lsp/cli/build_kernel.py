@@ -3,7 +3,7 @@
 
 A universal wheel contains their inner loops as Python and as C code that Cython has generated from it. If there is a C
 compiler, as on most machines with ROS, this makes verification about a hundred times as fast. If the compilation of one
-module fails, all stay as they are.
+module fails, no module is replaced.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ class BuildError(Exception):
 
 
 def build(sources: Sequence[Path] = SOURCES) -> list[Path]:
-    """Compile the C code, and write each extension beside it.
+    """Compile the C code, and write each extension beside its source.
 
     Returns:
-        The extensions; each is complete.
+        The paths of the extensions; each file is complete.
 
     Raises:
-        BuildError: one cannot be compiled here; nothing has been written.
+        BuildError: a module cannot be compiled here; nothing has been written.
         InterruptedError: the compiler was ended by a signal.
     """
     if not all(source.exists() for source in sources):
@@ -56,7 +56,7 @@ def build(sources: Sequence[Path] = SOURCES) -> list[Path]:
 
 
 def _compiled(linker: Sequence[str], source: Path, target: Path) -> bytes:
-    """The extension that the C code of a module becomes."""
+    """Compile the C code of a module to `target`; return the content of the extension."""
     position = shlex.split(sysconfig.get_config_var("CCSHARED") or "")
     include = f"-I{sysconfig.get_path('include')}"
     command = [*linker, *position, *FLAGS, include, str(source), "-o", str(target)]
@@ -73,10 +73,11 @@ def _compiled(linker: Sequence[str], source: Path, target: Path) -> bytes:
 
 
 def main(sources: Sequence[Path] = SOURCES) -> int:
-    """
+    """Compile the kernel and report the result.
+
     Returns:
         The exit status: 0 if the kernel was compiled, 1 if it cannot be compiled here, 2 if the attempt was
-            interrupted.
+        interrupted.
     """
     try:
         build(sources)

@@ -36,7 +36,7 @@ def run(arguments: Sequence[str]) -> int:
     from as2fm_lsp.debug.adapter import Adapter  # noqa: PLC0415
     from as2fm_lsp.debug.framing import MessageReader  # noqa: PLC0415
 
-    # Nothing else may write into the stream of messages.
+    # Only the adapter may write into the stream of messages.
     output = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     # The reading thread may still wait for input when the program ends, which must not wait for `sys.stdin`.

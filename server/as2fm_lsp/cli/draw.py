@@ -89,7 +89,7 @@ _NOTHING = {
 
 
 def _kind(options: argparse.Namespace, analysis: Analysis, path: str) -> DiagramKind:
-    """What is asked for; without an option, what the file contains."""
+    """The kind of diagram that the options request. Without an option, it is the kind that fits the file."""
     if options.machine is not None:
         return DiagramKind.MACHINE
     if options.tree:

@@ -14,7 +14,7 @@ from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
 from roaml.disk import UnreadableReason
-from roaml.ide.formatting import can_format, format_edits, is_ours
+from roaml.ide.formatting import can_format, format_edits, has_formatter
 from roaml.language import HL_SCXML
 from roaml.model.dialect import dialect_of
 from roaml.model.kinds import FileKind
@@ -96,7 +96,7 @@ def _problem(analysis: Analysis, path: str) -> str:
     source = analysis.files.read(path)
     if isinstance(source, UnreadableReason):
         return source.value
-    return "" if is_ours(analysis, path) else "it is neither a model nor a property file"
+    return "" if has_formatter(analysis, path) else "it is neither a model nor a property file"
 
 
 def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
@@ -106,13 +106,13 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
             yield path
             continue
         for candidate in candidates((path,), settings.exclude):
-            if is_ours(analysis, candidate) and _is_hand_written(analysis, candidate):
+            if has_formatter(analysis, candidate) and _is_hand_written(analysis, candidate):
                 yield candidate
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:
-    """Whether a file is written by hand: it is not a JANI model and, if no system lists it, not in a similar format
-    such as plain SCXML."""
+    """Whether a file is written by hand: it is not a JANI model, and it is listed by a system or is not in a similar
+    format such as plain SCXML."""
     kind, document = analysis.kind(path), analysis.document(path)
     if kind is FileKind.JANI_MODEL or path in analysis.memberships:
         return kind is not FileKind.JANI_MODEL

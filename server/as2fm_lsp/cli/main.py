@@ -125,7 +125,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 
 _ALSO_OPTIONS = ("check", "explain", "serve")
-"""Commands that are newer than the options that do the same; `--check` still takes folders of these names."""
+"""Commands with an option of the same name, which is older. `--check` may be followed by a folder with such a name."""
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("help", "version")
 """Options that users mistake for commands."""

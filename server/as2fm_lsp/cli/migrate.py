@@ -76,8 +76,8 @@ def _diff(migration: Migration) -> str:
 
 
 def _write(migrations: Sequence[Migration]) -> None:
-    """Machines are written before the systems that name them, and old files are removed last: after any failure, each
-    system names existing files."""
+    """Write the migrated files. Machines are written before the systems that refer to them, and old files are removed
+    last: after any failure, each system refers to existing files."""
     for migration in reversed(migrations):
         write_file(migration.new_path, migration.data)
         shutil.copymode(migration.path, migration.new_path)

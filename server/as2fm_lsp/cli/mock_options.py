@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options for trees without a system: their mocks, and what is assumed of their host."""
+"""The options for trees without a system: their mocks, their blackboard entries and their tick rate."""
 
 from __future__ import annotations
 

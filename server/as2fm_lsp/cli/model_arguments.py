@@ -54,7 +54,8 @@ def settings_of(path: str) -> Settings:
 
 
 def check_model_arguments(options: argparse.Namespace) -> None:
-    """
+    """Check that the options fit the kind of the model.
+
     Raises:
         UsageError: an option does not fit the kind of the model.
     """

@@ -15,10 +15,10 @@ def _whole(text: str) -> int:
 
 
 def positive(text: str) -> int:
-    """A whole number from 1 on.
+    """A whole number of at least 1.
 
     Raises:
-        argparse.ArgumentTypeError: it is not one.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     value = _whole(text)
     if not 1 <= value < 1 << 62:
@@ -27,10 +27,10 @@ def positive(text: str) -> int:
 
 
 def natural(text: str) -> int:
-    """A whole number from 0 on.
+    """A whole number from 0 to 2^63 - 1.
 
     Raises:
-        argparse.ArgumentTypeError: it is not one.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     value = _whole(text)
     if not 0 <= value < 1 << 63:
@@ -39,10 +39,10 @@ def natural(text: str) -> int:
 
 
 def size(text: str) -> int:
-    """A number of bytes, such as `4G`, `500M` or `100000`.
+    """A number of bytes from a text such as `4G`, `500M` or `100000`.
 
     Raises:
-        argparse.ArgumentTypeError: it is not one.
+        argparse.ArgumentTypeError: the text is not a size.
     """
     match = re.fullmatch(r"(\d{1,15})([KMGT]?)(i?B)?", text, re.IGNORECASE)
     if match is None or int(match[1]) == 0:

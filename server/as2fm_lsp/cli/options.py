@@ -10,7 +10,7 @@ from roaml.project.settings import SEVERITIES
 
 
 def check_options(check: argparse._ActionsContainer) -> None:
-    """The options of a check."""
+    """Add the options of a check."""
     check.add_argument(
         "--fix",
         action="store_true",
@@ -34,7 +34,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
 
 
 def serve_options(serve: argparse._ActionsContainer) -> None:
-    """The ways to serve an editor."""
+    """Add the options that say how the server is connected to its client."""
     serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
     serve.add_argument(
         "--tcp",
@@ -51,7 +51,7 @@ def serve_options(serve: argparse._ActionsContainer) -> None:
 
 
 class _Codes(argparse.Action):
-    """Rule codes, separated by commas, given once or several times."""
+    """Collects rule codes, which are separated by commas, from all occurrences of an option."""
 
     def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
         known = getattr(namespace, self.dest) or []

@@ -16,7 +16,7 @@ STANDARD_OUTPUT = "standard output"
 
 def print_text(text: str, encoding: str | None = None, stream: TextIO | None = None) -> None:
     """Write to standard output or `stream`, in its own encoding unless another is given. Characters that the encoding
-    does not support are escaped: names of files may contain any.
+    does not support are escaped, because names of files may contain any characters.
 
     Raises:
         OSError: standard output cannot be written to. Errors of standard error are ignored, because they could not be
@@ -47,11 +47,11 @@ def flush() -> None:
 
 @contextmanager
 def _open(stream: TextIO) -> Iterator[None]:
-    """After the first failure, further output is discarded; Python would report it again at exit."""
+    """Discard further output after the first failure. Otherwise Python would report the failure again at exit."""
     try:
         yield
     except OSError as error:
-        with suppress(OSError, ValueError):  # it is not a file
+        with suppress(OSError, ValueError):  # the stream is not a file
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if stream is not sys.stderr:
             error.filename = STANDARD_OUTPUT

@@ -17,8 +17,8 @@ BAR_CHARACTERS = 20
 
 
 class ProgressBar:
-    """Use it in a `with` statement; shows nothing if standard error is not a terminal. The line is removed at the
-    end."""
+    """A line on standard error, in a `with` statement. Nothing is shown if standard error is not a terminal. The line
+    is removed at the end."""
 
     def __init__(self) -> None:
         self._line = StatusLine()

@@ -76,9 +76,9 @@ examples:
 
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
 combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
-where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result counts the
-reasons why traces have ended. A trace is stuck if its automata wait for one another, so that time stands still; a
-warning with an example says so.
+where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result lists how
+many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands
+still; a warning with an example reports this.
 
 exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
@@ -86,9 +86,9 @@ stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 INTERRUPTED = 130
 STANDARD_OUTPUT = "-"
 WIDTH_OF_TREES = 0.05
-"""Half the width of an interval that the fixed number of traces of a tree achieves always."""
+"""Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
-"""Fewer traces of a tree take less time than the start of further processes."""
+"""Up to this number, traces of a tree take less time than the start of further processes."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -156,8 +156,8 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
 
 
 class _Verification:
-    """One call of the command, after all files have been read. `tree` is a tree without a system, if one is verified,
-    with its measurements."""
+    """One call of the command, after all files have been read. If a tree without a system is verified, `tree` contains
+    the tree and its measurements."""
 
     def __init__(
         self,
@@ -201,7 +201,7 @@ class _Verification:
         return status
 
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
-        """The results of the properties that share traces; none if there are fewer than two."""
+        """The results of the properties that share traces; empty if fewer than two properties can share them."""
         options, verifier = self.options, self.verifier
         if options.separate or options.exhaustive or options.scheduler == "lss":
             return {}
@@ -237,7 +237,7 @@ class _Verification:
         return {result.name: self._with_shown_path(result) for result in results}
 
     def _answer_alone(self, name: str, pool: Pool, bar: ProgressBar) -> Result:
-        """The result of a property by traces of its own; a refusal if it cannot be decided."""
+        """The result of a property from traces that it does not share; a refusal if the property cannot be decided."""
         try:
             return self._answer(self.verifier.question(name), pool, bar)
         except FaultError as fault:
@@ -353,7 +353,7 @@ class _Verification:
 
     def _where_shown(self, is_told: bool) -> str:
         """The place in the output where the waiting automata of the example of a stuck trace are shown; "" if they are
-        not."""
+        not shown elsewhere."""
         if self.look is None or self.look.stuck is None:
             return ""
         same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
@@ -389,7 +389,7 @@ class _Verification:
         ]
 
     def _tell_faults(self) -> None:
-        """Report these properties to users, on standard error."""
+        """Report the properties that could not be decided on standard error."""
         if self.faults and self.options.format != "json":
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
@@ -525,9 +525,10 @@ def parser() -> ArgumentParser:
         "warning or note states if other schedulers may give another value")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
         "uniform value of each property, and the shortest trace")  # fmt: skip
-    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states, undecided")
+    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states; the result is then "
+        "undecided")  # fmt: skip
     add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
-        "so much, for example 4G or 500M; undecided then (half of the free memory)")  # fmt: skip
+        "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
     add_model_arguments(result)
     add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
@@ -599,8 +600,8 @@ def _limits(options: argparse.Namespace) -> Options:
 
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:
-    """A diagnostic for an undefined operation of the model: with its position, and the trace that shows it. `None`
-    without a position."""
+    """A diagnostic for an undefined operation of the model, with its position and the trace that shows it. `None` if
+    the position is unknown."""
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
@@ -619,7 +620,7 @@ def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:
 
 
 def _fault(options: argparse.Namespace, target: VerificationTarget, fault: FaultError) -> int:
-    """The error entry of a model that cannot be run at all."""
+    """Report a model that cannot be run at all; return the exit status."""
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
         complain(f"{shown_path(options.main)}: {fault.message}")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The debug adapter: reads requests, has them handled, moves the run, and reports where it stops.
+"""The debug adapter: reads requests, calls their handlers, moves the run, and reports where it stops.
 
 Requests are handled one after the other, in the order in which they arrive. While the run is moving, it is moved in
-small portions, and requests are handled between them. Any request may arrive at any time: one that is not possible is
-answered with the reason.
+small portions, and requests are handled between them. Any request may arrive at any time. The answer to a request that
+is not possible states the reason.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ _ENDING = ("disconnect", "terminate")
 
 
 class Adapter:
-    """
+    """Serves one client.
+
     Args:
         inbox: the requests.
         output: receives responses and events.
@@ -183,5 +184,5 @@ class Adapter:
 
 
 def _escaped(text: str) -> str:
-    """A text as the format of an error, in which braces are placeholders."""
+    """A text in the form of an error message of the protocol, in which braces are placeholders."""
     return text.replace("{", "(").replace("}", ")")

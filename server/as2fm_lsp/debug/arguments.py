@@ -12,7 +12,7 @@ class RequestError(ValueError):
 
 
 class Arguments:
-    """The members of an object of JSON, read with the types that they must have."""
+    """The members of a JSON object. Each method reads a member and checks its type."""
 
     def __init__(self, value: object) -> None:
         self._members: Mapping[str, Any] = value if isinstance(value, dict) else {}
@@ -22,12 +22,13 @@ class Arguments:
         return self._members
 
     def text(self, name: str, default: str | None = "") -> str:
-        """
+        """A string.
+
         Args:
             default: `None` if the member is required.
 
         Raises:
-            RequestError: the member is not a string, or it is missing.
+            RequestError: the member is not a string, or it is required and missing.
         """
         value = self._members.get(name)
         if value is None and default is not None:
@@ -37,12 +38,13 @@ class Arguments:
         return value
 
     def number(self, name: str, default: int | None = None) -> int:
-        """
+        """An integer.
+
         Args:
             default: `None` if the member is required.
 
         Raises:
-            RequestError: the member is not an integer of at most 53 bits, or it is missing.
+            RequestError: the member is not an integer of at most 53 bits, or it is required and missing.
         """
         value = self._members.get(name)
         if value is None and default is not None:
@@ -54,7 +56,7 @@ class Arguments:
         return value
 
     def natural(self, name: str, default: int | None = None) -> int:
-        """A number that is not negative."""
+        """An integer that is not negative. See `number`."""
         value = self.number(name, default)
         if value < 0:
             raise RequestError(f"`{name}` must not be negative")

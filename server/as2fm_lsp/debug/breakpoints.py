@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests that set breakpoints. What a client has set before the launch is set when the model has been read."""
+"""Requests that set breakpoints. Breakpoints that a client sets before the launch are set in the model when it has been
+read."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ from roaml.debugging.evaluate import WatchError
 
 
 class BreakpointRequests:
-    """The handlers of these requests, and what has been set."""
+    """The handlers of these requests, with the breakpoints that the client has set."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session
@@ -194,7 +195,8 @@ def _lines(arguments: Arguments) -> list[Any]:
 def _set_each(
     breakpoints: Iterable[tuple[int, Arguments]], add: Callable[[int, Arguments], None]
 ) -> list[dict[str, Any]]:
-    """Set breakpoints with their numbers; returns a description of each. One that cannot be set has the reason."""
+    """Set breakpoints with their numbers; return a description of each. The description of a breakpoint that cannot be
+    set contains the reason."""
     bodies = []
     for number, given in breakpoints:
         body: dict[str, Any] = {"id": number, "verified": False}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests about what can happen next, and what happens by hand."""
+"""Requests for the possible next steps, and for a step that the user chooses."""
 
 from __future__ import annotations
 

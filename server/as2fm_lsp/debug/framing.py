@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages of the base protocol: a header with `Content-Length`, an empty line, and JSON of that length.
 
-The reader accepts any bytes. What is not a message is skipped: a header without a length, a body that is not a JSON
-object.
+The reader accepts any bytes. It skips data that are not a message: a header without a length, or a body that is not a
+JSON object.
 """
 
 from __future__ import annotations
@@ -62,11 +62,12 @@ def _skip(stream: BinaryIO, length: int) -> None:
 
 
 def write_message(stream: BinaryIO, message: Mapping[str, Any]) -> None:
-    """
+    """Write a message with its header.
+
     Raises:
         OSError, ValueError: the stream is closed.
     """
-    # Escapes in ASCII also keep what UTF-8 cannot encode: half of a surrogate pair, as a client may have sent.
+    # Escapes in ASCII also preserve half a surrogate pair, which a client may have sent and UTF-8 cannot encode.
     body = json.dumps(message, separators=(",", ":")).encode("ascii")
     stream.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
     stream.flush()
@@ -76,14 +77,15 @@ class PendingMessages(Protocol):
     """Messages that have arrived and are not handled yet."""
 
     def take(self, *, waits: bool) -> Message | None:
-        """The next message; `None` if there is none, with `waits` only after the last one."""
+        """The next message; `None` if there is none. With `waits`, wait for a message; `None` then means that no more
+        messages arrive."""
 
     @property
     def has_ended(self) -> bool:
         """Whether the last message has been taken."""
 
     def has(self, is_meant: Callable[[Message], bool]) -> bool:
-        """Whether such a message is waiting, or no more messages arrive."""
+        """Whether there is a waiting message for which `is_meant` is true, or no more messages arrive."""
 
 
 class MessageReader:
@@ -109,7 +111,8 @@ class MessageReader:
             self._changed.notify()
 
     def take(self, *, waits: bool) -> Message | None:
-        """The next message; `None` if there is none, with `waits` only after the last one."""
+        """The next message; `None` if there is none. With `waits`, wait for a message; `None` then means that the
+        stream has ended."""
         with self._changed:
             while waits and not self._waiting and not self._has_ended:
                 self._changed.wait()
@@ -122,6 +125,6 @@ class MessageReader:
             return self._has_ended and not self._waiting
 
     def has(self, is_meant: Callable[[Message], bool]) -> bool:
-        """Whether a message is waiting, or the stream has ended."""
+        """Whether there is a waiting message for which `is_meant` is true, or the stream has ended."""
         with self._changed:
             return self._has_ended or any(map(is_meant, self._waiting))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading the model of a `launch` request, and making the run that it asks for."""
+"""The `launch` request: reading the model and starting the requested run."""
 
 from __future__ import annotations
 
@@ -54,7 +54,8 @@ def warm_up() -> None:
 
 
 def launch_of(arguments: Arguments) -> Launch:
-    """
+    """The arguments of a `launch` request, checked.
+
     Raises:
         RequestError: an argument is missing or has a wrong type.
     """

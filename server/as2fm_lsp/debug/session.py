@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the handlers of requests share: the connection, the run that is debugged, and where it has stopped."""
+"""The state that the handlers of requests share: the connection, the run that is debugged, and where it has stopped."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class MessageWriter:
         self.send({"type": "event", "event": event, **({} if body is None else {"body": body})})
 
     def is_broken(self, error: Exception) -> bool:
-        """Whether nobody reads the output any more."""
+        """Whether an error means that nobody reads the output any more."""
         return isinstance(error, (BrokenPipeError, ConnectionError)) or self._output.closed
 
 
 @dataclass(frozen=True, slots=True)
 class ClientFormat:
-    """How the client writes places.
+    """How the client counts lines and columns and writes paths.
 
     Attributes:
         first_line: the number of the first line, 0 or 1.
@@ -56,10 +56,10 @@ class ClientFormat:
     uses_uris: bool = False
 
     def path(self, source: Arguments) -> str:
-        """The path of a `Source`, absolute.
+        """The absolute path of a `Source`.
 
         Raises:
-            RequestError: there is none.
+            RequestError: the source has no path, or the path is not valid.
         """
         path = source.text("path", None)
         if path.startswith("file:"):
@@ -70,12 +70,13 @@ class ClientFormat:
         return os.path.abspath(path)
 
     def source(self, path: str) -> dict[str, Any]:
-        """A `Source`."""
+        """The `Source` of a path."""
         return {"name": os.path.basename(path), "path": Path(path).as_uri() if self.uses_uris else path}
 
 
 class DebugSession:
-    """
+    """The run that is debugged, and what the client knows about it.
+
     Attributes:
         debugger: the run; `None` before the launch and after `terminate`.
         launch: the arguments of the last launch.
@@ -83,7 +84,7 @@ class DebugSession:
         stop: where the run has stopped last.
         frames: the frames that the client knows, by their numbers.
         references: the variables that the client may open.
-        after: what is done after the response to the current request.
+        after: the actions to take after the response to the current request.
     """
 
     def __init__(self, connection: MessageWriter) -> None:
@@ -99,7 +100,8 @@ class DebugSession:
 
     @property
     def loaded(self) -> Debugger:
-        """
+        """The run, moving or stopped.
+
         Raises:
             RequestError: there is no run.
         """
@@ -109,7 +111,8 @@ class DebugSession:
 
     @property
     def stopped(self) -> Debugger:
-        """
+        """The run, if it is stopped.
+
         Raises:
             RequestError: there is no run, or it is moving.
         """
@@ -134,7 +137,7 @@ class DebugSession:
         self.connection.event("stopped", body)
 
     def report_later(self, stop: Stop) -> None:
-        """Tell the client after the response to the current request."""
+        """Tell the client that the run has stopped, after the response to the current request."""
         self.after.append(lambda: self.report(stop))
 
     def log(self, text: str, origin: Origin | None = None) -> None:
@@ -144,12 +147,13 @@ class DebugSession:
     # ------------------------------------------------------------ valid while the run is stopped
 
     def forget(self) -> None:
-        """Forget frames and variables; they are valid only while the run is stopped."""
+        """Discard the frames and variables that the client knows. They are valid only while the run is stopped."""
         self.frames = {}
         self.references = References()
 
     def frame(self, arguments: Arguments) -> Frame:
-        """
+        """The frame with the number that the client sends.
+
         Raises:
             RequestError: there is no such frame.
         """
@@ -159,7 +163,7 @@ class DebugSession:
         return self.frames[number]
 
     def children(self, reference: int) -> list[Shown]:
-        """The variables behind a reference.
+        """The variables that a reference denotes.
 
         Raises:
             RequestError: there is no such reference.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variables in the terms of the protocol: references to what a client may open, valid while the run is stopped."""
+"""Variables as the protocol represents them. References denote the values that a client may open; they are valid while
+the run is stopped."""
 
 from __future__ import annotations
 
@@ -14,29 +15,29 @@ from roaml.debugging.values import SEPARATOR, Value, shown, type_of
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A variable with its value at the previous stop; `None` if it had none."""
+    """A variable with its value at the previous stop, which is `None` if it had no value there."""
 
     entry: ScopeEntry
     before: Value | None
 
 
 class References:
-    """Numbers for scopes, structs and arrays."""
+    """The reference numbers of scopes, structs and arrays."""
 
     def __init__(self) -> None:
         self._children: list[Sequence[Shown]] = []
 
     def add(self, children: Sequence[Shown]) -> int:
-        """A new reference."""
+        """Add variables that the client may open; return their reference number."""
         self._children.append(children)
         return len(self._children)
 
     def children(self, reference: int) -> Sequence[Shown] | None:
-        """What is behind a reference; `None` if there is no such reference."""
+        """The variables that a reference denotes; `None` if there is no such reference."""
         return self._children[reference - 1] if 1 <= reference <= len(self._children) else None
 
     def of_value(self, value: Value, entry: ScopeEntry, before: Value | None) -> int:
-        """A reference for the parts of a value; 0 if it has none."""
+        """The reference number of the parts of a value; 0 if the value has no parts."""
         if isinstance(value, (dict, list)) and value:
             return self.add(tuple(_parts(value, entry, before)))
         return 0

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`textDocument/codeAction` and `codeAction/resolve`: actions at a place, and for a whole system.
 
-- An edit is computed when the client resolves the action, if it supports that; nothing is stored in between, so an
-  action is resolved against the current text.
-- An action that creates or renames files is offered to clients that support it.
+- An edit is computed when the client resolves the action, if the client supports that. Nothing is stored in between, so
+  an action is resolved against the current text.
+- An action that creates or renames files is offered only to clients that support it.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def register(context: Context) -> None:
             if (candidate.title, candidate.kind, _identity(candidate)) == (
                 action.title,
                 action.kind,
-                data.get("mends"),
+                data.get("fixes"),
             ):
                 action.edit = workspace_edit(context, snapshot, candidate.make())
                 break
@@ -84,12 +84,12 @@ def _converted(
     converted = types.CodeAction(
         action.title,
         kind=action.kind,
-        diagnostics=shown.of(action.mends),
+        diagnostics=shown.of(action.diagnostic),
         is_preferred=action.preferred or None,
     )
     if _resolves(context):
         uri = context.session.convert.uri(path)
-        converted.data = {"uri": uri, "start": place.start, "end": place.end, "mends": _identity(action)}
+        converted.data = {"uri": uri, "start": place.start, "end": place.end, "fixes": _identity(action)}
     else:
         converted.edit = workspace_edit(context, snapshot, action.make())
     return converted
@@ -97,15 +97,16 @@ def _converted(
 
 def _identity(action: CodeAction) -> dict[str, Any] | None:
     """The key that distinguishes actions with equal titles: the diagnostic that they fix."""
-    mended = action.mends
-    if mended is None:
+    fixed = action.diagnostic
+    if fixed is None:
         return None
-    facts = facts_to_json(mended.facts) if mended.facts else None
-    return {"code": mended.code, "start": mended.span.start, "facts": facts}
+    facts = facts_to_json(fixed.facts) if fixed.facts else None
+    return {"code": fixed.code, "start": fixed.span.start, "facts": facts}
 
 
 class _ClientDiagnostics:
-    """The diagnostics that actions fix, in the client's form: those that it sends, others converted anew.
+    """The diagnostics that actions fix, in the protocol's types. A diagnostic that the client has sent is used as it
+    is; others are converted again.
 
     The client's data may be outdated or wrong. It is used only if a current diagnostic has the same code, place and
     facts.
@@ -142,7 +143,7 @@ def _resolves(context: Context) -> bool:
 
 
 def _can(context: Context, action: CodeAction) -> bool:
-    """Whether the client can create and rename files, if an action does so."""
+    """Whether the client supports the creation or renaming of files that an action needs."""
     workspace = context.client.capabilities.workspace
     edit = workspace.workspace_edit if workspace else None
     operations: Sequence[str] = (edit.resource_operations if edit and edit.document_changes else None) or ()
@@ -150,8 +151,8 @@ def _can(context: Context, action: CodeAction) -> bool:
 
 
 def _is_wanted(kind: str, only: Sequence[str] | None) -> bool:
-    """Whether actions of `kind` are requested: `quickfix` is part of `` and of itself. All fixes of a file are computed
-    only on request."""
+    """Whether actions of `kind` are requested. A request for `quickfix` includes `quickfix.x`; a request for the empty
+    kind includes all. Without `only`, every kind is requested except the one that fixes the whole file."""
     if not only:
         return kind != FIX_ALL
     return any(requested in ("", kind) or kind.startswith(f"{requested}.") for requested in only)

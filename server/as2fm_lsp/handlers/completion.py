@@ -65,8 +65,8 @@ def register(context: Context) -> None:
 
 
 _EMPTY_VALUE = re.compile(r"""=["']\$1\b""")
-"""The first placeholder of a snippet is an attribute's value without likely texts. If there are a few choices, the
-editor lists them itself."""
+"""Matches a snippet whose first placeholder is the value of an attribute, without a choice of texts. The editor lists
+the texts of a choice itself."""
 
 
 class _ItemWriter:

@@ -22,7 +22,6 @@ from roaml.comparison import read_comparison
 from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit
 from roaml.ide.expectation import in_configuration, in_property_file, is_written_in_file
 from roaml.ide.verifiable import Verifiable, verifiable
-from roaml.model.kinds import CONFIG_FILE
 from roaml.project.workspace import Snapshot
 from roaml.text import Span
 from roaml.verification.results import Result
@@ -65,7 +64,7 @@ def register(context: Context) -> None:
         return {
             "suggestions": [] if known is None else list(suggestions(known.result)),
             "current": [verdict.expectation.text for verdict in verdicts],
-            "file": os.path.basename(_file(context, snapshot, path, property_)),
+            "file": os.path.basename(_file(snapshot, path, property_)),
         }
 
     @context.feature(SET_EXPECTATION)
@@ -79,7 +78,7 @@ def register(context: Context) -> None:
             return _problem(f"there is no property `{name}`")
         if read_comparison(expected) is None:
             return _problem(f"an expectation compares with a number, such as >= 0.95, unlike `{expected}`")
-        file = _file(context, snapshot, path, property_)
+        file = _file(snapshot, path, property_)
         change = _change(snapshot, file, property_, expected)
         if not change:
             return _problem(f'cannot change {os.path.basename(file)}; add `{name} = "{expected}"` to `verify.expect`')
@@ -95,13 +94,11 @@ def actions(context: Context, snapshot: Snapshot, path: str, place: Span) -> Ite
             is_here = property_.path == path and property_.span.start <= place.start and place.end <= property_.span.end
             known = current.get(property_.name) if is_here else None
             if known is not None and known.result.has_no_expectation:
-                yield from _actions(context, snapshot, system, property_, known.result)
+                yield from _actions(snapshot, system, property_, known.result)
 
 
-def _actions(
-    context: Context, snapshot: Snapshot, system: str, property_: Verifiable, result: Result
-) -> Iterator[CodeAction]:
-    file = _file(context, snapshot, system, property_)
+def _actions(snapshot: Snapshot, system: str, property_: Verifiable, result: Result) -> Iterator[CodeAction]:
+    file = _file(snapshot, system, property_)
     creates = ("create",) if snapshot.analysis.source(file) is None else ()
     where = "" if file == property_.path else f" in {os.path.basename(file)}"
     for text in suggestions(result):
@@ -116,12 +113,11 @@ def _property(snapshot: Snapshot, system: str, name: str) -> Verifiable | None:
     return next((p for p in verifiable(snapshot.analysis, system) if p.name == name), None)
 
 
-def _file(context: Context, snapshot: Snapshot, system: str, property_: Verifiable) -> str:
+def _file(snapshot: Snapshot, system: str, property_: Verifiable) -> str:
     """The file in which the expectation of a property is set; it need not exist."""
     if is_written_in_file(snapshot.analysis, property_):
         return property_.path
-    origin = snapshot.checker.settings.origin
-    return origin or os.path.join(context.session.configured_folder(system), CONFIG_FILE)
+    return snapshot.configuration_of(system)
 
 
 def _change(snapshot: Snapshot, file: str, property_: Verifiable, expected: str) -> WorkspaceEdit:

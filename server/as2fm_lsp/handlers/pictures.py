@@ -80,7 +80,7 @@ def register(context: Context) -> None:
 
     @context.feature(FILE_METHOD)
     def picture_file(params: Any) -> dict[str, object] | None:
-        """The diagram as the text of an SVG file, in the direction and the theme that the client shows."""
+        """The text of an SVG file with the diagram, in the direction and the theme that the client shows."""
         shown = asked(params)
         if shown is None:
             return None

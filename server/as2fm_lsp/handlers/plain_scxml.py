@@ -48,8 +48,8 @@ def register(context: Context) -> None:
 
     @context.feature(METHOD)
     def plain_scxml(params: Any) -> PlainScxml:
-        """The plain SCXML of a machine. If the tree uses a plugin several times, that of the first node: the others
-        differ only in their ports."""
+        """The plain SCXML of a machine. If the tree uses a plugin several times, the result is that of the first node,
+        because the others differ only in their ports."""
         path = session.convert.path(document_uri(params))
         snapshot = session.moment().snapshot(path)
         analysis = snapshot.analysis

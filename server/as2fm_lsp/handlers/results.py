@@ -179,7 +179,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
 
 
 def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
-    """What the client can do with a result."""
+    """The commands that the client offers for a result."""
     client, unwanted, wanted = context.client, unwanted_trace(result), witness_trace(result)
     if client.set_expectation and result.has_no_expectation and result.answer is not None:
         yield types.Command("Set expectation", client.set_expectation, arguments=[uri, name])

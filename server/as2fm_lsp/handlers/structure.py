@@ -79,7 +79,7 @@ def _selection(file: RequestedDocument, spans: Sequence[Span]) -> types.Selectio
     selection: types.SelectionRange | None = None
     for span in reversed(spans):
         selection = types.SelectionRange(file.range(span), selection)
-    assert selection is not None, "the whole text is around every offset"
+    assert selection is not None, "the span of the whole text contains every offset"
     return selection
 
 

@@ -86,7 +86,7 @@ def register(context: Context) -> None:
 
 
 def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter) -> Iterator[types.CodeLens]:
-    """One for a system file on the disk."""
+    """The lens of a system file that translates it, if the file is on the disk."""
     file = snapshot.analysis.system_file(path)
     if file is not None and is_on_disk(path):
         command = types.Command(TITLE, COMMAND, arguments=[convert.uri(path)])
@@ -94,13 +94,13 @@ def lenses(snapshot: Snapshot, path: str, source: SourceFile, convert: Converter
 
 
 async def _write(context: Context, shown: Progress, path: str, target: str) -> tuple[Model, tuple[Diagnostic, ...]]:
-    """Translate the current state of a system into a file. Between the steps other messages are handled.
+    """Write the translation of a system, in its current state, to a file. Other messages are handled between the steps.
 
     Returns:
-        The model, and the properties that it does not contain.
+        The model, and a warning for each reason why a property is not part of it.
 
     Raises:
-        Interrupted: the client has cancelled it. The file is unchanged.
+        Interrupted: the client has cancelled the translation. The file is unchanged.
     """
     snapshot = context.session.moment().snapshot(path)
     await shown.step("checking")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm.verify`: verifies properties of a system. Those that can share traces do; each result is known, and told to
-the client, as soon as it is complete."""
+"""`as2fm.verify`: verifies properties of a system. Properties that can share traces are verified together. Each result
+is stored, and sent to the client, as soon as it is complete."""
 
 from __future__ import annotations
 
@@ -143,7 +143,8 @@ class _VerifyCommand:
     def compiled(
         self, target: VerificationTarget, names: Sequence[str], analysis: Analysis
     ) -> tuple[Verifier | None, dict[str, CompiledProperty]]:
-        """The properties that can be verified, compiled together; there is a row for each other one."""
+        """The properties that can be verified, compiled together. For each other property, a row with its error is
+        stored."""
         context, settings = self.context, self.settings
         known = {property_.name for property_ in target.properties}
         usable = []
@@ -182,7 +183,7 @@ class _VerifyCommand:
         return verifier, asked
 
     async def alone(self, verifier: Verifier, asked: CompiledProperty) -> Result:
-        """The result of a property by traces of its own."""
+        """The result of a property, from traces that it does not share."""
         name = asked.question.name
         await self.bar.step(name)
         began = time.monotonic()
@@ -207,7 +208,7 @@ class _VerifyCommand:
                 first, tally = open_[0]
                 self.bar.say(f"{done}, {first.question.name}: {_so_far(verifier, first, tally)}")
             else:
-                self.bar.say(f"{done}; looking at other schedulers")
+                self.bar.say(f"{done}; trying other schedulers")
 
         def keep(result: Result) -> None:
             if result.fault is not None:
@@ -227,7 +228,7 @@ class _VerifyCommand:
         return results
 
     def publish(self, result: Result, target: VerificationTarget, analysis: Analysis, texts: Texts) -> None:
-        """A result is complete."""
+        """Store a complete result, and send it to the client."""
         self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
         self.tell(result.name, verified_row(result))
         self.context.refresh.look()
@@ -235,12 +236,12 @@ class _VerifyCommand:
             self.context.client.show_message(types.MessageType.Info, self.text(result, target))
 
     def refuse(self, name: str, fault: FaultError, analysis: Analysis) -> None:
-        """A property cannot be decided."""
+        """Report that a property cannot be decided."""
         self.tell(name, {"property": name, "error": self.fault(fault, analysis)})
         self.say_wrong(f"{name}: {fault.message}")
 
     def reject(self, name: str, message: str) -> None:
-        """A question has no answer."""
+        """Report that a property is unknown or cannot be compiled."""
         self.tell(name, {"property": name, "error": {"message": message}})
         self.say_wrong(message)
 
@@ -250,14 +251,14 @@ class _VerifyCommand:
             self.context.client.send_partial_result(self.settings.partial_result_token, row)
 
     def text(self, result: Result, target: VerificationTarget) -> str:
-        """A result as a message; another message shows the waiting automata."""
+        """A result as a message. A separate message shows the waiting automata."""
         shown = "in a separate message"
         return one_as_text(result, partial(place_in_words, target), self.settings.stuck, shown)
 
     async def look(
         self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
-        """Whether the system gets stuck, by traces that are generated for it unless it was requested as a property."""
+        """Whether the system gets stuck. Traces are generated to find out, unless this was requested as a property."""
         target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None
@@ -301,7 +302,7 @@ class _VerifyCommand:
 
 
 def _so_far(verifier: Verifier, asked: CompiledProperty, tally: Tally) -> str:
-    """An estimate, while the work goes on."""
+    """The estimate of a property whose verification is not complete."""
     result = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
     return f"{short(result)}, {tally.traces:,} traces"
 

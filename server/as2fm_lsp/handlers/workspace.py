@@ -40,7 +40,7 @@ def register(context: Context) -> None:
 
 
 def use_folders(context: Context, otherwise: Iterable[str] = ()) -> None:
-    """The open folders of the client are the workspaces; `otherwise` are URIs to use if there are none."""
+    """Use the open folders of the client as workspaces, or the folders at the URIs `otherwise` if there are none."""
     session = context.session
     session.set_folders(session.convert.path(uri) for uri in context.client.folders or otherwise)
 

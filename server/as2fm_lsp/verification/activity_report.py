@@ -13,7 +13,7 @@ NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
 
 
 def remarks(answer: Answer) -> list[str]:
-    """For readers: one line for each remark."""
+    """The remarks of a result for users, one line each."""
     tally = answer.tally
     lines = []
     if answer.question.is_conditional and tally.traces:
@@ -24,7 +24,7 @@ def remarks(answer: Answer) -> list[str]:
     else:
         if tally.closed:
             lines.append(
-                f"its scope was not judged in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
+                f"its scope was not evaluated in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
             )
         if tally.idle:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
@@ -48,19 +48,19 @@ def open_at_end(tally: Tally) -> int:
 
 
 def warning(answer: Answer) -> str:
-    """Why the number says nothing about the property; "" if it does."""
+    """The reason why the number says nothing about the property; "" if it is meaningful."""
     tally = answer.tally
     if answer.question.is_conditional and tally.traces == 0 and tally.rejected:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
     if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
         return ""
     if tally.idle == 0:
-        return "the property is vacuous: its scope was not judged in any trace"
+        return "the property is vacuous: its scope was not evaluated in any trace"
     return "the property is vacuous: it was not triggered in any trace"
 
 
 def row(answer: Answer) -> dict[str, Any]:
-    """For JSON."""
+    """The same facts as a value for JSON."""
     tally, question = answer.tally, answer.question
     values: dict[str, Any] = {"open_at_end_of_time": open_at_end(tally)}
     if question.is_conditional:
@@ -73,5 +73,5 @@ def row(answer: Answer) -> dict[str, Any]:
 
 
 def _share(part: int, whole: int) -> str:
-    """`3 of 200 traces (1.5 %)`."""
+    """A number of traces as a share of all, such as `3 of 200 traces (1.5 %)`."""
     return f"all {whole:,} traces" if part == whole else f"{part:,} of {whole:,} traces ({100 * part / whole:.3g} %)"

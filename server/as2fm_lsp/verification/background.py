@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verification while the server stays responsive: traces run in separate processes, a thread waits for them."""
+"""Verification while the server stays responsive: traces run in separate processes, and a thread waits for them."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ async def answer_together(
     show: Callable[[Sequence[Tally]], None],
     keep: Callable[[Result], None],
 ) -> None:
-    """The results of properties that can share traces.
+    """Verify properties that can share traces.
 
     Args:
         checkpoint: see `answer`.
         show: called on the event loop with the intermediate results.
-        keep: called on the event loop with each result, in their order. If the work is not needed any more, called
-            with those for which enough traces were made; what other schedulers say of them is not known then.
+        keep: called on the event loop with each result, in the order of the properties. If the work is cancelled, it is
+            called with the properties that have enough traces; these results say nothing about other schedulers.
 
     Raises:
         Interrupted, WorkersLostError: see `answer`.
@@ -105,8 +105,8 @@ async def answer_together(
 
 
 async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callable[[], None]) -> T:
-    """Do some work in a thread. It gets a checkpoint that it must call regularly, so that it ends when it is not
-    needed."""
+    """Do some work in a thread. The work gets a function that it must call regularly: the function raises an exception
+    if the result is no longer needed."""
     abandoned = threading.Event()
 
     def checked() -> None:
@@ -121,6 +121,6 @@ async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callabl
 
 
 def _jobs() -> int:
-    """All processors but one, which is left for the editor."""
+    """The number of processes: all processors but one, which is left for the editor."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, count - 1)

@@ -26,9 +26,9 @@ def lines(name: str, exact: Exact, seconds: float) -> list[str]:
         shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
     if exact.proof == ALL:
-        shown.append(f"  proof: it holds in all {states}")
+        shown.append(f"  proof: its condition holds in all {states}")
     elif exact.proof == NONE:
-        shown.append(f"  proof: none of the {states} is what it asks for")
+        shown.append(f"  proof: its condition holds in none of the {states}")
     told = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
         for what, trace in (("fails", fails), ("holds", holds))
@@ -40,7 +40,7 @@ def lines(name: str, exact: Exact, seconds: float) -> list[str]:
 
 
 def row(exact: Exact) -> dict[str, Any]:
-    """For JSON."""
+    """The result as a value for JSON."""
     return {
         "least": _finite(exact.least),
         "greatest": _finite(exact.greatest),

@@ -24,8 +24,8 @@ from roaml.verification.verifier import judged_again
 
 @dataclass(frozen=True, slots=True)
 class KnownResult:
-    """A result, with the model and the texts for which it was computed. `options` are those of the call, as the client
-    sent them."""
+    """A result, with the model and the texts for which it was computed. `options` are the options of the call, as the
+    client sent them."""
 
     result: Result
     analysis: Analysis
@@ -35,11 +35,11 @@ class KnownResult:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedNow:
-    """What is expected of the properties of a system, besides the options of calls.
+    """The expected values of the properties of a system, except those in the options of calls.
 
     Attributes:
-        client_settings: as the client sent them.
-        beside: property -> the expectation in its file.
+        client_settings: the client's settings, as received.
+        beside: property -> the expectation in the file of the property.
         configured: property -> the expectation in the configuration.
     """
 
@@ -48,7 +48,7 @@ class ExpectedNow:
     configured: Mapping[str, Comparison]
 
     def judge(self, known: KnownResult) -> KnownResult:
-        """A result, compared with what is expected now."""
+        """A known result, compared with the expectations that are valid now."""
         name = known.result.name
         given = verification_settings(self.client_settings, known.options).expectations
         written = (self.beside.get(name), self.configured.get(name))
@@ -63,7 +63,7 @@ def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> Ex
 
 @dataclass(slots=True)
 class KnownResults:
-    """System -> property -> result. `changes` is the number of results that were added."""
+    """The known results: system -> property -> result. `changes` is the number of results that were added."""
 
     changes: int = 0
     _known: dict[str, dict[str, KnownResult]] = field(default_factory=dict)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and the
-nodes that they denote.
+"""The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and the nodes that they
+denote.
 
-Properties use these names, and texts do if several nodes have the same name. Each text that uses them explains them
-once.
+Properties use these names. Messages use them if several nodes have the same name. Each text that uses them explains
+them once.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def explained(text: str, model: Model, place_of: PlaceOf) -> str:
     """A line that explains the node names in a text; "" if there are none.
 
     Args:
-        place_of: file and line of an origin; that of a node's tick is the place of the node in the tree.
+        place_of: file and line of an origin. The origin of a node's tick is the place of the node in the tree.
     """
     mentioned = {int(number) for number in _MENTIONED.findall(text)}
     if not mentioned:

@@ -47,7 +47,7 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
 
 
 def _without_expectation(results: Sequence[Result]) -> list[str]:
-    """The results that are neither good nor bad, in one line."""
+    """A line with the names of the properties for which nothing is expected; empty if there are none."""
     names = [result.name for result in results if result.has_no_expectation]
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
@@ -162,8 +162,8 @@ def as_json(
     stuck: dict[str, Any] | None = None,
     tree: dict[str, Any] | None = None,
 ) -> str:
-    """For programs; `stuck` is the result of the check for stuck systems, `tree` what was measured of a tree without a
-    system."""
+    """All results for programs, as JSON. `stuck` is the result of the check for stuck systems; `tree` contains the
+    measurements of a tree without a system."""
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
@@ -217,7 +217,7 @@ def _verdict(result: Result) -> str:
 
 
 def warning(result: Result) -> str:
-    """Why the value is not, or may not be, the requested one; "" if it is."""
+    """The reason why the value is not, or may not be, the requested one; "" if it is."""
     parts = []
     if result.stuck is not None and not result.asks_stuck:
         parts.append(result.stuck.warning)
@@ -258,8 +258,8 @@ def _finite(value: float) -> float | str | None:
 
 
 def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Look | None = None) -> str:
-    """A test for each property; it fails if an expectation does not hold, and is an error if there is no result. One
-    more test fails if the system gets stuck and that is an error."""
+    """A JUnit report with a test for each property. A test fails if an expectation does not hold, and is an error if
+    there is no result. One more test fails if the system gets stuck and that is an error."""
     level = WARNING if look is None else look.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if look is not None:

@@ -67,7 +67,7 @@ class SavedState:
         return tally
 
     def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
-        """Store the state of a property; written from time to time, or at once with `now`.
+        """Store the state of a property. The file is written from time to time, or at once with `now`.
 
         Raises:
             OSError: the file cannot be written; it is unchanged.

@@ -13,7 +13,7 @@ from roaml.verification.schedulers import extreme_asked, interval_text
 
 
 def remark(question: Question, choices: Choices | None) -> str:
-    """One line for users; empty if the question is about uniform choices."""
+    """A line for users; empty if the question is about uniform choices."""
     if choices is None:
         return ""
     if choices.agreement:

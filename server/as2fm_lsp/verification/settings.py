@@ -2,11 +2,10 @@
 """Settings for the verification in an editor: `as2fm.verify`, and the options of one call.
 
     {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
-                "stuck": "warning"}}
+    "stuck": "warning"}}
 
 The options of a call have the same form, with `seed`, `silent` and `partialResultToken` in addition, and take
-precedence. An invalid value is
-reported, and the default is used.
+precedence. An invalid value is reported, and the default is used.
 """
 
 from __future__ import annotations
@@ -22,11 +21,13 @@ from roaml.verification.stuck import LEVELS, WARNING
 
 @dataclass(frozen=True, slots=True)
 class VerificationSettings:
-    """Attributes:
-    is_silent: whether the results are not shown as messages.
-    stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
-    problems: the values that are not valid, in sentences.
-    partial_result_token: the token with which the client asks for each result when it is complete.
+    """The settings of one call.
+
+    Attributes:
+        is_silent: whether the results are not shown as messages.
+        stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
+        problems: messages about invalid values, as sentences.
+        partial_result_token: the token with which the client requests each result as soon as it is complete.
     """
 
     options: Options

@@ -160,7 +160,8 @@ class _Echo:
 
 
 _CSV = csv.writer(_Echo())
-"""The dialect of CSV, with CR LF as line end: the writer quotes a cell that contains a character of the line end."""
+"""The dialect of CSV, with CR LF as line end, because the writer quotes cells that contain a character of the line
+end."""
 
 
 def csv_line(cells: Iterable[int | float | str]) -> str:

@@ -19,7 +19,7 @@ from roaml.views.turns import Turn, turns
 
 MAX_LEAVES = 10
 FEW = 30
-"""With fewer traces of an outcome, the intervals of influences, which assume many, hold only roughly."""
+"""If fewer traces than this have one of the outcomes, the intervals of influences are only approximate."""
 MAX_LINES = 40
 """The maximum number of lines of a story; those in between are folded."""
 
@@ -27,12 +27,12 @@ PlaceOf = Callable[[Location], str]
 
 
 def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> str:
-    """For users, without the probability of success, which is a result like that of any property."""
+    """The measurements of a tree for users, without the probability of success, which is reported like any property."""
     return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of))
 
 
 def assumptions(mocked: MockedTree) -> str:
-    """What was assumed of the tree, its host and the world."""
+    """What was assumed about the tree, its host and the world."""
     options = mocked.options
     leaves = len(mocked.leaves)
     known = [leaf for leaf in mocked.leaves if leaf.is_known]
@@ -63,10 +63,10 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
         mean = _interval(tally.mean, bounds) if bounds.half_width else f"{tally.mean:g} in all traces"
         yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
     if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
-        yield "  no leaf can be said to matter: all traces had the same outcome; make more traces with --max-traces"
+        yield "  the influence of the leaves is unknown: all traces had the same outcome; make more with --max-traces"
     if outcome.influences:
         rare = min(outcome.success.count, outcome.traces - outcome.success.count)
-        note = f" (only {rare} traces differ from the others: the intervals hold roughly)" if rare < FEW else ""
+        note = f" (only {rare} traces differ from the others: the intervals are approximate)" if rare < FEW else ""
         yield f"  change of the probability of success for each leaf, if that of its mock changes by 1{note}:"
         for influence in outcome.influences[:MAX_LEAVES]:
             node = influence.leaf.node
@@ -85,7 +85,7 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
 
 
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
-    """The answers of leaves that chance decided, in the order of the trace."""
+    """The status that each leaf returned where chance decided it, in the order of the trace."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
     told = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
     ticks = [step.number for step in story.steps if sent_by(step.action or "") == f"bt_{ROOT_NUMBER}_tick"]
@@ -111,7 +111,7 @@ def _is_chosen(turn: Turn) -> bool:
 
 
 def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
-    """For programs."""
+    """The measurements of a tree as a value for JSON."""
     return {
         "nodes": len(mocked.tree.nodes),
         "tick_rate": float(mocked.options.rate),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checking files, and making safe fixes."""
+"""Checks files, and applies safe fixes."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def fix(result: CheckResult) -> dict[str, bytes]:
     are left out.
     """
     sources = {path: result.source(path) for path in result.files}
-    mendable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
-    texts = fix_all(result.snapshot, mendable, safe_fix, careful=True)
+    fixable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))
+    texts = fix_all(result.snapshot, fixable, safe_fix, careful=True)
     return {path: sources[path].encode(text) for path, text in texts.items()}
 
 
@@ -97,7 +97,7 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:
-    """Whether a text that was not read from a file can be encoded: unpaired surrogates cannot."""
+    """Whether a text can be encoded. A text that was not read from a file may contain unpaired surrogates."""
     return _HALF.search(text) is None
 
 
@@ -122,7 +122,7 @@ def _workspace(
         if not any(is_below(path, folder) for folder in folders):
             roots.extend(settings.roots or (enclosing_root(path) or os.path.dirname(path),))
     interfaces = [enclosing_root(path) or os.path.dirname(path) for path in systems]
-    # A link stands for the file that it leads to.
+    # A file that is named by a link also uses the packages beside the target of the link.
     interfaces += [os.path.dirname(os.path.realpath(path)) for path in others if os.path.islink(path)]
     workspace = Workspace(dict.fromkeys(roots), settings, systems, packages=dict.fromkeys((*roots, *interfaces)))
     for path, text in texts.items():
@@ -131,9 +131,9 @@ def _workspace(
 
 
 def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) -> tuple[str, ...]:
-    """The files that are reported on, in this order: the configuration, and the named paths."""
+    """The files whose findings are in the result: the configuration, then the files of the named paths."""
     analysis, paths = snapshot.analysis, dict[str, None]()
-    if origin := snapshot.checker.settings.origin:  # errors in it affect all of them
+    if origin := snapshot.checker.settings.origin:  # errors in the configuration affect all files
         paths[origin] = None
     for path in named:
         if path not in kinds:

@@ -31,7 +31,7 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
 
     Raises:
         PathError: the file cannot be read.
-        JaniError: it is not a JANI model, or has errors.
+        JaniError: the file is not a JANI model, or has errors.
     """
     path = os.path.abspath(path)
     try:

@@ -18,7 +18,8 @@ from roaml.project.workspace import Snapshot, Workspace
 
 
 class SharedFileError(ValueError):
-    """Systems that are not migrated would break. `shared` are the files that they use and that would change."""
+    """Raised if systems that are not migrated would break. `shared` maps each file that would change to the systems
+    that use it and are not migrated."""
 
     def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
         path, systems = next(iter(shared.items()))
@@ -44,8 +45,9 @@ def migrate(
         paths: system files, or folders that are searched for them.
         ros_paths: folders with ROS interface packages, in addition to the configured ones.
         settings: used instead of the configuration found around the first path.
-        with_related: whether to also migrate the systems that would break because they share a file, and so on. They
-            are searched for in the repository around each system, or in the folder around its files.
+        with_related: whether to also migrate the systems that would break because they share a file with a migrated
+            system, directly or through other systems. They are searched for in the repository around each system, or in
+            the folder around its files.
 
     Raises:
         PathError: a path cannot be read, or is neither a folder nor a system file; or a file is not valid text.
@@ -54,7 +56,7 @@ def migrate(
     paths = [os.path.abspath(path) for path in paths]
     if settings is None:
         settings, _ = find_settings(paths[0] if paths else os.getcwd())
-    # Files that are not reported are migrated as well.
+    # Findings that the user has switched off are needed for the migration as well.
     settings = replace(settings, select=frozenset(), ignore=frozenset())
     result = check(paths, ros_paths, settings)
     systems = result.snapshot.analysis.system_paths
@@ -80,8 +82,8 @@ def migrate(
 
 
 def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
-    """For each file that changes, the systems that it breaks, other than those being migrated: the file is renamed, or
-    causes errors."""
+    """For each file whose change breaks systems that are not migrated, these systems. A system breaks if a file that it
+    uses is renamed, or if the new text of the file causes errors in it."""
     memberships = around.analysis.memberships
     shared: dict[str, tuple[str, ...]] = {}
     for migration in migrations:
@@ -95,7 +97,8 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
 
 
 def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
-    """The files in the configured roots, and in the repositories of some systems or otherwise around their files."""
+    """A snapshot of the files in the configured roots and in the repositories of `systems`. For a system outside of a
+    repository, the folder that contains all its files is used instead."""
     roots = dict.fromkeys(settings.roots)
     for system in systems:
         folders = {os.path.dirname(path) for path in analysis.files_of(system)}

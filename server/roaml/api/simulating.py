@@ -27,7 +27,7 @@ def session(
         subject: the system or model to run.
         property: the name of the property that is evaluated on the run; the first one if not given, and `stuck` if the
             model has none.
-        seed, trace: the run is the trace of this number that `verify` makes with this seed.
+        seed, trace: the run is the trace with the number `trace` that `verify` generates with this seed.
         saved: continue this session; its property, seed and trace override the others.
 
     Raises:

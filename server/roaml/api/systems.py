@@ -28,7 +28,7 @@ from roaml.to_jani import translate
 
 
 class ModelError(ValueError):
-    """A system has errors and cannot be translated. `result` contains only these errors."""
+    """Raised if a system has errors and cannot be translated. `result` contains only these errors."""
 
     def __init__(self, result: CheckResult) -> None:
         first = result.diagnostics[0]
@@ -113,7 +113,7 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None, *, ha
 
     Args:
         properties: the names of the properties to include; `None` for all.
-        has_activity: whether observers also say whether their property was triggered.
+        has_activity: whether observers also record whether their property was triggered.
 
     Raises:
         PropertyError: the system has no property with one of the names.

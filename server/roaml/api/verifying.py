@@ -96,8 +96,8 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> ModelCheck
     """A model, compiled for some of its properties, to generate traces step by step.
 
     Args:
-        properties: their names; all if not given. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
-            which every translated system can be asked.
+        properties: their names; all if not given. Every translated system also has the property `stuck`: that a trace
+            gets stuck (`roaml.smc.end.End.STUCK`).
 
     Raises:
         PropertyError: a property does not exist.
@@ -146,13 +146,13 @@ def verify(
 
     Args:
         subject: a system, a JANI model, or the result of `target`.
-        properties: their names; all if not given. `stuck` asks whether traces get stuck.
+        properties: their names; all if not given. Every system also has the property `stuck`: that a trace gets stuck.
         options: confidence, width of the interval, seed and limits.
-        jobs: the number of processes; has no influence on the results.
-        executor: where to run batches of traces instead.
+        jobs: the number of processes. It has no influence on the results.
+        executor: an executor that runs the batches of traces, instead of `jobs` new processes.
         expectations: such as `alarm >= 0.95`; each adds a verdict to the result of its property.
-        only_uniform: whether only uniform choices are considered. Otherwise it is also examined whether other
-            schedulers give other values, and verdicts say so.
+        only_uniform: whether only uniform choices are considered. Otherwise, it is also examined whether other
+            schedulers lead to other values, and the verdicts contain the result.
 
     Raises:
         PropertyError: a property does not exist.

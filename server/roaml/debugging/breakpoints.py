@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Breakpoints: where a run is to stop, and which steps reach them.
+"""Breakpoints: where a run stops, and which steps reach them.
 
-A breakpoint on a statement, a handler or a node stops before the step that executes it. Everything that is about the
-effect of a step stops after the step: a state is entered, a variable has changed, a property is decided.
+A breakpoint on a statement, a handler or a node stops before the step that executes it. A breakpoint on the effect of a
+step stops after the step: a state is entered, a variable has changed, or a property is decided.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Line(NamedTuple):
 
 
 class ExceptionFilter(enum.Enum):
-    """Something that may happen anywhere and stops the run."""
+    """An event that may happen anywhere in a model and at which the run stops."""
 
     VIOLATED = "violated"
     SATISFIED = "satisfied"
@@ -44,7 +44,8 @@ class ExceptionFilter(enum.Enum):
 
 
 class WatchedVariable(NamedTuple):
-    """A variable of an instance, or of the model (`instance` is -1); a struct contains several of the network."""
+    """A variable of an instance, or of the model (`instance` is -1). A struct consists of several variables of the
+    network."""
 
     instance: int
     name: str
@@ -52,14 +53,16 @@ class WatchedVariable(NamedTuple):
 
 @dataclass(eq=False, slots=True)
 class Breakpoint:
-    """
+    """A breakpoint of any kind.
+
     Attributes:
         number: identifies the breakpoint; 0 for a filter.
-        name: what it is about, for messages.
-        condition: stops only if it is true in the state before the step, or after it if the breakpoint stops there.
-        required_hits: whether the run stops at the n-th hit.
-        message: is logged instead of stopping; expressions are in braces.
-        hits: how often it was reached with its condition met.
+        name: its subject, for messages.
+        condition: the run stops only if this is true: in the state before the step, or after it if the breakpoint stops
+            there.
+        required_hits: a function of the number of hits: whether the run stops at this hit.
+        message: a text that is logged instead of stopping; expressions are in braces.
+        hits: how often the breakpoint was reached with its condition met.
     """
 
     number: int = 0
@@ -70,7 +73,7 @@ class Breakpoint:
     hits: int = 0
 
     def is_met(self, scope: Scope) -> bool:
-        """Whether the condition is true; a condition without a value is not."""
+        """Whether the condition is true. A condition that has no value is not met."""
         if self.condition is None:
             return True
         try:
@@ -79,7 +82,7 @@ class Breakpoint:
             return False
 
     def stops(self) -> bool:
-        """Count a hit; returns whether the run stops at it, or its message is logged."""
+        """Count a hit; return whether the run stops at it, or its message is logged."""
         self.hits += 1
         return self.required_hits is None or self.required_hits(self.hits)
 
@@ -87,7 +90,8 @@ class Breakpoint:
 def breakpoint_of(
     number: int, name: str, condition_: str = "", hit_condition: str = "", message: str = ""
 ) -> Breakpoint:
-    """
+    """A breakpoint from the texts of the client.
+
     Raises:
         WatchError: the condition, the hit condition or the message cannot be read.
     """
@@ -120,7 +124,7 @@ _BRACES = re.compile(r"\{([^{}]*)\}")
 
 
 def logged(message: str, scope: Scope) -> str:
-    """The message of a log point with the values of its expressions."""
+    """The message of a log point, with its expressions replaced by their values."""
 
     def value(match: re.Match[str]) -> str:
         try:
@@ -133,7 +137,7 @@ def logged(message: str, scope: Scope) -> str:
 
 @dataclass(slots=True)
 class Breakpoints:
-    """What is set, by the kind of place."""
+    """The breakpoints that are set, by the kind of their place."""
 
     lines: dict[str, list[tuple[int, Breakpoint]]] = field(default_factory=dict)
     names: list[tuple[str, Breakpoint]] = field(default_factory=list)
@@ -141,7 +145,7 @@ class Breakpoints:
     filters: dict[ExceptionFilter, Breakpoint] = field(default_factory=dict)
 
     def reset(self) -> None:
-        """Begin to count hits again."""
+        """Set all counts of hits to zero."""
         for breakpoint_ in self.all():
             breakpoint_.hits = 0
 
@@ -204,7 +208,7 @@ class BreakpointPlaces:
         return (Line(origin.path, line) for line in range(first, last + 1))
 
     def of_part(self, part: AutomatonStep) -> frozenset[Line]:
-        """The lines that a part of a step executes; none if it only discards an event."""
+        """The lines that a part of a step executes; empty if it only discards an event."""
         key = (id(part.edge), id(part.destination))
         if key not in self._parts:
             origins = {part.edge.origin, part.destination.origin} - self._state_origins

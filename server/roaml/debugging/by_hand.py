@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What happens by hand: a message is published, a service is called, a variable or a blackboard entry is set."""
+"""Changes of a run by hand: a message is published, a service is called, or a variable or a blackboard entry is set."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ class Sendable:
     """An event that can be sent by hand.
 
     Attributes:
-        name: the topic, service or action, otherwise the event.
+        name: the topic, service or action; for a plain event, its name.
         text: a description such as "a message on the topic `/level`".
-        template: its fields with the values that they have if they are omitted.
-        types: the types of its fields.
-        is_free: whether the last event of this name has been received, so that another one can be sent.
+        template: the fields with the values that they have if they are omitted.
+        types: the types of the fields.
+        is_free: whether the previous event of this name has been received, so that another one can be sent.
     """
 
     event: str
@@ -50,7 +50,7 @@ class Sendable:
 
 def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
     """The events that can be sent by hand, ordered by name: messages, requests, goals, and plain events. Events of the
-    tree, of timers, of the clock and of the blackboard cannot."""
+    tree, of timers, of the clock and of the blackboard cannot be sent."""
     automata = session.automata
     events = {sent_by(action or "") for action in session.actions} - {""}
     forms = []
@@ -74,15 +74,15 @@ def _is_internal(event: str) -> bool:
 
 
 def sending(session: Session, sources: Sources, name: str, fields: Value) -> Intervention:
-    """Sending an event.
+    """The change of the state that sends an event.
 
     Args:
-        name: the event, or the only event of this topic, service or action that can be sent.
+        name: the event; or the topic, service or action, if only one of its events can be sent.
         fields: an object; a field that is omitted is 0, false or empty.
 
     Raises:
-        WatchError: there is no such event, or several; the last one has not been received; a field is not there or
-            does not have its type.
+        WatchError: there is no such event, or there are several; the previous event has not been received; a field does
+            not exist or does not have its type.
     """
     if not isinstance(fields, dict):
         raise WatchError(f"the fields must be an object such as {{data: 1}}, not {shown(fields)}")
@@ -102,7 +102,7 @@ def sending(session: Session, sources: Sources, name: str, fields: Value) -> Int
 
 
 def setting(session: Session, sources: Sources, variable: WatchedVariable, value: Value) -> Intervention:
-    """Setting a variable or a blackboard entry.
+    """The change of the state that sets a variable or a blackboard entry.
 
     Raises:
         WatchError: the value does not have the type of the variable.
@@ -149,7 +149,7 @@ def _check_members(fields: Mapping[str, Value], known: Mapping[str, Value], path
 
 
 def _parameters(sources: Sources, event: str) -> Mapping[str, Type]:
-    """The parameters of an event by their names in the interface."""
+    """The types of the parameters of an event, by their names in the interface."""
     types = sources.declared_parameters.get(event, {})
     return {name.removeprefix(FIELD_PREFIX): type_ for name, type_ in types.items()}
 
@@ -174,7 +174,7 @@ def _stored(session: Session, instance: int) -> dict[str, Plain]:
 
 
 class _Cells:
-    """The variables of an instance, and the new values of those that are changed."""
+    """The variables of an instance, with the new values of those that are changed."""
 
     def __init__(self, stored: dict[str, Plain]) -> None:
         self._stored = stored
@@ -187,13 +187,13 @@ class _Cells:
         return ((RecordedVariable(instance, name), value) for name, value in self._changed.items())
 
     def set(self, name: str, type_: Type | None, value: Value | None, index: tuple[int, ...], path: str) -> None:
-        """Set a variable or an element of it; without a value it is 0, false or empty.
+        """Set a variable, or an element of it. Without a value, it becomes 0, false or empty.
 
         Args:
-            path: the variable in messages.
+            path: the name of the variable that messages show.
 
         Raises:
-            WatchError: the value does not fit.
+            WatchError: the value does not have the type of the variable, or is too large for it.
         """
         if isinstance(type_, Struct):
             members: dict[str, Value] = {} if value is None else _expect(value, dict, path, "an object")

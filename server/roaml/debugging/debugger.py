@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that is moved to breakpoints, forwards and backwards.
 
-A continued run is moved in small portions (`Debugger.advance`), so that a caller can interrupt it. Both directions stop
-at the same positions: a breakpoint at which a run stops forwards also stops it backwards, in the same state.
+A movement is made in small portions (`Debugger.advance`), so that a caller can interrupt it. Both directions stop at
+the same positions: a breakpoint at which a run stops forwards also stops it backwards, in the same state.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceStep
 
 MAX_STEPS = 200_000
-"""The maximum number of steps of one movement; then the run stops, and can be continued."""
+"""The maximum number of steps of one movement. After that, the run stops and can be continued."""
 PORTION_S = 0.02
-"""The time after which a movement lets its caller look for requests."""
+"""The time in s after which a movement returns to its caller, which then looks for requests."""
 
 
 class Unit(enum.Enum):
@@ -43,7 +43,7 @@ class Unit(enum.Enum):
 
 
 class StopReason(enum.Enum):
-    """Why a run has stopped, in DAP's words where it has some."""
+    """Why a run has stopped, in DAP's words if it has one for the reason."""
 
     ENTRY = "entry"
     STEP = "step"
@@ -58,12 +58,13 @@ class StopReason(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """
+    """A stop of a run.
+
     Attributes:
-        thread: the number of the thread that does the next step, or that has reached the breakpoint.
-        text: what has happened, if the reason alone does not say it.
+        thread: the number of the thread that takes the next step, or that has reached the breakpoint.
+        text: a description of what has happened, if the reason alone is not enough.
         breakpoints: the numbers of the breakpoints that were reached.
-        filter: what has happened, if the reason is an exception.
+        filter: the name of the exception filter, if the reason is an exception.
     """
 
     reason: StopReason
@@ -92,7 +93,7 @@ class Debugger:
         log: receives the messages of log points.
 
     Attributes:
-        fault: why the next step cannot be taken: the model executes an undefined operation.
+        fault: the reason why the next step cannot be taken: the model executes an undefined operation.
     """
 
     def __init__(self, session: Session, sources: Sources, verdicts: Verdicts, log: Log) -> None:
@@ -125,7 +126,7 @@ class Debugger:
         return {thread.instance: thread.number for thread in self.threads if thread.instance >= 0}
 
     def breakpoints_changed(self) -> None:
-        """To be called after `breakpoints` has changed."""
+        """Update the debugger after a change of `breakpoints`. The caller must call this."""
         self._matcher = None
 
     # ------------------------------------------------------------ the state
@@ -163,7 +164,7 @@ class Debugger:
         return next((self.stacks.stack(each) for each in self.threads if each.number == thread), [])
 
     def scope(self, instance: int) -> Scope:
-        """The names of expressions for an instance."""
+        """The values of names in expressions, as an instance sees them."""
         return self.values.names(Frame(0, "", None, instance, 0, "statement"))
 
     @property
@@ -187,7 +188,7 @@ class Debugger:
         return self._stop(StopReason.PAUSE)
 
     def _settle(self) -> None:
-        """Go to where the movement is."""
+        """Move the session to the position of the movement."""
         movement, self._movement = self._movement, None
         if movement is not None and not movement.forwards:
             self.session.jump(movement.position)
@@ -237,7 +238,7 @@ class Debugger:
         return self._stop(StopReason.STEP) if self._is_far_enough(movement.unit, step) else None
 
     def _backwards(self, movement: _Movement) -> Stop | None:
-        """Look at the step before `movement.position`; the session itself only moves where it may stop."""
+        """Examine the step before `movement.position`. The session itself only moves to positions where it may stop."""
         if movement.position == 0:
             self.session.jump(0)
             return self._stop(StopReason.ENTRY, "this is the start of the run")
@@ -269,7 +270,7 @@ class Debugger:
                 return False
 
     def go_to(self, position: int) -> Stop:
-        """Go to a position; takes new steps if the run is shorter."""
+        """Go to a position, and take new steps if the run is shorter."""
         self._remember()
         try:
             self.session.jump(position)
@@ -279,7 +280,7 @@ class Debugger:
         return self._stop(StopReason.GOTO)
 
     def choose(self, choice: Choice, outcome: Outcome | None) -> Stop:
-        """Take a step by hand; other steps that followed here are discarded."""
+        """Take a step by hand, and discard the steps that followed here before."""
         self._remember()
         position = self.session.position
         self.session.step(choice, outcome)
@@ -290,7 +291,7 @@ class Debugger:
         return self._stop_at(after) if after else self._stop(StopReason.STEP)
 
     def intervene(self, change: Intervention) -> Stop:
-        """Change the state by hand; other steps that followed here are discarded."""
+        """Change the state by hand, and discard the steps that followed here before."""
         self._remember()
         position = self.session.position
         self.session.intervene(change)
@@ -300,7 +301,8 @@ class Debugger:
         return self._stop(StopReason.STEP)
 
     def restart_frame(self, frame: Frame) -> Stop:
-        """Go back to where a frame began: a handler received its event, a state was entered, a node was ticked."""
+        """Go back to the position where a frame began: where a handler received its event, a state was entered, or a
+        node was ticked."""
         steps = self.session.steps
         position = self.session.position
         tick = f"bt_{frame.node}_tick"
@@ -351,7 +353,7 @@ class Debugger:
         return self._matcher
 
     def _reached(self, hits: Iterable[tuple[Breakpoint, int]]) -> list[tuple[Breakpoint, int]]:
-        """The breakpoints that stop the run in the current state; messages of log points are logged."""
+        """The breakpoints that stop the run in the current state. The messages of log points are logged."""
         reached = []
         for breakpoint_, instance in dict.fromkeys(hits):
             needs_scope = breakpoint_.condition is not None or breakpoint_.message
@@ -427,7 +429,8 @@ class Debugger:
         return self._stop(StopReason.ENTRY)
 
     def _thread_at(self, instance: int) -> int:
-        """The thread of an instance, otherwise that of the first one that takes part in the next step."""
+        """The thread of an instance; if there is none, the thread of the first instance that takes part in the next
+        step."""
         upcoming = self.upcoming()
         actors = [] if upcoming is None else [part.instance for part in self.session.actors(upcoming)]
         for actor in (instance, *actors):

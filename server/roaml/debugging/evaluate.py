@@ -49,10 +49,11 @@ def parsed(text: str) -> Expr:
 
 
 def evaluate(expr: Expr, scope: Scope) -> Value:
-    """
+    """The value of an expression.
+
     Raises:
-        WatchError: the expression has no value: an unknown name, a wrong type, a division by zero, an index
-            outside of its array.
+        WatchError: the expression has no value, because of an unknown name, a wrong type, a division by zero, or an
+            index outside of its array.
     """
     try:
         return _value(expr, scope)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Threads and stacks: where each machine and the tree are, and what they execute next.
 
-A thread is a state machine, or the tree with all its nodes. A stack begins with the statement that is executed next.
-The frames of a machine are the statement, its handler and its state; the frames of the tree are the nodes that are
-being ticked, the innermost first.
+A thread is a state machine, or the tree with all its nodes. The innermost frame of a stack is the statement that is
+executed next. The frames of a machine are the statement, its handler and its state; the frames of the tree are the
+nodes that are being ticked.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ class DebugThread:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """
+    """A frame of a stack.
+
     Attributes:
-        origin: the statement, handler, state or node.
+        origin: the place of the statement, handler, state or node.
         instance: the automaton whose variables the frame shows; -1 if it has none.
         node: the number of the node of the tree; 0 for a machine.
         role: `statement`, `handler`, `state` or `node`.
@@ -52,7 +53,7 @@ class Frame:
 
 
 def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
-    """The threads of a system, in the order of its machines, the tree first."""
+    """The threads of a system: the tree, then the machines in their order."""
     found = [DebugThread(TREE_THREAD, "tree", -1)] if sources.nodes else []
     number = FIRST_MACHINE_THREAD
     for instance, automaton in enumerate(session.automata_of_model):
@@ -141,7 +142,7 @@ class Stacks:
             number = node.parent
 
     def _active_node(self, statuses: Mapping[int, NodeState]) -> int:
-        """The node that executes the next step, otherwise the innermost one that is being ticked, or the root."""
+        """The node that executes the next step; if none does, the innermost node that is being ticked, or the root."""
         for part in self._parts.values():
             number = node_of(part.automaton)
             if number in self._sources.nodes:

@@ -25,8 +25,8 @@ class ScopeEntry:
 
     Attributes:
         type: the declared type, for readers.
-        expression: evaluates to the value; "" if no expression does.
-        variable: what a data breakpoint on it watches; `None` if it cannot have one.
+        expression: an expression with this value; "" if there is none.
+        variable: the variable that a data breakpoint on the entry watches; `None` if it cannot have one.
     """
 
     name: str
@@ -38,7 +38,7 @@ class ScopeEntry:
 
 @dataclass(frozen=True, slots=True)
 class ScopeEntries:
-    """A scope of a frame; `hint` is its kind in DAP's words."""
+    """A scope of a frame. `hint` is its kind, in DAP's words."""
 
     name: str
     entries: tuple[ScopeEntry, ...]
@@ -70,7 +70,7 @@ class Values:
     # ------------------------------------------------------------ scopes
 
     def scopes(self, frame: Frame) -> list[ScopeEntries]:
-        """The scopes of a frame that contain something."""
+        """The scopes of a frame that are not empty."""
         found = []
         if frame.instance >= 0:
             found.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
@@ -170,7 +170,7 @@ class Values:
         return _event_variables(event, self._parameters(event))
 
     def _parameters(self, event: str) -> dict[str, Value]:
-        """The parameters with which an event was sent last, as structs."""
+        """The parameters with which an event was last sent, as structs."""
         stored = self._stored.get(-1, {})
         types = self._sources.event_parameters.get(event, {})
         values: dict[str, Value] = {}
@@ -187,7 +187,8 @@ class Values:
     # ------------------------------------------------------------ expressions
 
     def names(self, frame: Frame | None) -> Scope:
-        """The value of each name that an expression can use: first those of the frame, then those of the system."""
+        """The values of the names that an expression can use. Names of the frame take precedence over those of the
+        system."""
         known: dict[str, Value] = {status: status for status in STATUS_NAMES.values()}
         for entry in self._time():
             known[entry.name] = entry.value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the parts of a run are written: machines, states, nodes of the tree, properties."""
+"""Places in the sources of a run: machines, states, nodes of the tree and properties."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Sources:
     """The sources of a model.
 
     Attributes:
-        analysis: the models behind a system; `None` for a JANI file.
+        analysis: the models of the system; `None` for a JANI file.
     """
 
     target: VerificationTarget
@@ -83,7 +83,8 @@ class Sources:
 
     @cached_property
     def declared_parameters(self) -> Mapping[str, Mapping[str, Type]]:
-        """The parameters of each event, with the types of the ROS definitions where these declare them."""
+        """The parameters of each event, with their types. Types are those of the ROS definitions, if these declare
+        them."""
         system = None if self.analysis is None else self.analysis.system(self.target.path)
         if self.analysis is None or system is None:
             return {}

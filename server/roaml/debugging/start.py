@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The run that is debugged: by seed and trace, saved, or the n-th trace that speaks against or for a property."""
+"""The run that is debugged: a trace given by its seed and number, a saved run, or the n-th trace with a verdict on a
+property."""
 
 from __future__ import annotations
 
@@ -27,13 +28,13 @@ class StartError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Which run is debugged.
+    """The run that is debugged.
 
     Attributes:
         property: the name of the property; "" for the first one.
-        nth: the number, from 1, of the trace among those with `verdict`; 0 for the trace of number `trace`.
-        verdict: `failed` for traces that speak against the property, `passed` for those in favour.
-        saved: the session to continue; it overrides the others.
+        nth: the number, from 1, of the trace among those with `verdict`; 0 for the trace with the number `trace`.
+        verdict: `failed` for traces that contradict the property, `passed` for traces that satisfy it.
+        saved: the session to continue; it overrides the other attributes.
     """
 
     property: str = ""
@@ -48,7 +49,7 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
     """A debugger at the start of a run, or at the position of the saved session.
 
     Raises:
-        StartError: there is no such trace, or `is_cancelled` was true while it was searched for.
+        StartError: there is no such trace, or `is_cancelled` was true during the search for it.
         PropertyError: the model has no such property.
         FaultError: the model cannot be run.
         RunError: the saved decisions are not possible in the model.

@@ -30,15 +30,15 @@ def typed_value(name: str, type_: Type | None, stored: Mapping[str, Plain]) -> V
 
 
 def untyped_values(stored: Mapping[str, Plain]) -> dict[str, Value]:
-    """The values of variables without declared types; arrays end at their length."""
+    """The values of variables without declared types. Arrays are cut to their length."""
     return {
         name: value for name in stored if not is_length(name) and (value := _built(name, None, stored, ())) is not None
     }
 
 
 def nested(values: Mapping[str, Value]) -> dict[str, Value]:
-    """Values of leaves, as structs: `{"pose__x": 1}` is `{"pose": {"x": 1}}`. Members of ROS messages do not contain
-    the separator themselves."""
+    """Values of leaves, as structs: `{"pose__x": 1}` becomes `{"pose": {"x": 1}}`. Members of ROS messages do not
+    contain the separator themselves."""
     result: dict[str, Value] = {}
     for name, value in values.items():
         *path, last = name.split(SEPARATOR)
@@ -73,7 +73,7 @@ def _built(name: str, type_: Type | None, stored: Mapping[str, Plain], index: tu
 
 
 def _cut(name: str, value: list[Plain], stored: Mapping[str, Plain], index: tuple[int, ...]) -> list[Value]:
-    """An array without declared type, up to its length."""
+    """An array without declared type, cut to its length."""
     length = _length(name, stored, index)
     elements: list[Value] = []
     for number, element in enumerate(value[:length]):
@@ -112,7 +112,7 @@ def _text(characters: list[Plain]) -> str:
 
 
 MAX_SHOWN = 120
-"""The maximum number of characters of a shown struct or array."""
+"""The maximum number of characters of a displayed struct or array."""
 
 
 def shown(value: Value) -> str:

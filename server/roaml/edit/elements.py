@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Edits that add, rename and remove elements.
 
-New elements get separate lines, with the indentation of their surroundings. Their lines are given with four spaces for
-each level of nesting, which are replaced by the file's own indentation.
+A new element begins on a line of its own, with the indentation of its surroundings. Callers pass its lines with four
+spaces for each level of nesting; the edit contains the indentation of the file instead.
 
-`after`, `first_in`, `last_in` and `removal` describe an edit, which is computed when a fix is applied.
+`after`, `first_in`, `last_in` and `removal` return a function that computes the edit, which is called when a fix is
+applied.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ _LEVEL = "    "
 
 
 def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]]:
-    """A function that returns what computes the edit."""
+    """`function` with its computation postponed: the result returns a function without parameters, which computes the
+    edit."""
 
     @wraps(function)
     def plan(*args: P.args, **kwargs: P.kwargs) -> Callable[[], TextEdit]:
@@ -41,7 +43,8 @@ def indent_of(text: str, element: Element) -> str:
 
 @lru_cache(maxsize=16)
 def level_of(document: Document) -> str:
-    """The white space of one level, taken from the first nested element."""
+    """The indentation of one level of nesting. The first element on a line of its own shows it, relative to its
+    parent."""
     text = document.text
     for parent in document.root.walk() if document.root else ():
         for child in parent.elements:
@@ -77,7 +80,7 @@ def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
 def remove(
     document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
 ) -> Fix:
-    """Remove an element."""
+    """A fix that removes an element."""
     plan = (removal(document.text, element.span),)
     return Fix(title or f"Remove this `<{element.name}>`", plan, preferred or safe, safe)
 
@@ -108,6 +111,7 @@ def _inside(document: Document, parent: Element) -> str:
 
 
 def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
+    """The lines with `indent` before each and with the document's own indentation for their levels of nesting."""
     level = level_of(document)
     new = []
     for line in lines:
@@ -118,7 +122,7 @@ def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
 
 @_lazy
 def removal(text: str, span: Span) -> TextEdit:
-    """An edit that removes the text at `span`, with the blanks before it and the line break before these."""
+    """An edit that removes the text at `span`, the blanks before it, and the line break before these blanks."""
     start = span.start
     while start > 0 and text[start - 1] in " \t":
         start -= 1
@@ -128,13 +132,14 @@ def removal(text: str, span: Span) -> TextEdit:
 
 
 def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
-    """Change the name of an element in its start tag and its end tag."""
+    """A fix that changes the name of an element in its start tag and its end tag."""
     spans: list[Span] = [element.name_span, *([element.close_name_span] if element.close_name_span else [])]
     return Fix(f"Change to `<{name}>`", tuple(TextEdit(span, name) for span in spans), preferred)
 
 
 def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[Edit, ...]:
-    """Add a `<bt_halt>` that leads to the initial state to each of some states that handle ticks but not halts."""
+    """Edits that add a `<bt_halt>` with the initial state as its target to each of `states` that handles ticks but not
+    halts."""
     initial = root.get("initial")
     edits: list[Edit] = []
     for state in states:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The numbers that the compiled modules and their callers share; see `search`, which has the same ones as C constants.
-A test compares them."""
+"""The numbers that the compiled modules and their callers share. `search` defines the same numbers as C constants; a
+test compares them."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 
 - Plain Python; Cython compiles it with the types in `elimination.pxd`.
 - The equations of one policy are solved by state elimination. Grassmann, Taksar and Heyman (1985) compute the sum of a
-  row without subtraction; hence no digit is lost, however rarely the process ends.
-- The bounds are proved, they do not rely on the accuracy of the elimination. Let `g` be at least one more than its
+  row without subtraction, so no digit is lost, however improbable the end of the process is.
+- The bounds are proved; they do not rely on the accuracy of the elimination. Let `g` be at least one more than its
   mean after any choice (an upper bound of the number of steps). If one step changes the values `x` by at most `r`,
   then `x - r g` does not decrease and `x + r g` does not increase; hence they enclose the solution.
 """
@@ -18,19 +18,19 @@ from roaml.explicit.memory import flat
 MAXIMUM, MINIMUM = 0, 1
 INFINITE = float("inf")
 MAX_ROUNDS = 200
-"""The maximum number of policies; mostly there are fewer than ten."""
+"""The maximum number of policies; in most cases there are fewer than ten."""
 MAX_STEPS = 1e12
-"""The maximum mean number of steps; rounding would spoil the proof beyond it."""
+"""The maximum mean number of steps; beyond it, rounding errors would invalidate the proof."""
 IMPROVEMENT = 1e-12
-"""A choice replaces another only if it is better by this share: differences below are due to rounding."""
+"""The relative improvement that a choice must bring to replace another one. Smaller ones are due to rounding."""
 ROUNDING = 4e-16
-"""The relative error of an addition and a multiplication, twice."""
+"""Twice the relative rounding error of an addition and a multiplication."""
 
 
 class SmallProcess:
     """States with choices, each of which has an immediate value and leads to states or to the end.
 
-    The choice that is added last is described by the numbers at the index `choices`, and by `add_entry`.
+    A choice is built by setting the numbers at the index `choices`, and by calls of `add_entry` and `end_choice`.
 
     Args:
         size: the number of states.
@@ -39,8 +39,8 @@ class SmallProcess:
 
     Attributes:
         choices: the number of choices that are complete.
-        leaves: for each choice the probability of the end.
-        gain: for each choice the immediate value.
+        leaves: the probability of the end, for each choice.
+        gain: the immediate value of each choice.
         values: the solution, after `solve`.
     """
 
@@ -49,7 +49,8 @@ class SmallProcess:
         self.choices = 0
         self.entries = 0
         states = size
-        # For each state and each choice the index of its first choice or entry; one more at the end.
+        # The index of the first choice of each state, and of the first entry of each choice; one more element marks the
+        # end.
         self.first_choice = flat("i", states + 1)
         self.first_entry = flat("i", choices + 1)
         self.target = flat("i", entries + 1)
@@ -64,18 +65,18 @@ class SmallProcess:
         self.counts_steps = 0
 
     def add_entry(self, target: int, chance: float) -> None:
-        """Lead the last choice to a state with a probability."""
+        """Let the choice that is being built lead to a state with a probability."""
         self.target[self.entries] = target
         self.chance[self.entries] = chance
         self.entries += 1
 
     def end_choice(self) -> None:
-        """Complete the last choice."""
+        """Complete the choice that is being built."""
         self.choices += 1
         self.first_entry[self.choices] = self.entries
 
     def end_state(self) -> None:
-        """Complete a state: it has the choices since the previous one."""
+        """Complete a state. Its choices are those that were added after the previous state."""
         self.states += 1
         self.first_choice[self.states] = self.choices
 
@@ -86,12 +87,12 @@ class SmallProcess:
             mode: MAXIMUM or MINIMUM.
 
         Returns:
-            How far a value may be from the solution; infinite if the process need not end.
+            The greatest possible distance of a value from the solution; infinite if the process need not end.
         """
         self.counts_steps = 1
         if self._iterate(self.steps, MAXIMUM) == 0:
             return INFINITE
-        # Rounding must not spoil the proof: `g` is twice the number of steps.
+        # Rounding errors must not invalidate the proof, so `g` is twice the number of steps.
         for state in range(self.states):
             steps = self.steps[state]
             if steps > MAX_STEPS or steps < self._best(state, self.steps, MAXIMUM) - 0.5:
@@ -128,7 +129,7 @@ class SmallProcess:
         return 0
 
     def _improve(self, values: Any, mode: int) -> int:
-        """Take better choices where there are some; returns whether there were."""
+        """Replace choices of the policy by better ones; return whether there were any."""
         improved = 0
         for state in range(self.states):
             best = self._value(self.policy[state], values)
@@ -156,7 +157,7 @@ class SmallProcess:
         return best
 
     def _evaluate(self, values: Any) -> int:
-        """The values of the policy; returns 0 if the process may continue for ever under it."""
+        """Compute the values of the policy; return 0 if the process may continue for ever under it."""
         count = self.states
         for at in range(count * count):
             self.matrix[at] = 0.0
@@ -166,7 +167,8 @@ class SmallProcess:
             values[state] = 1.0 if self.counts_steps != 0 else self.gain[choice]
             for at in range(self.first_entry[choice], self.first_entry[choice + 1]):
                 self.matrix[state * count + self.target[at]] += self.chance[at]
-        # `sums` is the probability of the end until a state is eliminated, then that of leaving the state.
+        # `sums` contains the probability of the end while a state is not eliminated, and then that of leaving the
+        # state.
         for last in range(count - 1, -1, -1):
             row = last * count
             total = self.sums[last]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flat memory for numbers: zero at first, and occupied only where it is used."""
+"""Flat memory for numbers. It is initially zero, and only the pages that are written occupy memory."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from struct import calcsize
 from typing import Any
 
 SMALL = 1 << 16
-"""The number of bytes up to which memory comes from the heap of Python."""
+"""The number of bytes up to which memory is allocated on the heap of Python."""
 
 
 def flat(typecode: str, count: int, old: Any = None) -> Any:
@@ -22,7 +22,7 @@ def flat(typecode: str, count: int, old: Any = None) -> Any:
     if size <= SMALL:
         made = memoryview(bytearray(size))
     else:
-        # Private where that can be said: pages that were never written then occupy no memory.
+        # A private mapping, where the system has one: pages that were never written then occupy no memory.
         flags = {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS} if os.name == "posix" else {}
         pages = mmap.mmap(-1, size, **flags)
         if hasattr(mmap, "MADV_HUGEPAGE"):
@@ -34,7 +34,7 @@ def flat(typecode: str, count: int, old: Any = None) -> Any:
 
 
 def available() -> int:
-    """The bytes of memory that are free for programs now; half of 8 GB if the system does not tell."""
+    """The bytes of memory that are currently free for programs; half of 8 GB if the system does not report them."""
     try:
         with open("/proc/meminfo", encoding="ascii") as file:
             for line in file:

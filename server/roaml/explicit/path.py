@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shortest trace to a state, as a recording that can be told as a story."""
+"""The shortest trace to a state, as a recording for a story."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.smc.record import Recorder, Recording, TraceStep
 
 
 class PathStep(NamedTuple):
-    """A step: the vector, and for each of its slots that do something the edge and the destination."""
+    """A step: the vector, and the edge and the destination of each of its slots that have an effect."""
 
     vector: int
     edges: list[int]
@@ -24,7 +24,7 @@ class PathStep(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """The steps to a state, and what is known of the goal there."""
+    """The steps to a state, and the status of the goal there."""
 
     state: int
     steps: tuple[PathStep, ...]
@@ -40,7 +40,7 @@ def shortest(space: Space, verdict: int) -> Path | None:
 
 
 def path_to(space: Space, state: int) -> list[PathStep]:
-    """The steps by which a state was reached first."""
+    """The steps of a shortest path to a state."""
     search = space.search
     steps = []
     while (parent := search.parent_of(state)) >= 0:
@@ -72,7 +72,7 @@ def _verdict(label: int, is_stuck: bool) -> int:
 
 
 class PathRecorder(Recorder):
-    """Takes the steps of a path, instead of random ones."""
+    """Records the steps of a given path, instead of random ones."""
 
     def __init__(self, space: Space, path: Path) -> None:
         super().__init__(space.checker, space.asked, 0, len(path.steps))

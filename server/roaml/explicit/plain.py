@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kernel as plain Python where it is compiled, but the modules that read its data are not."""
+"""The kernel, the search and the solver as plain Python, for installations in which only some of them are compiled."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ import roaml.smc
 
 @cache
 def plain_kernel() -> ModuleType:
-    """The module of the kernel, whether it was compiled or not."""
+    """The module of the kernel as plain Python, even if it is compiled."""
     return _loaded("plain_kernel", Path(roaml.smc.__file__).with_name("kernel.py"))
 
 
 @cache
 def plain_search() -> ModuleType:
-    """The module of the search, whether it was compiled or not."""
+    """The module of the search as plain Python, even if it is compiled."""
     return _loaded("plain_search", Path(__file__).with_name("search.py"))
 
 
 @cache
 def plain_solver() -> ModuleType:
-    """The module of the solver, whether it was compiled or not; what it uses is plain Python, too."""
+    """The module of the solver as plain Python, even if it is compiled. It uses `elimination` as plain Python, too."""
     module = _loaded("plain_solver", Path(__file__).with_name("solver.py"))
     elimination = _loaded("plain_elimination", Path(__file__).with_name("elimination.py"))
     module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]

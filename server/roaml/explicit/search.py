@@ -2,13 +2,14 @@
 """The search through all states of a program, breadth first.
 
 - Plain Python; Cython compiles it with the types in `search.pxd`, like the kernel, whose code computes the successors.
-- A state is packed into words of 64 bits. A *cell* (see `tables`) has as many bits as the values that it has had need:
-  none while it does not change. When a value does not fit, all states are packed anew.
-- A hash table with open addressing contains the numbers of the states, with half of their hash.
-- The choices of a state are a sequence of 32-bit words. A word from 0 on is a choice with one destination. A choice
-  with n destinations, or with a weight other than 1, or a reward is `-n`, the number of its weight, the number of its
-  reward, and for each destination a state and the number of its probability. These numbers index `reals`.
-- A state is judged when its choices are computed: its *label* says what is known of the goal there.
+- A state is packed into words of 64 bits. A *cell* (see `tables`) gets as many bits as its values so far require: none
+  while its value does not change. If a value does not fit, all states are packed again.
+- A hash table with open addressing contains the numbers of the states, each with half of the hash of the state.
+- The choices of a state are a sequence of 32-bit words. A word that is not negative is a choice with one destination.
+  Other choices have n destinations, a weight other than 1, or a reward. Such a choice consists of `-n`, the number of
+  its weight, the number of its reward, and for each destination a state and the number of its probability. These
+  numbers index `reals`.
+- When the choices of a state are computed, the state gets a *label*, which contains the status of the goal there.
 """
 
 from __future__ import annotations
@@ -28,25 +29,25 @@ HASH_2 = 0xBF58476D1CE4E5B9
 HIGH = 0xFFFFFFFF
 MOST = 0x7FFFFFFFFFFFFFFF
 MANY = 4096
-"""From this number of states on, cells get more bits than they need, since packing all states anew takes long."""
+"""With this number of states or more, cells get more bits than they need, because packing all states again is slow."""
 LEARNED, LEARNED_STEPS = 32, 1000
-"""With so many states, so many random traces of so many steps show which values are to be expected."""
+"""The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
 MOST_NUMBERS = 0x7FFFFFF0
 """States and distinct numbers are counted with 31 bits."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 TIME, STUCK = 1, 3
-"""Reasons why a trace ends (`end.End`)."""
+"""Reasons why a trace ends (see `end.End`)."""
 
 COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES = 0, 1, 2, 3, 4, 5
-"""How far a search has come: all states; it can be continued; a limit of states or memory; an undefined operation; too
-many combinations in one state."""
+"""The status of a search: all states are known; it can be continued; a limit on states or memory was reached; an
+undefined operation was executed; one state has too many combinations."""
 
 STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK = 3, 4, 8, 16, 32, 64, 128
-"""The bits of a label. STATUS: FALSE, TRUE or UNKNOWN. If the goal is still unknown on a path that stays here for ever:
-LASTS: it is true if the lasting condition holds for ever, FAILS: it is true if not. HOLDS: the lasting condition, or
-the right side of a bounded until, holds. OPEN: the time ends before the goal is decided. ENDED: nothing changes any
-more; GETS_STUCK: because automata wait for one another."""
+"""The bits of a label. STATUS: FALSE, TRUE or UNKNOWN. LASTS and FAILS are about a path that stays here for ever and on
+which the goal is not decided. LASTS: the goal is true if the lasting condition holds for ever; FAILS: the goal is true
+otherwise. HOLDS: the lasting condition, or the right side of a bounded until, holds. OPEN: the time ends before the
+goal is decided. ENDED: nothing changes any more; GETS_STUCK: because automata wait for one another."""
 
 
 def compiled() -> bool:
@@ -58,14 +59,14 @@ class StateSearch:
     """The states that have been reached, and the choices of those that have been expanded.
 
     Args:
-        kernel: of the program and the goal.
+        kernel: the kernel for the program and the goal.
         steps: the number of steps that the goal distinguishes, 0 if none.
-        lower: if positive, the goal is one until with this lower bound, which the solver counts.
-        depth: states after this number of steps are not expanded; negative: no limit.
+        lower: if positive, the goal is one until with this lower bound, and the solver counts the steps.
+        depth: states after this number of steps are not expanded; no limit if negative.
 
     Attributes:
         count: the number of states.
-        expanded: the number of those whose choices are known; they are the first ones.
+        expanded: the number of states whose choices are known; they are the first ones.
         problem: the state whose choices could not be computed.
     """
 
@@ -181,7 +182,7 @@ class StateSearch:
     # ------------------------------------------------------------ public
 
     def run(self, states: int) -> int:
-        """Expand about so many states; returns how far the search has come."""
+        """Expand about `states` further states; return the status of the search."""
         goal = self.expanded + states
         try:
             while self.status == PART and self.expanded < goal:
@@ -198,7 +199,7 @@ class StateSearch:
         return [self._decoded(state, cell) for cell in range(self.cells)]
 
     def number(self, index: int) -> float:
-        """A weight, reward or probability by its number."""
+        """The weight, reward or probability with a number."""
         value: float = self.reals[index]
         return value
 
@@ -211,7 +212,7 @@ class StateSearch:
         return label
 
     def memory_used(self) -> int:
-        """The number of bytes."""
+        """The memory in use, in bytes."""
         return self._used()
 
     def choices_of(self, state: int) -> list[tuple[float, float, list[tuple[float, int]]]]:
@@ -234,8 +235,8 @@ class StateSearch:
         return found
 
     def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
-        """A choice by which `successor` is reached from `state`: the vector, and for each slot that does something the
-        numbers of the edge among the enabled ones and of the way."""
+        """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
+        and, for each slot that has an effect, the numbers of the edge among the enabled ones and of the way."""
         self._visit(state)
         self.label[state] = self._judged()
         for i in range(self.kernel.enabled_count):
@@ -260,12 +261,12 @@ class StateSearch:
         return None
 
     def fault(self) -> tuple[int, int, int, int, float]:
-        """The undefined operation: see `Kernel.problem`."""
+        """The undefined operation that ended the search; see `Kernel.problem`."""
         found: tuple[int, int, int, int, float] = self.kernel.problem()
         return found
 
     def visit(self, state: int) -> None:
-        """Make the kernel's state that of a number."""
+        """Restore the kernel to the state with a number."""
         self._visit(state)
 
     # ------------------------------------------------------------ packing
@@ -296,7 +297,7 @@ class StateSearch:
             self.memory[cell - self.variables] = value
 
     def _pack(self, cell: int) -> None:
-        """Put the current value of a cell into `following`; if it does not fit, note that."""
+        """Put the current value of a cell into `following`. If the value does not fit, store the cell in `misfit`."""
         value = self._current(cell)
         code = (value - self.low[cell]) & MASK
         if code > self.mask[cell]:
@@ -317,7 +318,7 @@ class StateSearch:
         return value - MASK - 1 if value > MOST else value
 
     def _widen(self) -> None:
-        """Give the cell `misfit` enough bits for `misfit_value`, and pack all states anew."""
+        """Give the cell `misfit` enough bits for `misfit_value`, and pack all states again."""
         cell = self.misfit
         self.misfit = -1
         self._keep_layout()
@@ -327,7 +328,7 @@ class StateSearch:
             self._repack()
 
     def _squeeze_in(self, cell: int) -> int:
-        """Find unused bits for a cell that has had none; returns whether there are any."""
+        """Find unused bits for a cell that has none; return whether there are any."""
         for at in range(self.words):
             used = 0
             for i in range(self.live_start[at], self.live_start[at + 1]):
@@ -368,7 +369,7 @@ class StateSearch:
             self.now[i] = self.keys[i]
 
     def _keep_layout(self) -> None:
-        """Remember how the states are packed now."""
+        """Store how the states are currently packed."""
         for i in range(self.cells):
             self.old_mask[i] = self.mask[i]
             self.old_low[i] = self.low[i]
@@ -404,7 +405,7 @@ class StateSearch:
                 self.low[cell] = greatest - ((unit << bits) - 1)
 
     def _repack(self) -> None:
-        """Pack all states anew."""
+        """Pack all states again."""
         self._lay_out()
         self.now = array("Q", [0] * self.words)
         self.following = array("Q", [0] * self.words)
@@ -422,7 +423,7 @@ class StateSearch:
         self._rehash(self.table_mask + 1)
 
     def _lay_out(self) -> None:
-        """Give each cell its place: no cell is in two words."""
+        """Assign a word and a shift to each cell. The bits of a cell are in one word."""
         at = 0
         used = 0
         first = True
@@ -470,8 +471,8 @@ class StateSearch:
             self.table[at] = ((value >> 32) << 32) | (state + 1)
 
     def _find(self, parent: int) -> int:
-        """The number of the state with the key `following`; a new one if it has not been reached before. -1 if there
-        are too many."""
+        """The number of the state with the key `following`, which is added if it has not been reached before. -1 if
+        there are too many states."""
         value = HASH_2
         for i in range(self.words):
             value = ((value ^ self.following[i]) * HASH_1) & MASK
@@ -514,11 +515,11 @@ class StateSearch:
         return state
 
     def _used(self) -> int:
-        """The bytes in use; what was reserved and never written takes no room."""
+        """The bytes in use. Memory that was reserved but never written does not count."""
         return self.count * (8 * self.words + 13) + 8 * (self.table_mask + 1) + 4 * self.code_end + 8 * self.real_count
 
     def _make_room(self) -> None:
-        # While it is copied, it is there twice.
+        # During the copy, the memory exists twice.
         if self._used() + self.count * 8 * self.words > self.most_bytes:
             self.status = MEMORY
             return
@@ -557,8 +558,8 @@ class StateSearch:
     # ------------------------------------------------------------ a state
 
     def _visit(self, state: int) -> None:
-        """Make the kernel's state that of a number, and update what is enabled. Only the cells that differ from those
-        of the previous state are looked at."""
+        """Restore the kernel to the state with a number, and update what is enabled. Only cells that differ from those
+        of the previous state are examined."""
         first = state * self.words
         moved = 0
         for w in range(self.words):
@@ -592,8 +593,8 @@ class StateSearch:
             self.kernel._look_around()
 
     def _judged(self) -> int:
-        """The label of the state, as far as it does not depend on its choices. `memory` is what its successors
-        remember."""
+        """The label of the current state, without the part that depends on its choices. Afterwards `memory` contains
+        the values that the successors inherit."""
         steps = self.memory[self.leaves]
         label = 0
         lasting = -1
@@ -642,11 +643,11 @@ class StateSearch:
         return label
 
     def _combined(self) -> int:
-        """The value of the goal's formula by the verdicts of the kernel."""
+        """The value of the goal's formula, from the verdicts in the kernel."""
         return self.kernel._value(self.kernel.formula_start[0], self.kernel.formula_start[1])
 
     def _expand(self, state: int) -> None:
-        """Judge a state, and compute its choices if the goal is not decided there."""
+        """Determine the label of a state, and compute its choices if the goal is not decided there."""
         if state == self.layer_end:
             self.depth += 1
             self.layer_end = self.count
@@ -708,7 +709,7 @@ class StateSearch:
             self.status = COMPLETE
 
     def _end(self) -> int:
-        """What is to be added to the label of a state in which nothing changes any more."""
+        """The bits that are added to the label of a state in which nothing changes any more."""
         reason = self.kernel._reason(0 if self.kernel.enabled_count == 0 else 1)
         added = 0
         if reason == STUCK:
@@ -720,7 +721,7 @@ class StateSearch:
         return added
 
     def _open(self, vector: int) -> int:
-        """Collect the enabled edges of each slot that does something, and the probabilities of their ways; returns the
+        """Collect the enabled edges of each slot that has an effect, and the probabilities of their ways; return the
         number of these slots."""
         count = 0
         found = 0
@@ -774,7 +775,7 @@ class StateSearch:
             self.ways[j] = self.kernel.way_start[self.edges[self.picks[j]]]
 
     def _next_ways(self, count: int) -> int:
-        """The next combination of destinations; 0 if there is none."""
+        """Go to the next combination of destinations; return 0 if there is none."""
         for j in range(count):
             edge = self.edges[self.picks[j]]
             self.ways[j] += 1
@@ -784,7 +785,7 @@ class StateSearch:
         return 0
 
     def _next_edges(self, count: int) -> int:
-        """The next combination of edges; 0 if there is none."""
+        """Go to the next combination of edges; return 0 if there is none."""
         for j in range(count):
             self.picks[j] += 1
             if self.picks[j] < self.edge_from[j + 1]:
@@ -793,7 +794,7 @@ class StateSearch:
         return 0
 
     def _choose(self, vector: int, count: int, state: int, weight: float, exit_reward: float) -> int:
-        """Write one choice; returns whether it leads to another state."""
+        """Write one choice; return whether it leads to another state."""
         self.branches = 0
         is_plain = 1 if weight == 1.0 and self.kernel.step_reward < 0 and self.kernel.exit_reward < 0 else 0
         for j in range(count):
@@ -842,7 +843,7 @@ class StateSearch:
         return leads_on
 
     def _successor(self, vector: int, count: int, state: int) -> int:
-        """The number of the state that the ways in `ways` lead to; -1 if there is none."""
+        """The number of the state to which the ways in `ways` lead; -1 if there is none."""
         for j in range(count):
             self.kernel.part_slot[j] = self.slots[j]
             self.kernel.part_way[j] = self.ways[j]
@@ -871,7 +872,7 @@ class StateSearch:
             for cell in range(self.cells):
                 self._pack(cell)
         found = self._find(state)
-        # Back to the state.
+        # Restore the kernel to the state.
         for j in range(count):
             way = self.ways[j]
             cell = self.kernel.slot_instance[self.slots[j]]

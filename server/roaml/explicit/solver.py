@@ -3,11 +3,11 @@
 
 - Plain Python; Cython compiles it with the types in `solver.pxd`.
 - Strongly connected components are solved in reverse topological order (Tarjan 1972, without recursion).
-- End components, in which a scheduler can stay for ever, are found (de Alfaro 1997). Each becomes one state, after
-  which the equations have one solution.
+- End components are the parts in which a scheduler can stay for ever (de Alfaro 1997). Each is merged into one state;
+  after that, the equations have one solution.
 - A small component whose values converge slowly is solved by policy iteration (`elimination`).
-- Values from below by value iteration; from above by Park induction, as in optimistic value iteration (Hartmanns and
-  Kaminski 2020): values that no step increases are upper bounds.
+- Lower bounds are computed by value iteration, upper bounds by Park induction, as in optimistic value iteration
+  (Hartmanns and Kaminski 2020): values that no step increases are upper bounds.
 """
 
 from __future__ import annotations
@@ -18,22 +18,24 @@ from roaml.explicit.elimination import SmallProcess
 from roaml.explicit.memory import flat
 
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
-"""How choices are made: for the greatest or the smallest value, or at random by their weights."""
+"""How choices are resolved: for the greatest value, for the smallest value, or at random by their weights."""
 NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
-"""What paths count that stay in an end component: none, those for which the goal is true, those for which it is not."""
+"""Which paths that stay in an end component are accepted: none, those for which the goal is true, or those for which it
+is false."""
 FALSE, TRUE, UNKNOWN = 0, 1, 2
 STATUS, LASTS, FAILS, HOLDS = 3, 4, 8, 16
 INFINITE = float("inf")
 CLOSE = 1e-8
-"""The relative width of the bounds of a component."""
+"""The relative distance of the bounds at which a component is solved."""
 LEAST_CHANGE = 1e-16
 ROUNDING = 1e-15
 SWEEPS = 100
-"""The number of steps in which upper bounds must have proved themselves."""
+"""The number of steps after which the attempt to prove upper bounds is given up."""
 SMALL = 2_500
-"""Components of up to so many states are solved directly when value iteration is slow; the matrix occupies 50 MB."""
+"""The maximum number of states of a component that is solved directly if value iteration is slow; the matrix then
+occupies 50 MB."""
 MAX_WORK = 20_000_000_000
-"""The maximum number of additions for all components; then bounds stay as wide as they are."""
+"""The maximum number of additions for all components. After that, bounds stay as wide as they are."""
 
 
 def compiled() -> bool:
@@ -42,14 +44,15 @@ def compiled() -> bool:
 
 
 class Solver:
-    """
+    """Computes bounds of values for all states of a search.
+
     Args:
         search: a complete search.
         mode: MAXIMUM, MINIMUM or MEAN.
 
     Attributes:
-        has_ended_early: whether some bounds are wider than they should be.
-        is_unclear: whether negative rewards in an end component leave the minimum open.
+        has_ended_early: whether some bounds are wider than intended.
+        is_unclear: whether the minimum is unknown because of negative rewards in an end component.
     """
 
     def __init__(self, search: Any, mode: int) -> None:
@@ -100,9 +103,9 @@ class Solver:
         """Bounds of the probability, from the initial state, to reach certain states.
 
         Args:
-            target: those with this STATUS; UNKNOWN for none.
-            bits: and those with one of these bits in their label.
-            accepts: which paths that stay in an end component count, too; NOTHING for a minimum.
+            target: states with this STATUS are reached; UNKNOWN for none.
+            bits: states with one of these bits in their label are reached, too.
+            accepts: the paths that stay in an end component and are accepted as well; NOTHING for a minimum.
         """
         self.accepts = accepts
         for state in range(self.states):
@@ -171,10 +174,11 @@ class Solver:
         self.low, self.high = self.high, self.low
 
     def _sweep(self, everywhere: int) -> int:
-        """One step backwards for the values in `low`; returns whether one has changed.
+        """One step backwards for the values in `low`; returns whether a value has changed.
 
         Args:
-            everywhere: whether states count whose right side holds, as there are steps before the lower bound.
+            everywhere: whether to compute the states whose right side holds, too, because steps before the lower bound
+                remain.
         """
         if self.has_before == 0:
             self.before = flat("d", self.states)
@@ -221,12 +225,12 @@ class Solver:
             first = last
 
     def _components(self, first: int, last: int, own: int, inner: int, free: int) -> None:
-        """The strongly connected components of the states `order[first:last]`, which are those of the set `own`.
-        `order` then contains them in reverse topological order, and `bound` their ends.
+        """Find the strongly connected components of the states `order[first:last]`, which form the set `own`.
+        Afterwards `order` contains them in reverse topological order, and `bound` contains their ends.
 
         Args:
-            inner: whether only choices count that do not leave the set.
-            free: whether only choices without reward count.
+            inner: whether to use only choices that do not leave the set.
+            free: whether to use only choices without reward.
         """
         for i in range(first, last):
             self.index[self.order[i]] = 0
@@ -330,8 +334,8 @@ class Solver:
         return 0
 
     def _find_ends(self, first: int, last: int, free: int) -> None:
-        """The maximal end components among the states `order[first:last]`: each is a range of `order`, and its states
-        form a set of their own. All others are in no set."""
+        """Find the maximal end components among the states `order[first:last]`. Afterwards each is a range of `order`,
+        and its states form a set. All other states belong to no set."""
         base = self.bounds
         waiting = 1
         self.ends = 0
@@ -437,14 +441,14 @@ class Solver:
         return 1
 
     def _stay(self, first: int, last: int) -> None:
-        """Give the states of a range the value of paths that stay there for ever."""
+        """Give the states of a range the value of paths that stay in it for ever."""
         if self.is_reward != 0:
             self._fix_all(first, last, INFINITE)
         else:
             self._fix_all(first, last, 1.0 if self._accepted(first, last) != 0 else 0.0)
 
     def _accepted(self, first: int, last: int) -> int:
-        """Whether paths count that visit all states of a range again and again."""
+        """Whether paths that visit all states of a range again and again are accepted."""
         if self.accepts == NOTHING:
             return 0
         label = self.label[self.order[first]]
@@ -462,13 +466,14 @@ class Solver:
         return lasts if holds != 0 else fails
 
     def _needs_lasting(self, state: int) -> int:
-        """Whether paths count only if the lasting condition holds for ever."""
+        """Whether paths are accepted only if the lasting condition holds for ever."""
         label = self.label[state]
         wanted = LASTS if self.accepts == AS_JUDGED else FAILS
         return 1 if self.accepts != NOTHING and label & (LASTS | FAILS) == wanted else 0
 
     def _accept_ends(self) -> None:
-        """Give accepted end components the value 1. One is accepted if a scheduler can stay in an accepted part."""
+        """Give accepted end components the value 1. An end component is accepted if a scheduler can stay in an accepted
+        part."""
         count = self.ends
         for k in range(count):
             first = self.end_first[k]
@@ -510,7 +515,7 @@ class Solver:
             self.set_of[self.order[i]] = -1
 
     def _merge(self, first: int, last: int) -> None:
-        """Make the states of a range one."""
+        """Merge the states of a range into one."""
         for i in range(first, last):
             self.group[self.order[i]] = self.order[first]
 
@@ -533,14 +538,15 @@ class Solver:
         return 0
 
     def _keep_finite(self, first: int, last: int) -> None:
-        """Fix the values of states from which no scheduler reaches the goal almost surely. The others stay in one
+        """Fix the values of states from which no scheduler reaches the goal almost surely. The other states stay in one
         set."""
         own = self.sets
         self.sets += 1
         for i in range(first, last):
             self.set_of[self.order[i]] = own
         while True:
-            # Which states of the set reach its outside or the goal without the risk of leaving what is finite?
+            # Find the states from which the outside of the set or the goal can be reached without leaving the finite
+            # states.
             reaching = self.sets
             self.sets += 1
             grows = 1
@@ -563,8 +569,8 @@ class Solver:
                 return
 
     def _advances(self, state: int, own: int, reaching: int) -> int:
-        """Whether a choice leads to finite states only, and with some probability to the set `reaching` or out of the
-        component."""
+        """Whether a choice leads only to finite states, and with a positive probability to the set `reaching` or out of
+        the component."""
         at = self.start[state]
         while at < self.start[state + 1]:
             size = self.code[at]
@@ -588,7 +594,7 @@ class Solver:
 
     def _merge_free(self, first: int, last: int) -> None:
         """Merge the end components in which no reward is collected."""
-        # The states with a value come last: they are in no set.
+        # The states with a value come last; they belong to no set.
         middle = first
         for i in range(first, last):
             state = self.order[i]
@@ -609,8 +615,8 @@ class Solver:
     # ------------------------------------------------------------ values
 
     def _best(self, state: int, values: Any, own: int) -> float:
-        """The value of the best choice of a state; choices that do not leave the merged state `own` are left out.
-        `INFINITE` or its opposite if there is none."""
+        """The value of the best choice of a state. Choices that do not leave the merged state `own` are ignored. If no
+        choice is left, the value is `INFINITE` or its opposite."""
         best = INFINITE if self.mode == MINIMUM else -INFINITE
         total = 0.0
         weights = 0.0
@@ -656,8 +662,8 @@ class Solver:
         return best
 
     def _step(self, first: int, last: int, values: Any) -> float:
-        """Compute all values of a component once; returns the greatest relative change. `rises` is whether one has
-        become greater, `falls` whether one has become smaller."""
+        """Compute all values of a component once; return the greatest relative change. Afterwards `rises` is whether a
+        value has become greater, and `falls` whether a value has become smaller."""
         self.rises = 0
         self.falls = 0
         change = 0.0
@@ -691,7 +697,7 @@ class Solver:
         return change
 
     def _iterate(self, first: int, last: int) -> None:
-        """Bounds for the states of a component; those of later components are known."""
+        """Compute bounds for the states of a component, from the bounds of the components after it."""
         if self.is_unclear != 0:
             return
         self._gather(first, last)
@@ -756,12 +762,13 @@ class Solver:
                 self.high[state] = self.high[self.group[state]]
 
     def _direct_work(self, first: int, last: int) -> int:
-        """The number of additions after which a component is solved directly, in about the same time."""
+        """The number of additions of value iteration after which a component is solved directly, which takes about as
+        long."""
         count = last - first
         return count * count * count // 16 + 1000 * count
 
     def _solve_directly(self, first: int, last: int, gap: float) -> int:
-        """Bounds for the states of a component by policy iteration; returns 0 if that is not possible."""
+        """Compute bounds for the states of a component by policy iteration; return 0 if that is not possible."""
         process = self._small_process(first, last)
         if process is None:
             return 0
@@ -783,8 +790,8 @@ class Solver:
         return 1
 
     def _small_process(self, first: int, last: int) -> Any:
-        """The states of a component, in which successors outside are immediate values; `None` if a state has no choice.
-        `index` is then the number of each merged state."""
+        """The states of a component as a process, in which successors outside of the component are immediate values;
+        `None` if a state has no choice. Afterwards `index` contains the number of each merged state."""
         own = self.sets
         self.sets += 1
         states = 0
@@ -817,8 +824,8 @@ class Solver:
         return process
 
     def _add_choices(self, process: Any, state: int, group: int, own: int) -> None:
-        """Add the choices of a state to a process: with uniform choices, one for all. Those that stay in a merged state
-        or lead to an infinite value are left out."""
+        """Add the choices of a state to a process; with uniform choices, one choice for all. Choices that stay in a
+        merged state or lead to an infinite value are omitted."""
         share = 1.0
         if self.mode == MEAN:
             share = 1.0 / self._weight(state)
@@ -864,7 +871,7 @@ class Solver:
         return weights
 
     def _is_useful(self, at: int, group: int) -> int:
-        """Whether a choice with probabilities leaves a merged state, and leads to finite values only."""
+        """Whether a choice with several destinations leaves a merged state and leads only to finite values."""
         leaves = 0
         for k in range(-self.code[at]):
             to = self.group[self.code[at + 3 + 2 * k]]
@@ -875,7 +882,7 @@ class Solver:
         return leaves
 
     def _lower_is_proven(self, first: int, last: int) -> int:
-        """Lower bounds where rewards may be negative: values that no step decreases."""
+        """Whether lower bounds are proved although rewards may be negative: no step decreases the values."""
         for i in range(first, last):
             own = self.group[self.order[i]]
             if own == self.order[i] and self.fixed[own] == 0:
@@ -888,7 +895,7 @@ class Solver:
         return 0
 
     def _gather(self, first: int, last: int) -> None:
-        """Sort the states of a component so that those of one merged state follow each other."""
+        """Sort the states of a component so that the states of each merged state are adjacent."""
         merged = 0
         for i in range(first, last):
             if self.group[self.order[i]] != self.order[i]:

@@ -19,22 +19,24 @@ from roaml.smc.names import Storage
 from roaml.smc.program import AT_END, Goal
 
 Watch: TypeAlias = Callable[[int, int], None]
-"""Called during a search with the number of states, and of those that have been expanded."""
+"""Called during a search with the number of states, and the number of those that have been expanded."""
 
 STRIDE = 16_384
-"""The number of states between two calls of a watch."""
+"""The number of states that are expanded between two calls of a watch."""
 MAX_STATES = 0x7FFFFFF0
 MAX_COMBINATIONS = 1 << 20
-"""The maximum number of combinations of edges and destinations in one state: some seconds."""
+"""The maximum number of combinations of edges and destinations in one state. Exploring this many takes some seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateLimits:
-    """
+    """The limits of a search.
+
     Attributes:
-        states: more are not explored.
-        bytes: of memory; `None` for half of what is free.
-        combinations: of edges and destinations in one state. With n automata of k edges on one action there are kⁿ.
+        states: the maximum number of states.
+        bytes: the maximum memory in bytes; `None` for half of the free memory.
+        combinations: the maximum number of combinations of edges and destinations in one state. With n automata of k
+            edges on one action there are kⁿ.
     """
 
     states: int = MAX_STATES
@@ -46,7 +48,7 @@ class LimitError(Exception):
     """A search has ended before all states were known.
 
     Attributes:
-        states: how many were reached.
+        states: the number of states that were reached.
         why: the limit, as a phrase for users.
     """
 
@@ -58,12 +60,12 @@ class LimitError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """All states of a model, as far as a goal needs them.
+    """All states of a model that are reached before a goal is decided.
 
     Attributes:
         search: the states and their choices.
         fault_at: the state in which an undefined operation was executed, -1 if none; the states are incomplete then.
-        problem: this operation.
+        problem: the undefined operation.
     """
 
     checker: ModelChecker
@@ -83,7 +85,7 @@ def explore(
     """All states that can be reached before the goal is decided.
 
     Args:
-        modules: the kernel's and the search's module, for tests.
+        modules: the modules of the kernel and of the search, for tests.
 
     Raises:
         LimitError: there are more states than allowed.
@@ -125,8 +127,9 @@ def explore(
 
 
 def _bounds(goal: Goal) -> tuple[int, int, int]:
-    """How a search treats the step bounds of a goal: the number of steps that states distinguish; the lower bound of a
-    single until, which values are computed with; and the number of steps after which nothing matters, or -1."""
+    """How a search treats the bounds of a goal on steps. Return three numbers: the number of steps that states
+    distinguish; the lower bound of a single until, which the solver needs; and the number of steps after which the goal
+    is decided, or -1."""
     lower = [bound for bound in goal.lower if bound != AT_END]
     if not any(bound > 0 for bound in lower) and all(bound < 0 for bound in goal.upper):
         return 0, 0, -1
@@ -144,7 +147,8 @@ def _transient(checker: ModelChecker) -> list[Storage]:
 
 
 def _modules() -> tuple[Any, Any]:
-    """The kernel and the search. Both are compiled, or neither: a compiled kernel shows no internals to Python."""
+    """The modules of the kernel and of the search. Both are compiled, or neither, because Python cannot read the data
+    of a compiled kernel."""
     if kernel.compiled() and not engine.compiled():
         from roaml.explicit.plain import plain_kernel  # noqa: PLC0415
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a search needs to know of a program: which cells each way writes, and which cells guards read.
+"""Tables about a program for a search: which cells each way writes, and which cells guards read.
 
-The *cells* of a state are numbered: the location of each instance, the integer variables, the real ones, what is known
-of each until of the goal, and the number of steps, as far as the goal depends on it.
+A state consists of numbered *cells*: the location of each instance, the integer variables, the real ones, the status of
+each until of the goal, and the number of steps, if the goal depends on it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from roaml.smc.registers import REAL, product
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tables:
-    """
+    """The tables about one program.
+
     Attributes:
         way_start, way_cell: the cells of variables that each way writes.
         settled: the cells of transient variables.

@@ -15,16 +15,16 @@ from roaml.smc.statistics import Bounds
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
 NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
 _OPEN_SHARE = 1e-6
-"""Up to this probability, the end of the model's time is neglected."""
+"""Up to this probability, traces that the end of the model's time leaves undecided are neglected."""
 
 
 class NoValueError(Exception):
-    """There is no value; the message contains the reason."""
+    """A question has no value; the message contains the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class GoalValues:
-    """What a question asks for, enclosed by bounds.
+    """The values of a question, enclosed by bounds.
 
     Attributes:
         is_precise: whether all bounds are as close as intended.
@@ -37,12 +37,13 @@ class GoalValues:
 
 
 def values_of(space: Space, modules: Any = None) -> GoalValues:
-    """
+    """The values of the question of a space.
+
     Args:
-        modules: the solver's module, for tests.
+        modules: the module of the solver, for tests.
 
     Raises:
-        NoValueError: the question has none.
+        NoValueError: the question has no value.
     """
     return _Question(space, modules or solver).values()
 
@@ -79,7 +80,7 @@ class _Question:
         if self.question.is_stuck:
             return self.closed(self.solver(mode), "probability", UNKNOWN, codes.GETS_STUCK, NOTHING)
         if is_until:
-            # The until itself: `¬F ¬a` is at its least where `F ¬a` is at its greatest.
+            # The value of the until itself: `¬F ¬a` has its minimum where `F ¬a` has its maximum.
             is_negated = goal.formula.count(NOT) % 2 == 1
             target = FALSE if is_negated else TRUE
             if is_negated and mode != MEAN:

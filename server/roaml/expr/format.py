@@ -34,7 +34,7 @@ def format_expr(expr: Expr) -> str:
     """The text of `expr`.
 
     Raises:
-        ValueError: a part of it could not be parsed.
+        ValueError: `expr` contains an `ErrorExpr`.
     """
     return _text(expr, CONDITIONAL_PRECEDENCE)
 

@@ -48,8 +48,8 @@ from roaml.expr.types import (
     is_kind,
     is_number,
     join,
+    member_type,
     unwrap,
-    wrap,
 )
 from roaml.text import Span
 
@@ -309,9 +309,9 @@ class _Inference:
                 self.problems.append(LengthOfStruct(expr.name_span, inner))
                 return INT
         elif isinstance(inner, Struct):
-            member = inner.member(expr.name)
+            member = member_type(owner, expr.name)
             if member is not None:
-                return wrap(member, bounds)
+                return member
         self.problems.append(UnknownMember(expr.name_span, expr.name, owner))
         return UNKNOWN
 

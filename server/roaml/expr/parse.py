@@ -82,7 +82,7 @@ _TOKEN = re.compile(
     )""",
     re.VERBOSE | re.DOTALL,
 )
-# The most common expressions: a name or its members, a plain number.
+# The most common expressions: a name, a member of a name, and a decimal number.
 _SIMPLE_PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*){0,8}\Z", re.ASCII)
 _SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
 _ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
@@ -157,7 +157,7 @@ def _parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
 
 @lru_cache(maxsize=5000)
 def _sound(text: str) -> Expr | None:
-    """The tree of an expression without errors; its spans are positions in `text`.
+    """The tree of an expression; `None` if it has errors. The spans in the tree are positions in `text`.
 
     The result is cached: files repeat the same expressions, and after each keystroke nearly all of them are unchanged.
     """
@@ -193,7 +193,7 @@ class _Parser:
         self.tokens = tokens(source.text)
         self.at = 0
         self.depth = 0
-        self.gap = 0  # the position before the token where the last missing part was reported
+        self.gap = 0  # the start of the token before which a part was last reported as missing
         self.findings: list[Finding] = []
         self.reported: set[Span] = set()
 
@@ -274,7 +274,8 @@ class _Parser:
     def written(self, token: ExpressionToken, symbol: str) -> None:
         """Report that an operator must be written as `symbol`."""
         span = self.span(token)
-        self.report(span, f"write `{symbol}`", SYNTAX, Fix(f"Write `{symbol}`", (TextEdit(span, _in_xml(symbol)),)))
+        message = f"`{token.text}` is not an operator; write `{symbol}`"
+        self.report(span, message, SYNTAX, Fix(f"Write `{symbol}`", (TextEdit(span, _in_xml(symbol)),)))
 
     def conditional(self, test: Expr, first: int) -> Expr:
         then = self.expression(0)
@@ -293,7 +294,7 @@ class _Parser:
         return self.postfix(self.primary(token), first)
 
     def postfix(self, expr: Expr, first: int) -> Expr:
-        """Parse what follows an operand that begins with token `first`."""
+        """Parse the member accesses, indices and calls after the operand `expr`, which begins with token `first`."""
         while (
             (token := self.peek()) is not None
             and token.text in _POSTFIX

@@ -17,7 +17,8 @@ from roaml.text import Decoded, Span
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """`is_real` as in docs/spec/expressions.md#number-literals: written with a point, or not a whole number."""
+    """A number. `is_real` is true if it is written with a point or is not a whole number
+    (docs/spec/expressions.md#number-literals)."""
 
     span: Span
     value: int | float
@@ -26,7 +27,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class String:
-    """`value` has its ECMAScript escapes resolved."""
+    """A string. `value` has its ECMAScript escapes resolved."""
 
     span: Span
     value: str

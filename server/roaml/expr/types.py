@@ -47,7 +47,7 @@ class Array:
 
 
 class StructKind(enum.Enum):
-    """The kind of thing whose members a struct describes."""
+    """What a struct describes."""
 
     DECLARED = enum.auto()
     """A struct of the models."""
@@ -56,7 +56,7 @@ class StructKind(enum.Enum):
     EVENT = enum.auto()
     """The parameters of an event."""
     HANDLER = enum.auto()
-    """Further data of a handler."""
+    """The data that a handler provides in addition to a message or event, such as the status of a child."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Struct:
     """Named members in order.
 
     Attributes:
-        what: the kind of thing in the words of messages: struct, message, event data, …
+        what: a noun for messages that says what the struct describes, such as struct, message or event data.
         event: for `StructKind.EVENT`, the event whose parameters the members are.
     """
 
@@ -127,7 +127,8 @@ _TYPE = re.compile(r"([A-Za-z_]\w*)((?:\[\d*\])*)\Z", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class TypeName:
-    """A type as it is written: a base or struct name and its dimensions, outermost first (None = unbounded)."""
+    """A type as it is written: the name of a base type or struct, and the dimensions of an array, outermost first. A
+    dimension without a bound is `None`."""
 
     base: str
     dimensions: tuple[int | None, ...] = ()
@@ -182,6 +183,14 @@ def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[st
         yield prefix, type_
 
 
+def member_type(type_: Type, name: str) -> Type | None:
+    """The type of a member of a struct or, as an array, of the structs in an array; `None` if there is none
+    (docs/spec/types.md#leaves)."""
+    inner, bounds = unwrap(type_)
+    member = inner.member(name) if isinstance(inner, Struct) else None
+    return None if member is None else wrap(member, bounds)
+
+
 def is_number(type_: Type) -> bool:
     return isinstance(type_, Scalar) and type_.kind in (ScalarKind.INT, ScalarKind.REAL)
 
@@ -212,7 +221,8 @@ def fits(value: Type, target: Type) -> bool:
 
 
 def join(left: Type, right: Type) -> Type | None:
-    """The type of a value that has one of two types; `None` if there is none. For arrays it has the greater bound."""
+    """The common type of values of two types; `None` if there is none. The common type of two arrays has the greater
+    bound."""
     if isinstance(left, Array) and isinstance(right, Array):
         element = join(left.element, right.element)
         bounded = left.bound is not None and right.bound is not None

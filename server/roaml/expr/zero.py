@@ -13,7 +13,8 @@ _NOWHERE = Span(0, 0)
 
 
 def zero(type_: Type) -> Expr:
-    """0, 0.0, false, '', [], or a struct of those; 0 if the type is unknown. Its positions have no meaning."""
+    """The neutral value of a type: 0, 0.0, false, '', [], or a struct of these; 0 if the type is unknown. The positions
+    in the result have no meaning."""
     if isinstance(type_, Struct):
         members = (ObjectMember(name, _NOWHERE, zero(member)) for name, member in type_.members)
         return ObjectLiteral(_NOWHERE, tuple(members))
@@ -27,5 +28,5 @@ def zero(type_: Type) -> Expr:
 
 
 def zero_text(type_: Type) -> str:
-    """The neutral value as text."""
+    """The neutral value of a type, as text."""
     return format_expr(zero(type_))

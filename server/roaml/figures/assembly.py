@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Groups moved to another place."""
+"""Moves groups of a drawing."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from roaml.figures.geometry import Point
 
 
 def moved(group: Group, dx: float, dy: float) -> Group:
+    """The group, moved by `dx` to the right and by `dy` downwards."""
     return replace(group, items=tuple(_moved(item, dx, dy) for item in group.items))
 
 

@@ -2,7 +2,7 @@
 """A drawing: groups of shapes, lines and texts with their places, in pixels.
 
 - Every text is inside the box of its group's shape, and none is smaller than `text.SMALL`.
-- A `role` names the element in the style sheet, a `tone` its color there.
+- A `role` names an element in the style sheet, and a `tone` its color there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from roaml.figures.text import text_width
 
 
 class Tone(enum.Enum):
-    """What a color stands for."""
+    """The meaning of a color."""
 
     PLAIN = "plain"
     EVENT = "event"
@@ -70,14 +70,14 @@ class TextItem:
 
     @property
     def box(self) -> Box:
-        """The area of its letters, in the widest font."""
+        """The area of the letters of the text, in the widest font."""
         width = text_width(self.text, self.size, bold=self.bold)
         return Box(self.x, self.y - 0.8 * self.size, width, self.size)
 
 
 @dataclass(frozen=True, slots=True)
 class Polyline:
-    """A polyline, usually with round corners; `has_arrow`: an arrow head at its end."""
+    """A polyline, usually with round corners. With `has_arrow`, it has an arrow head at its end."""
 
     points: tuple[Point, ...]
     has_arrow: bool = False
@@ -98,12 +98,12 @@ class Group:
     """Items that belong together.
 
     Attributes:
-        role: what it is: `node`, `edge`, `link`, `label`, `frame`, ...
+        role: the name of the group in the style sheet: `node`, `edge`, `link`, `label`, `frame`, ...
         kind: the kind of the node or edge, for the style sheet.
-        node: the index of the node that it shows, if it shows one.
-        edges: the indexes of the edges that it shows.
-        hint: the whole text, if the items show less.
-        step: the number of the step of a run that it shows.
+        node: the index of the node that the group shows, if it shows one.
+        edges: the indexes of the edges that the group shows.
+        hint: the whole text, if the items show only a part of it.
+        step: the number of the step of a run that the group shows.
     """
 
     role: str
@@ -122,14 +122,14 @@ Item: TypeAlias = Leaf | Group
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """`nodes`: the boxes of the nodes by their indexes."""
+    """All groups of a drawing, and its size. `nodes` are the boxes of the nodes by their indexes."""
 
     size: Extent
     groups: tuple[Group, ...]
     nodes: Mapping[int, Box]
 
     def walk(self) -> Iterator[tuple[tuple[Group, ...], Leaf]]:
-        """Every item with the groups around it, the outermost first."""
+        """Every item with the groups that contain it, the outermost first."""
         for group in self.groups:
             yield from _walk(group, ())
 

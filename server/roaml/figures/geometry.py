@@ -51,7 +51,7 @@ class Box(NamedTuple):
         return Box(self.x - margin, self.y - margin, self.width + 2 * margin, self.height + 2 * margin)
 
     def overlaps(self, other: Box) -> bool:
-        """Whether both have a common area; common borders do not count."""
+        """Whether both boxes have a common area. A common border is not an area."""
         return self.x < other.right and other.x < self.right and self.y < other.bottom and other.y < self.bottom
 
     def contains(self, other: Box) -> bool:

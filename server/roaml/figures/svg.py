@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings as SVG: for a view with its own style sheet, or as a file that contains it."""
+"""Drawings as SVG: for a view, which has its own style sheet, or as a file with a style sheet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css"
 
 
 def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[str, ...] = PICTURE_STYLES) -> str:
-    """The text of a file."""
+    """The text of an SVG file."""
     width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
     area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
     return (
@@ -36,7 +36,7 @@ def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[s
 
 
 def svg_scene(drawing: Drawing) -> str:
-    """The group with everything that is drawn; groups of nodes and edges have their indexes as data."""
+    """The group that contains the whole drawing. The groups of nodes and edges have their indexes as data."""
     return f'<g class="scene">\n{"".join(map(_group, drawing.groups))}</g>\n'
 
 
@@ -120,7 +120,7 @@ def path(points: Sequence[Point], radius: float = _CORNER) -> str:
 
 
 def _shortened(line: Polyline) -> tuple[Point, ...]:
-    """The line up to the middle of its arrow head, so that it does not blunt the tip."""
+    """The line, shortened to the middle of its arrow head, so that it does not cover the tip."""
     if not line.has_arrow:
         return line.points
     *rest, before, tip = line.points
@@ -146,5 +146,5 @@ def _points(points: Sequence[Point]) -> str:
 
 
 def _n(number: float) -> str:
-    """A number with at most one decimal."""
+    """A number as text, with at most one decimal."""
     return f"{round(number, 1):g}" if abs(number) < 1e5 else f"{number:.0f}"

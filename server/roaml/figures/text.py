@@ -12,12 +12,12 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 
 SMALL, MEDIUM = 12.0, 14.0
-"""The sizes of fonts; no text is smaller."""
+"""The sizes of fonts, in pixels. No text is smaller than `SMALL`."""
 LINE_HEIGHT = 1.4
-"""The distance of two lines, as a multiple of the size of the font."""
+"""The distance between two lines of text, as a multiple of the size of the font."""
 ELLIPSIS = "…"
 
-# In thousandths of the size, for the characters from U+0020 to U+007E.
+# Widths in thousandths of the font size, for the characters from U+0020 to U+007E.
 _REGULAR = (
     "318 401 460 838 636 950 780 275 390 390 500 838 318 361 318 337 636 636 636 636 636 636 636 636 636 636 337 337 "
     "838 838 838 531 1000 684 686 698 770 632 575 775 752 295 295 656 557 863 748 787 603 787 695 635 611 732 684 989 "
@@ -47,7 +47,8 @@ _PARTS = tuple(
         ),
     )
 )
-"""The parts of a text after which a line may end: words, parts up to punctuation, up to a capital letter, letters."""
+"""Patterns of the parts after which a line may end: a word, a part up to punctuation, a part up to a capital letter, a
+character."""
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
@@ -64,10 +65,10 @@ def _other_width(character: str) -> float:
 
 def wrap(text: str, size: float, width: float, *, bold: bool = False, limit: int = 0) -> tuple[str, ...]:
     """The text in lines of at most `width`. A line ends after a space or, in a long word, after punctuation or before a
-    capital letter; a longer part is cut anywhere.
+    capital letter. A part that is still too long is cut at any place.
 
     Args:
-        limit: the number of lines; the last one ends with an ellipsis if the text is longer. 0: unlimited.
+        limit: the maximum number of lines, 0 for any number. The last line ends with an ellipsis if the text is longer.
     """
     lines: list[str] = []
     line = ""
@@ -91,7 +92,7 @@ def _parts(text: str, size: float, width: float, bold: bool) -> Iterator[str]:
 
 
 def _split(text: str, patterns: Sequence[re.Pattern[str]], size: float, width: float, bold: bool) -> Iterator[str]:
-    """The matches of the first pattern; those that are too wide are split with the next patterns."""
+    """The matches of the first pattern. Matches that are too wide are split with the next patterns."""
     for part in patterns[0].findall(text):
         if len(patterns) == 1 or text_width(part.rstrip(), size, bold=bold) <= width:
             yield part

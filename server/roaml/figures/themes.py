@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, with the colors of a theme.
 
-Many programs that show SVG do not read variables of CSS, therefore files contain the colors themselves.
+Many programs that show SVG do not support CSS variables, so files contain the colors themselves.
 """
 
 from __future__ import annotations
@@ -71,12 +71,12 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "yellow": "#5f4300",
     },
 }
-"""The colors of each theme by the names of the variables `--figure-NAME`."""
+"""The colors of each theme, by the names of the CSS variables `--figure-NAME` without the prefix."""
 
 
 @cache
 def style_sheet(theme: str, names: tuple[str, ...]) -> str:
-    """The rules for a file, with the colors of a theme: for each rule that uses a tone, one for every tone.
+    """The rules for a file, with the colors of a theme. A rule that uses a tone is written once for every tone.
 
     Args:
         names: the style sheets in this folder.
@@ -110,7 +110,7 @@ def _written(selectors: str, body: str, tones: Mapping[str, str]) -> str:
 
 
 def _within(tone: str, selector: str) -> str:
-    """The selector for parts of a group of a tone."""
+    """The selector for the parts of a group that has a tone."""
     scene, _, rest = selector.partition(" ")
     group, arrow, part = rest.partition(" > ")
     return f"{scene} {group}{tone} > {part}" if arrow else f"{scene} {tone} > {group}"

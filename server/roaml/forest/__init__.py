@@ -3,5 +3,5 @@
 libraries (docs/spec/lone-trees.md).
 
 A `Forest` is a file together with the files that belong to it. Nothing is concluded from missing declarations: a node
-without a model has unknown ports and may give any answer.
+without a model has unknown ports and may return any status.
 """

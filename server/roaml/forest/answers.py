@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The possible answers of nodes, and the children that are therefore never ticked (docs/spec/lone-trees.md#answers).
+"""The answers of nodes, which are the statuses that they can return, and the children that are never ticked because of
+the answers of earlier children (docs/spec/lone-trees.md#answers).
 
-An unknown node may give any answer.
+An unknown node may return any status.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ S, F, R, K = "SUCCESS", "FAILURE", "RUNNING", "SKIPPED"
 ANYTHING = frozenset((S, F, R, K))
 
 MAX_SUBTREES = 100
-"""The maximum nesting depth of subtrees that are analysed; deeper ones may give any answer."""
+"""The maximum nesting depth of subtrees that are analysed. Deeper subtrees are assumed to return any status."""
 
 _SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence", "PipelineSequence")
 _FALLBACKS = ("Fallback", "AsyncFallback", "ReactiveFallback")
@@ -27,7 +28,7 @@ _CHILD_FIRST = (
     *("Sequence", "SequenceWithMemory", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse"),
     *("WhileDoElse", "PipelineSequence", "RecoveryNode"),
 )
-"""Nodes whose first tick ticks their first child and answers RUNNING if the child does."""
+"""Nodes whose first tick ticks their first child and returns RUNNING if the child returns it."""
 _TRANSPARENT = (
     *("Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout"),
     "KeepRunningUntilFailure",
@@ -37,13 +38,13 @@ Answers: TypeAlias = "frozenset[str]"
 
 
 def _ended(answers: Answers, success: str, failure: str) -> Answers:
-    """The answers of a child with SUCCESS and FAILURE replaced."""
+    """`answers` with SUCCESS replaced by `success` and FAILURE by `failure`."""
     return frozenset({S: success, F: failure}.get(answer, answer) for answer in answers)
 
 
 class Possible:
-    """The possible answers of the nodes of a forest. Each tree is analysed once. A recursive tree may give any
-    answer."""
+    """The possible answers of the nodes of a forest. Each tree is analysed once. A recursive tree is assumed to return
+    any status."""
 
     def __init__(self, forest: Forest) -> None:
         self.forest = forest
@@ -129,9 +130,9 @@ class Possible:
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
         """The children that are never ticked.
 
-        Each is returned with the earlier child that always ends the node, and with the answer that this child never
-        gives. Of several such children in a row, only the first is returned. If the answers of a child follow from an
-        unreached child inside it, only the inner one is returned.
+        Each result contains the child, the earlier child after which the node always ends, and the answer that this
+        earlier child never gives. Of several adjacent children that are never ticked, only the first is returned. If
+        the answers of a child follow from an unreached child inside it, only the inner one is returned.
         """
         answers = self.answers(root)
         has_inner: set[TreeNode] = set()
@@ -176,7 +177,8 @@ class Possible:
 
 
 def _in_turn(below: list[Answers], goes_on: str, ends: str) -> Answers:
-    """The possible answers of a node that ticks its children in order as long as they answer `goes_on`."""
+    """The possible answers of a node that ticks its children in order as long as they return `goes_on`, and that
+    returns `ends` as soon as a child returns it. `below` are the possible answers of the children."""
     statuses: set[str] = set()
     all_skip = True
     for child in below:

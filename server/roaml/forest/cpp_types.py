@@ -67,7 +67,8 @@ def is_converted(type_name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """Why a text does not fit a type. `ignored`: the library reads the beginning of the text and ignores the rest."""
+    """Why a text does not fit a type. `ignored` is true if the library reads the beginning of the text and ignores the
+    rest. `instead` is a text that fits and was probably intended, or ""."""
 
     message: str
     ignored: bool = False

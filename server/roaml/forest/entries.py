@@ -3,7 +3,7 @@
 (docs/spec/lone-trees.md#entries).
 
 - Names of different trees refer to one entry if a `SubTree` remaps one to the other. All uses of a tree are combined,
-  so an entry counts as written if one of them writes it.
+  so an entry is treated as written if one of the uses writes it.
 - A node with unknown ports may read and write the entries that its attributes name.
 """
 
@@ -51,13 +51,13 @@ class Use:
         path: the file.
         tree: the name of the tree.
         name: as written, including a leading `@`.
-        reads, writes: `None` if not known.
+        reads, writes: whether the place reads or writes the entry; `None` if not known.
         creates: whether this use creates the entry.
         type: the type of the port, `any` if not known.
         from_library: whether the type comes from a library, not from a model in a file.
         script: whether the use is in a script.
-        remaps: whether the use only gives an entry to a subtree under another name.
-        span: the place of the value; in scripts, of the value of the attribute.
+        remaps: whether the use only makes an entry available in a subtree under another name.
+        span: the span of the attribute's value, which for a script is the whole script.
     """
 
     path: str
@@ -76,10 +76,13 @@ class Use:
 
 @dataclass(frozen=True, eq=False)
 class Entries:
-    """Attributes:
-    uses: all uses, in the order of the files and of the text.
-    remapped: the names that uses of subtrees give to entries outside.
-    intended: the names that wrong values of output ports probably name; "" is any name.
+    """The entries of the blackboards of a forest.
+
+    Attributes:
+        uses: all uses, in the order of the files and of the text.
+        remapped: the entries of subtrees that refer to entries of the trees that use them.
+        intended: the entries that invalid values of output ports are probably intended to name. An empty name
+            represents all entries of the tree.
     """
 
     uses: tuple[Use, ...]
@@ -88,14 +91,14 @@ class Entries:
     intended: frozenset[Key] = frozenset()
 
     def entry(self, tree: str, name: str) -> Key:
-        """The key that represents the entry to which a name in a tree refers."""
+        """The key that represents the entry to which a name in a tree refers; equal keys are equal entries."""
         key = (ROOT, name[1:]) if name.startswith("@") else (tree, name)
         while key in self._roots:
             key = self._roots[key]
         return key
 
     def is_intended(self, tree: str, name: str) -> bool:
-        """Whether a wrong value of an output port is probably intended to write an entry."""
+        """Whether an invalid value of an output port is probably intended to name this entry."""
         return (tree, name) in self.intended or (tree, "") in self.intended
 
     @cached_property
@@ -187,7 +190,7 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
 
 
 def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:
-    """The uses in the ports of a subtree; a text is written to the entry of the subtree."""
+    """The uses in the ports of a subtree. A literal value is written to the entry of the subtree."""
     inner = node.plugin.value if node.plugin else ""
     known = inner in forest.trees
     for setting in ports_of(node):

@@ -36,12 +36,15 @@ _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.
 
 @dataclass(frozen=True, eq=False)
 class Forest:
-    """Attributes:
-    path: the file that is analysed.
-    files: (path, file) pairs of that file, the files that it includes, projects, and models. Files that include it
-        come first.
-    beside: the names of the trees in the same folder, because a program may load these files together.
-    complete: whether all included files could be read.
+    """A file of behavior trees together with the files that belong to it.
+
+    Attributes:
+        path: the file that is analysed.
+        files: (path, file) pairs of that file, the files that it includes, projects, and models. Files that include it
+            come first.
+        beside: the names of the trees in the other files of the folder, because a program may load these files
+            together.
+        complete: whether all included files could be read.
     """
 
     path: str
@@ -67,7 +70,7 @@ class Forest:
 
     @cached_property
     def is_version_3(self) -> bool:
-        """Whether the file declares version 3, or declares no version and uses something that only version 3 has."""
+        """Whether the file declares version 3, or declares no version and uses names that only version 3 has."""
         if self.file.format:
             return self.file.format == "3"
         return any(_is_old(node) for tree in self.file.trees for node in nodes(tree))
@@ -95,7 +98,7 @@ class Forest:
         }
 
     def reached(self, start: str) -> frozenset[str]:
-        """A tree and all trees that are part of it."""
+        """The names of the tree `start` and of all trees that it contains as subtrees."""
         reached, pending = {start}, [start]
         while pending:
             for name in self.subtrees.get(pending.pop(), frozenset()) - reached:
@@ -105,7 +108,8 @@ class Forest:
 
     @cached_property
     def executed(self) -> frozenset[str]:
-        """The trees that are executed: of files that do not name the executed tree, all trees."""
+        """The names of the trees that are executed: the main tree and its subtrees, or all trees if no file names a
+        main tree."""
         if self.main is not None and self.main in self.trees:
             return self.reached(self.main)
         return frozenset((*self.trees, ""))
@@ -121,11 +125,11 @@ class Forest:
         return models
 
     def is_partly_described(self, node: Node) -> bool:
-        """Whether a mistake in the model of a node may hide ports of it."""
-        return node.name in self._mistaken_models and not node.library
+        """Whether an error in the model of a node may hide some of its ports."""
+        return node.name in self._unclear_models and not node.library
 
     @cached_property
-    def _mistaken_models(self) -> frozenset[str]:
+    def _unclear_models(self) -> frozenset[str]:
         models = (model for _, file in self.files for model in file.models)
         return frozenset(model.id.value for model in models if model.id is not None and not _is_clear(model))
 
@@ -178,7 +182,7 @@ class Forest:
         return (int(major), int(minor or 0)) > self.settings.version
 
     def absent(self, name: str) -> Absent | None:
-        """Why a name is not a node, if that is known."""
+        """What is known about a name that is not the name of a node; `None` if nothing is known about it."""
         return None if name in self.models else CPP.absent.get(name)
 
     @cached_property
@@ -214,7 +218,7 @@ class Forest:
         return tuple((tree, node) for path, tree, node in self.all_nodes if path == self.path)
 
     def known_node(self, node: TreeNode) -> Node | None:
-        """The declaration of the type of a node; `None` if there is none, and for subtrees."""
+        """The declaration of the type of a node; `None` for subtrees and for types without a declaration."""
         if node not in self._known_nodes:
             is_tree = node.is_subtree or node.plugin is None or self.names_tree(node)
             self._known_nodes[node] = None if is_tree or node.plugin is None else self.node(node.plugin.value)
@@ -226,7 +230,7 @@ class Forest:
         return {}
 
     def declaration(self, node: TreeNode) -> Node | None:
-        """The declaration of the type of a node, also of a subtree that a model describes; `None` if there is none."""
+        """The declaration of the type of a node; for a subtree, its description in a model. `None` if there is none."""
         if node.plugin is not None and (node.is_subtree or self.names_tree(node)):
             return self.subtree_models.get(node.plugin.value)
         return self.known_node(node)
@@ -246,7 +250,7 @@ def _is_old(node: TreeNode) -> bool:
 
 
 def _is_clear(model: NodeModel) -> bool:
-    """Whether a model names each of its ports once."""
+    """Whether all ports of a model have names, and no two have the same name."""
     names = [port.name.value if port.name else "" for port in model.ports]
     is_port = all(child.name.endswith("_port") for child in model.element.elements if child.get("name"))
     return "" not in names and len(set(names)) == len(names) and is_port

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ports of a node that its attributes set, and those that misspelled attributes probably mean."""
+"""The ports that the attributes of a node set, and the ports that misspelled attributes are probably intended to
+set."""
 
 from __future__ import annotations
 
@@ -16,19 +17,19 @@ def ports_of(node: TreeNode) -> Iterator[PortSetting]:
 
 
 def unknown_names(node: TreeNode, known: Node) -> list[str]:
-    """The attributes of a node that set none of its ports."""
+    """The names of the attributes of a node that do not set any of its ports."""
     names = (setting.attribute.name for setting in ports_of(node))
     return [name for name in names if (port := known.port(name)) is None or port.alias_of]
 
 
 def missing_ports(node: TreeNode, known: Node) -> list[Port]:
-    """The ports that a node needs and does not set."""
+    """The required ports that the attributes of a node do not set."""
     return [port for port in known.ports if port.required and node.element.get(port.name) is None]
 
 
 def probable_ports(node: TreeNode, known: Node) -> Mapping[str, tuple[str, ...]]:
-    """The unknown attributes of a node, each with the names of the ports that it probably means, the most probable
-    first: those with similar names, or the only needed port that is not set."""
+    """The unknown attributes of a node, each with the names of the ports that it is probably intended to set, the most
+    probable first. These are the ports with similar names, or the only required port that is not set."""
     unknown = unknown_names(node, known)
     if not unknown:
         return {}

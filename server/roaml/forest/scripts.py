@@ -19,7 +19,7 @@ from roaml.xml_syntax import Attribute
 
 @dataclass(frozen=True, slots=True)
 class ScriptUse:
-    """A script at a node. `is_condition`: its value must be true or false."""
+    """A script in an attribute of a node. `is_condition` is true if its value must be true or false."""
 
     node: TreeNode
     attribute: Attribute
@@ -39,7 +39,7 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
 
 
 def _probable(node: TreeNode, port: str) -> Attribute | None:
-    """The misspelled attribute that probably means a port."""
+    """The misspelled attribute that is probably intended to set `port`; `None` if there is none."""
     assert node.plugin is not None
     probable = probable_ports(node, CPP.nodes[node.plugin.value])
     return next((node.element.get(name) for name, ports in probable.items() if port in ports), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a user can set for behavior trees that belong to no system."""
+"""Settings for behavior trees that belong to no system."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class TreeSettings:
-    """Attributes:
-    models: files with models of nodes, in addition to those that trees include.
-    libraries: the names of the libraries whose nodes are available.
-    version: the version of BehaviorTree.CPP, as two numbers; `None` for the newest one.
+    """The user's settings.
+
+    Attributes:
+        models: files with models of nodes, in addition to those that trees include.
+        libraries: the names of the libraries whose nodes are available.
+        version: the version of BehaviorTree.CPP, as two numbers; `None` for the newest version.
     """
 
     models: tuple[str, ...] = ()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Code lenses above declarations: the number of their uses; above properties in XML: what they require.
+"""Code lenses. A lens above a declaration shows the number of its uses; a lens above a property in XML shows what the
+property requires.
 
-The positions of the lenses are computed at once, their text only when they become visible (`counted`).
+The positions of all lenses are computed at once. The text of a lens is computed when it becomes visible (`counted`).
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.describe.markdown import plain
 from roaml.ide.describe.system import is_clock, is_main
 from roaml.ide.hierarchy.calls import interfaces_of
-from roaml.ide.names.lookup import SymbolUse, thing
+from roaml.ide.names.lookup import SymbolUse, symbol_group
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import uses
 from roaml.ide.system_names import MAX_NAMES, grouped
@@ -28,7 +29,7 @@ from roaml.text import Location, Span
 
 @dataclass(frozen=True, slots=True)
 class Lens:
-    """`span` is the declaration; `symbol` is what is counted."""
+    """The position of a lens. `span` is the declaration; `symbol` is the declared symbol, whose uses are counted."""
 
     span: Span
     symbol: Symbol
@@ -76,7 +77,7 @@ def _machine(analysis: Analysis, path: str, machine: Machine) -> Iterator[Lens]:
 
 
 def _defined(analysis: Analysis, path: str, kind: SymbolKind) -> Iterator[Lens]:
-    """Definitions of one kind."""
+    """The lenses above the definitions of symbols of one kind."""
     owner = _owner(analysis, path)
     for occurrence in uses(analysis, path, owner if owner != path else None).all:
         if occurrence.defines and occurrence.symbol.kind is kind:
@@ -96,24 +97,24 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 
 
 def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
-    """The number of uses of a symbol of a file, and their places. Systems that share the file are counted separately,
-    and named where they differ."""
+    """The number of uses of a symbol of a file, and their places. The uses are counted for each system that contains
+    the file; if the numbers differ, the text names the systems."""
     if symbol.kind is SymbolKind.PROPERTY:
         file = analysis.property_file(path)
         return Counted(plain(sentences(file).get(symbol.name, "")) if file is not None else "", ())
     systems = analysis.systems_of(path)
     by_system = {system or "": _counted(analysis, symbol, system) for system in systems}
-    said = grouped({system: count.title for system, count in by_system.items()})
-    title = " / ".join(f"{names}: {title}" if names else title for title, names in said[:MAX_NAMES])
+    texts = grouped({system: count.title for system, count in by_system.items()})
+    title = " / ".join(f"{names}: {title}" if names else title for title, names in texts[:MAX_NAMES])
     places = tuple(sorted({place for count in by_system.values() for place in count.places}))
-    return Counted(f"{title} / …" if len(said) > MAX_NAMES else title, places)
+    return Counted(f"{title} / …" if len(texts) > MAX_NAMES else title, places)
 
 
 def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
-    """The uses in one system, or in the file alone."""
+    """The uses of a symbol in one system, or in the file if `system` is `None`."""
     if symbol.kind in HANDLES:
         return _handle(analysis, symbol, system)
-    uses_in_system = _within(analysis, thing(analysis, (symbol,)).uses, system)
+    uses_in_system = _within(analysis, symbol_group(analysis, (symbol,)).uses, system)
     in_trees = [use for use in uses_in_system if analysis.tree(use.path) is not None]
     match symbol.kind:
         case SymbolKind.EVENT:
@@ -151,8 +152,9 @@ _SIDES = {
 
 
 def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
-    """Both sides of a topic, service or action; the callbacks of a timer."""
-    own = [use for use in thing(analysis, (symbol,)).uses if not use.occurrence.defines]
+    """The uses of a handle: the numbers of publishers and subscribers, or of servers and clients, of its interface, or
+    the callbacks of a timer."""
+    own = [use for use in symbol_group(analysis, (symbol,)).uses if not use.occurrence.defines]
     linked = analysis.system(system) if system else None
     interfaces = tuple(
         dict.fromkeys(interface for interface in interfaces_of(analysis, symbol) if interface.path == system)
@@ -160,7 +162,9 @@ def _handle(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
     if not interfaces or linked is None:
         return Counted(_count(own, "use"), _locations(own))
     shown = [_sides(linked, interface) for interface in interfaces]
-    places = [use for interface in interfaces for use in _within(analysis, thing(analysis, (interface,)).uses, system)]
+    places = [
+        use for interface in interfaces for use in _within(analysis, symbol_group(analysis, (interface,)).uses, system)
+    ]
     title = " / ".join(dict.fromkeys(shown))
     if len(interfaces) > 1:
         title = f"{len(interfaces)} {interfaces[0].kind.value}s: {title}"

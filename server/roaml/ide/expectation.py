@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sets the expectation of a property: in its XML file, or for JANI in the configuration."""
+"""Edits that set the expectation of a property: in its file if the property is written in XML, or in the configuration
+if it is written in JANI."""
 
 from __future__ import annotations
 
@@ -18,10 +19,10 @@ def is_written_in_file(analysis: Analysis, property_: Verifiable) -> bool:
 
 
 def in_property_file(analysis: Analysis, property_: Verifiable, expected: str) -> WorkspaceEdit:
-    """The attribute `expect` of a property in XML.
+    """The edit that sets the attribute `expect` of a property in XML.
 
     Args:
-        expected: such as `>= 0.9`.
+        expected: the expectation, such as `>= 0.9`.
     """
     file = analysis.property_file(property_.path)
     written = next((w for w in file.properties if w.id and w.id.span == property_.name_span), None) if file else None
@@ -37,11 +38,12 @@ def in_property_file(analysis: Analysis, property_: Verifiable, expected: str) -
 
 
 def in_configuration(path: str, text: str | None, name: str, expected: str) -> WorkspaceEdit:
-    """The entry of a property in the table `verify.expect` of a configuration file; empty if it cannot be added.
+    """The edit that sets the entry of a property in the table `verify.expect` of a configuration file; empty if the
+    entry cannot be added.
 
     Args:
         path: the configuration file.
-        text: its text; `None` if it does not exist.
+        text: the text of the file; `None` if the file does not exist.
     """
     edit = expectation_edit(path, text or "", name, expected)
     if edit is None:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Folding ranges: elements, attributes on several lines, comments, CDATA sections; objects and lists in JSON."""
+"""Folding ranges: in XML, elements, attributes on several lines, comments and CDATA sections; in JSON, objects and
+lists."""
 
 from __future__ import annotations
 
@@ -21,7 +22,8 @@ class FoldKind(enum.Enum):
 
 
 class Fold(NamedTuple):
-    """The lines `first` to `last`, counted from 0, are folded to the line `first`."""
+    """A range of lines, from `first` to `last` inclusive, counted from 0. If it is folded, only the line `first` is
+    visible."""
 
     first: int
     last: int
@@ -29,7 +31,8 @@ class Fold(NamedTuple):
 
 
 def folds(analysis: Analysis, path: str) -> tuple[Fold, ...]:
-    """The folds of a file, in the order of the text; if several begin on one line, only the longest is returned."""
+    """The folding ranges of a file, in the order of the text. If several begin on one line, only the longest is
+    returned."""
     source = analysis.source(path)
     if source is None:
         return ()
@@ -61,14 +64,14 @@ def _xml(source: SourceFile, document: Document) -> Iterator[Fold]:
 
 
 def _lines(source: SourceFile, span: Span, kind: FoldKind = FoldKind.BLOCK) -> Iterator[Fold]:
-    """All lines of a span, if there are several."""
+    """The folding range of all lines of a span, if the span has several lines."""
     first, last = (source.lines.position(offset).line for offset in (span.start, span.end - 1))
     if last > first:
         yield Fold(first, last, kind)
 
 
 def _block(source: SourceFile, start: int, end: int) -> Iterator[Fold]:
-    """The lines from that of `start` to the one before that of `end`, so that the closing bracket or tag stays
+    """The folding range from the line of `start` to the line before `end`, so that the closing bracket or tag stays
     visible."""
     first, last = source.lines.position(start).line, source.lines.position(end)
     before = source.text[source.lines.line_start(last.line) : end]

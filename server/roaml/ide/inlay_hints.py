@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Inlay hints: types, topics, parameters of events, numbers and names of tree nodes, names of compared numbers.
 
-Each is computed from the existing models; the explanation of a hint is computed only on request (`explain`).
+The hints are computed from the analysed models. The explanation of a hint is computed on request (`explain`).
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ ALL_HINTS = frozenset(HintKind)
 
 @dataclass(frozen=True, slots=True)
 class InlayHintLabelPart:
-    """A piece of a hint; `symbol` is the symbol that it names, if any."""
+    """A part of the text of a hint. `symbol` is the symbol that it names, if any."""
 
     text: str
     symbol: Symbol | None = None
@@ -71,7 +71,7 @@ class InlayHintLabelPart:
 
 @dataclass(frozen=True, slots=True)
 class InlayHint:
-    """`offset` is its position in the text."""
+    """An inlay hint. `offset` is its position in the text of the file."""
 
     offset: int
     kind: HintKind
@@ -84,7 +84,7 @@ class InlayHint:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """The subject of a part of a hint: Markdown, and the place of its definition."""
+    """The explanation of a symbol in a hint: its description in Markdown, and the place of its definition."""
 
     text: str
     location: Location | None
@@ -104,7 +104,7 @@ def inlay_hints(
 
 
 def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> Iterable[InlayHint]:
-    """The hints in a file, as a part of one system or alone."""
+    """The hints in a file as a part of `system`, or as a file without a system."""
     kind, machine = analysis.kind(path), analysis.machine(path)
     if kind is FileKind.MACHINE and machine is not None:
         return _Machine(analysis, path, machine, within, system).all()
@@ -119,20 +119,20 @@ def _hints(analysis: Analysis, path: str, within: Span, system: str | None) -> I
 
 
 def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
-    """Hints that are equal in all systems that share a file are shown once; where they differ, the systems are
-    named."""
+    """The hints of all systems that share a file. A hint that is equal in all systems occurs once; hints that differ
+    contain the names of their systems."""
     at: dict[tuple[int, HintKind], dict[str, InlayHint]] = {}
-    for system, hints in by_system.items():
-        for hint in hints:
+    for system, system_hints in by_system.items():
+        for hint in system_hints:
             at.setdefault((hint.offset, hint.kind), {})[system] = hint
     merged: set[InlayHint] = set()
-    for (offset, kind), said in at.items():
+    for (offset, kind), hints in at.items():
         parts: list[InlayHintLabelPart] = []
-        # A system without a hint there differs as well.
-        groups = grouped({system: said[system].text if system in said else "" for system in by_system})
+        # A system without a hint at this place differs as well.
+        groups = grouped({system: hints[system].text if system in hints else "" for system in by_system})
         shown = [(text, names) for text, names in groups if text]
         for text, names in shown[:_MAX_NAMES]:
-            own = next(hint.parts for hint in said.values() if hint.text == text)
+            own = next(hint.parts for hint in hints.values() if hint.text == text)
             again = bool(parts) and own[0].text.strip() in _LEADS
             parts += [
                 *([InlayHintLabelPart("; ")] if parts else []),
@@ -146,7 +146,7 @@ def _merged(by_system: Mapping[str, set[InlayHint]]) -> set[InlayHint]:
 
 
 _LEADS = ("", "→", "=", ":")
-"""The beginnings of hints, which are not repeated."""
+"""Texts at the beginning of hints. They are omitted in all but the first of several merged hints."""
 
 
 def explain(analysis: Analysis, symbol: Symbol) -> Explanation:
@@ -218,7 +218,7 @@ class _Machine:
             yield from self.names(port.key, self.interfaces.get((declaration.kind, handle), {}), " = ")
 
     def names(self, at: Name, interfaces: dict[Symbol, str], lead: str) -> Iterator[InlayHint]:
-        """The topics, services or actions of a use."""
+        """The hint with the topics, services or actions to which a name refers."""
         if not interfaces:
             return
         parts: list[InlayHintLabelPart] = []
@@ -270,8 +270,9 @@ class _Machine:
 
     def type_part(self, type_: Type) -> InlayHintLabelPart:
         inner, _ = unwrap(type_)
-        is_ours = isinstance(inner, Struct) and inner.kind is StructKind.DECLARED
-        return InlayHintLabelPart(str(type_), Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_ours else None)
+        is_declared = isinstance(inner, Struct) and inner.kind is StructKind.DECLARED
+        struct = Symbol(self.owner, SymbolKind.STRUCT, str(inner)) if is_declared else None
+        return InlayHintLabelPart(str(type_), struct)
 
     def port_read(self, read: PortRead) -> Iterator[InlayHint]:
         if read.key is not None:
@@ -295,7 +296,7 @@ class _Machine:
             yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, InlayHintLabelPart(")")))
 
     def handle(self, user: Handler | RosSend) -> Iterator[InlayHint]:
-        """The interface of a handle, unless the handle is its name."""
+        """The hint with the interface of a handle, unless the handle is the name of the interface."""
         declaration = find_handle(self.machine, user)
         if user.handle is None or declaration is None or is_implicit(declaration):
             return
@@ -357,7 +358,7 @@ def _node(node: TreeNode, plugin: Name, automata: list[tuple[System, SystemAutom
 
 
 def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[System, SystemAutomaton]]]:
-    """The nodes of executed trees by tree and position in a file."""
+    """The nodes of the executed tree of a system that are written in a file, by tree and position."""
     by_position: dict[tuple[str, int], list[tuple[System, SystemAutomaton]]] = {}
     for automaton in system.automata:
         source = automaton.instance.source if automaton.instance else None
@@ -367,7 +368,8 @@ def _instances(system: System, path: str) -> dict[tuple[str, int], list[tuple[Sy
 
 
 def _properties(analysis: Analysis, path: str, within: Span, system: System) -> Iterator[InlayHint]:
-    """The nodes whose numbers occur in events of the tree, and the names of compared numbers."""
+    """Hints in a property file in JANI: the nodes whose numbers occur in names of events, and the names of numbers in
+    comparisons."""
     for declared in analysis.properties(path)[0]:
         for identifier, span in identifiers(declared.expression):
             if span.start > within.end or span.end < within.start:
@@ -384,7 +386,7 @@ def _properties(analysis: Analysis, path: str, within: Span, system: System) -> 
 
 
 def _property_file(analysis: Analysis, path: str, system: System | None) -> Iterator[InlayHint]:
-    """The nodes that ports name, and the names of compared numbers."""
+    """Hints in a property file in XML: the nodes that ports name, and the names of numbers in comparisons."""
     file = analysis.property_file(path)
     for port in file.ports if file is not None and system is not None else ():
         nodes_ = nodes_called(system, port.name.value) if system and port.kind is PortKind.NODE and port.name else ()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A readable view of a JANI model: indented, with an outline. The file itself, written by a translator, stays
-compact."""
+"""A readable view of a JANI model: indented, with an outline. The file, which a translator has written in a compact
+form, is not changed."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _LAYOUT = FileLayout(width=2)
 
 @dataclass(frozen=True, slots=True)
 class JaniView:
-    """A text, and its outline with positions in it."""
+    """The text of a view, and its outline with positions in this text."""
 
     text: str
     symbols: tuple[DocumentSymbol, ...]
 
 
 def jani_view(text: str) -> JaniView:
-    """Format the text of a JANI file: one member or item per line; an object or list that fits is on one line.
+    """The view of a JANI file. Each member or item has its own line, but an object or list that fits is on one line.
 
     Args:
         text: the text of the file; text with syntax errors is not changed.

@@ -10,7 +10,7 @@ from roaml.text import Span
 
 
 def values(value: JsonValue) -> Iterator[JsonValue]:
-    """A value and all values in it, in the order of the text."""
+    """`value` and all values inside it, in the order of the text."""
     stack = [value]
     while stack:
         inner = stack.pop()
@@ -28,7 +28,7 @@ def members(value: JsonValue) -> dict[str, JsonValue]:
 
 
 def spans_at(value: JsonValue, offset: int) -> list[Span]:
-    """The values, members, keys and contents of strings around an offset, outermost first."""
+    """The spans of the values, members, keys and contents of strings that contain an offset, outermost first."""
     spans: list[Span] = []
     inner: JsonValue | Member | None = value
     while inner is not None and inner.span.contains(offset):

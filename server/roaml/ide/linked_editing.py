@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The two names of an element, which are edited together."""
+"""The names in the start tag and the end tag of an element, which are edited together."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ NAME_PATTERN = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
 
 
 def linked_names(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
-    """The names in the start tag and in the end tag, if the offset is in one of them and they are equal."""
+    """The spans of the names in the start tag and the end tag of an element; empty if the offset is in neither of them,
+    or if the names differ."""
     file = xml_file(analysis, path)
     for element in file.document.path_at(offset)[-1:] if file else ():
         first, second = element.name_span, element.close_name_span

@@ -17,7 +17,7 @@ _CLOSERS = {Comment: "-->", CData: "]]>", Instruction: "?>"}
 
 
 def close_tag(analysis: Analysis, path: str, offset: int) -> TextEdit | None:
-    """The text to insert after the character before `offset` has been typed."""
+    """The insertion after the character before `offset` has been typed; `None` if nothing is inserted."""
     file = xml_file(analysis, path)
     if file is None:
         return None
@@ -37,7 +37,7 @@ def close_tag(analysis: Analysis, path: str, offset: int) -> TextEdit | None:
 
 
 def _end_tag(document: Document, offset: int) -> str:
-    """The end tag for the start tag that ends at the offset."""
+    """The end tag for the start tag that ends at the offset; "" if no start tag ends there."""
     for element in _elements(document):
         if element.open_span.end == offset and not element.self_closing:
             return f"</{document.text[element.name_span.start : element.name_span.end]}>"
@@ -45,7 +45,7 @@ def _end_tag(document: Document, offset: int) -> str:
 
 
 def _rest_of_end_tag(text: str, offset: int) -> str:
-    """The text after `</` before the offset: the name of the element that is open there."""
+    """The text that completes the `</` before the offset: the name of the innermost open element, and `>`."""
     name = open_element(text, offset - 2)
     return name if not name or text[offset : offset + 1] == ">" else f"{name}>"
 
@@ -73,7 +73,8 @@ def open_element(text: str, offset: int) -> str:
 
 
 def _end_of_start_tag(document: Document, offset: int) -> str:
-    """The text after the `/` before the offset, if it ends a start tag and is at the end of its line."""
+    """The text that completes the `/` before the offset: `>` if the `/` is in a start tag and at the end of its line,
+    otherwise ""."""
     line = document.text[offset : _line_end(document.text, offset)]
     if line.strip() and not line.lstrip().startswith("<"):
         return ""

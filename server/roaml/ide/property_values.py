@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of numbers in properties: statuses of tree nodes, codes of action results."""
+"""The names of numbers in properties that represent statuses of tree nodes or codes of action results."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def names_of_global(variable: str) -> Mapping[int, str]:
 
 
 def named_numbers(file: PropertyFile, condition: Expr) -> Iterator[tuple[Number, str]]:
-    """The numbers in a condition that are compared with a variable whose values have names."""
+    """The numbers in a condition that are compared with a variable whose values have names, each with its name."""
     names = {v.id.value: names_of_port(port, v) for port, v in file.variables if v.id is not None}
     for node in walk(condition):
         if isinstance(node, Binary) and node.operator in _COMPARING:
@@ -58,11 +58,11 @@ def named_numbers(file: PropertyFile, condition: Expr) -> Iterator[tuple[Number,
 
 
 def compared_global(around: Mapping[str, JsonValue], number: JsonNumber | None = None) -> str:
-    """The global variable that a number in a JANI expression is compared with; "" if there is none.
+    """The name of the global variable with which a number in a JANI expression is compared; "" if there is none.
 
     Args:
         around: the members of the comparison.
-        number: one of them; `None` while it is still to be written.
+        number: the value of one of these members; `None` if the number has not been written yet.
     """
     operator = around.get("op")
     known = BINARY_OPERATORS.get(operator.value) if isinstance(operator, JsonString) else None
@@ -73,7 +73,7 @@ def compared_global(around: Mapping[str, JsonValue], number: JsonNumber | None =
 
 
 def named_json_numbers(value: JsonValue) -> Iterator[tuple[JsonNumber, str]]:
-    """The numbers in JANI that are compared with a global variable whose values have names."""
+    """The numbers in JANI that are compared with a global variable whose values have names, each with its name."""
     for part in values(value):
         around = members(part)
         for side in (around.get("left"), around.get("right")):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Selection ranges, step by step: expression, value, attribute, tag, content, element, parents."""
+"""Selection ranges, which grow in steps: expression, value, attribute, tag, content, element, parents."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Tex
 
 
 def selections(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:
-    """The spans around an offset, the innermost first, each contained in the next; the last one is the whole text, even
-    if it is empty. There are none for a file without a text."""
+    """The spans around an offset, innermost first. Each is contained in the next, and the last one is the whole text.
+    The result is empty if the file cannot be read."""
     source = analysis.source(path)
     if source is None:
         return ()
@@ -69,13 +69,13 @@ def _in_element(document: Document, typed: Typed, offset: int) -> Iterator[Span]
 def _in_expression(expression: Expression, offset: int) -> Iterator[Span]:
     level: tuple[Expr, ...] = (expression.tree,)
     while inside := [node for node in level if node.span.contains(offset)]:
-        # Between two, as in `a|+b`, the one that begins at the caret is used.
+        # If the caret is between two expressions, as in `a|+b`, the one that begins at the caret is selected.
         yield inside[-1].span
         level = children(inside[-1])
 
 
 def _node(document: Document, parent: Element | None, offset: int) -> Iterator[Span]:
-    """The comment or text around an offset, and what is in it."""
+    """The spans of the comment or text around an offset, with and without its delimiters or white space."""
     for node in parent.nodes if parent else document.nodes:
         if not isinstance(node, Element) and node.span.contains(offset):
             raw = document.text[node.span.start : node.span.end]

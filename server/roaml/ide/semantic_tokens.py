@@ -2,7 +2,7 @@
 """Semantic tokens for coloring: tags by their role, attribute names, names in values, and expressions.
 
 - Tokens do not overlap, and none extends over the end of a line.
-- Determined by syntax and grammar only: names in expressions are not resolved.
+- Only the syntax and the grammar determine the tokens: names in expressions are not resolved.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ _LINE = re.compile(r"[^\r\n]+")
 
 
 def _on_lines(text: str, tokens: Iterable[SemanticToken]) -> Iterator[SemanticToken]:
-    """Tokens cut at line ends, without those that begin inside others."""
+    """The tokens split at line ends, without tokens that begin inside other tokens."""
     done = 0
     for token in tokens:
         start, end = token.span
@@ -126,7 +126,7 @@ def _xml(file: XmlFile) -> Iterator[SemanticToken]:
 
 
 def _tag_kind(file: XmlFile, typed: Typed) -> TokenKind | None:
-    """The token type of a tag; `None` for unknown tags. In trees an unknown tag names a plugin."""
+    """The kind of a tag; `None` for unknown tags. In a tree, an unknown tag is the name of a plugin."""
     element, type_ = typed
     if file.grammar is BEHAVIOR_TREE:
         if type_ is None:
@@ -180,7 +180,7 @@ _VALUES = {
 
 
 def _value(file: XmlFile, attribute: Attribute, known: AttributeType | None) -> Iterator[SemanticToken]:
-    """The token for the whole value of an attribute; none for expressions."""
+    """The token for the value of an attribute; none if the value is an expression."""
     name = name_of(attribute)
     if name is None:
         return
@@ -257,7 +257,8 @@ _PLAIN_KEYS = ("name", "comment")
 
 
 def _json(value: object) -> Iterator[SemanticToken]:
-    """The tokens of one value, without those inside of it; the key determines the type of a string."""
+    """The tokens of one value and of the keys and strings directly inside it. The key determines the kind of a
+    string."""
     if isinstance(value, JsonObject):
         for member in value.members:
             yield SemanticToken(member.key_span, TokenKind.ATTRIBUTE)

@@ -23,13 +23,13 @@ _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 @dataclass(frozen=True, slots=True)
 class SignatureHelp:
-    """A function of `Math`.
+    """The signature of a function of `Math`, whose call is being typed.
 
     Attributes:
-        label: the call.
-        parameters: their spans in `label`.
-        active: the parameter that is being typed; `None` if there are no or too few parameters.
-        documentation: Markdown.
+        label: the text of the signature.
+        parameters: the beginnings and ends of the parameters in `label`.
+        active: the index of the parameter that is being typed; `None` if the function has fewer parameters.
+        documentation: the description of the function, in Markdown.
     """
 
     label: str
@@ -39,11 +39,11 @@ class SignatureHelp:
 
 
 def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp | None:
-    """The call at a caret; `None` outside of all calls of known functions."""
+    """The signature for the call at a caret; `None` outside of calls of known functions."""
     file = xml_file(analysis, path)
     if file is None:
         return None
-    # Blanks at the end of a value without a closing quote are not part of it.
+    # A value without a closing quote does not include the blanks at its end.
     typed = len(file.document.text[:offset].rstrip())
     expression = expression_at(file, offset) or expression_at(file, typed)
     if expression is None:
@@ -65,8 +65,8 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp 
 
 
 def _innermost_call(text: str) -> tuple[str, int]:
-    """The function of `Math` whose parentheses are open at the end of `text`, and the number of commas in them; "" if
-    there is none."""
+    """The name of the function of `Math` whose parentheses are open at the end of `text`, and the number of commas in
+    them. The name is "" if there is no such call."""
     opened: list[tuple[str, str, int]] = []
     for token in _TOKEN.finditer(text):
         match token[0]:

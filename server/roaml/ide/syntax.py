@@ -23,7 +23,7 @@ class XmlFile(NamedTuple):
 
 
 class Typed(NamedTuple):
-    """An element with its type in the grammar; `None` for unknown elements."""
+    """An element with its type in the grammar, which is `None` for unknown elements."""
 
     element: Element
     type: ElementType | None
@@ -37,7 +37,7 @@ def xml_file(analysis: Analysis, path: str) -> XmlFile | None:
 
 
 def walk(file: XmlFile) -> Iterator[Typed]:
-    """All elements in document order."""
+    """All elements of a file with their types, in document order."""
     stack = [_typed(file.grammar, None, typed) for typed in _roots(file.document)][::-1]
     while stack:
         typed = stack.pop()
@@ -78,7 +78,7 @@ def expression_at(file: XmlFile, offset: int) -> Expression | None:
 
 
 def expression_in(document: Document, typed: Typed, offset: int) -> Expression | None:
-    """The expression around an offset, which is in the element `typed` and in none of its children."""
+    """The expression of the element `typed` around an offset. The offset must not be in a child of the element."""
     sources = expression_sources(document, typed)
     source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
     return None if source is None else expression_from(source)
@@ -89,6 +89,7 @@ def _roots(document: Document) -> list[Element]:
 
 
 def _typed(grammar: Grammar, parent: ElementType | None, element: Element) -> Typed:
-    """The type of an element in its parent, or that of elements with its name."""
+    """An element with the type that it has as a child of `parent`; if it is not allowed there, with the type of any
+    element with its name."""
     known = grammar.child(parent, element.name) if parent else None
     return Typed(element, known or grammar.find(element.name))

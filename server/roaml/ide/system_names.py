@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Short names that distinguish systems where several of them are listed."""
+"""Short names for systems, for texts that contain several of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 def system_names(paths: Iterable[str]) -> dict[str, str]:
-    """A short name for each system file: as many of its last folders as are needed to make it unique."""
+    """A short name for each system file: the end of its path, with as many folders as make it unique."""
     parts = {path: path.replace("\\", "/").split("/") for path in dict.fromkeys(paths)}
 
     def name(path: str) -> str:
@@ -27,18 +27,18 @@ def system_names(paths: Iterable[str]) -> dict[str, str]:
     return {path: name(path) for path in parts}
 
 
-def grouped(said: Mapping[str, T]) -> list[tuple[T, str]]:
-    """The texts about each system, without duplicates, with the names of their systems.
+def grouped(texts: Mapping[str, T]) -> list[tuple[T, str]]:
+    """The texts about systems, without duplicates, each with the names of its systems.
 
     Args:
-        said: the hashable text of each system, by the path of the system.
+        texts: the hashable text of each system, by the path of the system.
 
     Returns:
-        In the order of the systems. The names are "" if the text is the same for all.
+        Pairs of a text and the names, in the order of the systems. The names are "" if all systems have the same text.
     """
-    names = system_names(said)
+    names = system_names(texts)
     groups: dict[T, list[str]] = {}
-    for path, text in said.items():
+    for path, text in texts.items():
         groups.setdefault(text, []).append(names[path])
     if len(groups) == 1:
         return [(next(iter(groups)), "")]

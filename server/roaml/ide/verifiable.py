@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The properties of a system that can be verified, and the texts on which the answers depend."""
+"""The properties of a system that can be verified, and the files on which the results of a verification depend."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from roaml.project.analysis import Analysis
 from roaml.text import SourceFile, Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
-"""Files with the digests of their content."""
+"""Paths of files, each with the digest of the content."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verifiable:
-    """A property of a system: `span` is its place in the file at `path`, `name_span` that of its name without the
+    """A property of a system. `span` is its place in the file `path`; `name_span` is the place of its name without
     quotes.
 
-    `comment` says what the property requires: a sentence, or the comment in a JANI file.
+    `comment` describes the property: its sentence if it is written in XML, or its comment in a JANI file.
     """
 
     name: str
@@ -36,7 +36,8 @@ class Verifiable:
 
 
 def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
-    """The properties of the system file at `system`, in their order, without those that contain errors."""
+    """The properties of the system file `system`, in the order of their files, without properties that contain
+    errors."""
     properties: dict[str, Iterator[Verifiable]] = {}
     for listed in analysis.listed(system):
         if listed.usable and listed.required_kind is FileKind.PROPERTIES:
@@ -77,8 +78,8 @@ def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
 
 
 def fingerprint(analysis: Analysis, system: str) -> Texts:
-    """The content of the files of a system: the results are valid as long as it is equal. Expectations are no part of
-    it: they judge results and do not change them."""
+    """The digests of the files of a system. Results of a verification are valid as long as the digests are the same.
+    They do not include the expectations of properties, which do not change the results."""
     sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
     return tuple((path, _digest(analysis, path, source)) for path, source in sources if source is not None)
 

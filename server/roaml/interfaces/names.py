@@ -27,7 +27,8 @@ _KEYWORDS = {**dict.fromkeys(keyword.kwlist, "Python"), **dict.fromkeys(_CPP_KEY
 
 
 def keyword_of(name: str) -> str | None:
-    """The language in which a field `name` cannot be generated because the name is a keyword there, if any."""
+    """The language in which `name` is a keyword, Python or C++, so that ROS 2 cannot generate code for a field with
+    this name; `None` if `name` is not a keyword."""
     return _KEYWORDS.get(name)
 
 

@@ -25,7 +25,8 @@ from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, valu
 from roaml.text import Span
 
 MAX_LENGTH = 1_000_000
-"""The maximum number of characters that are read, at the end of a line; real definitions have a hundredth of it."""
+"""The maximum number of characters that are read; a line that exceeds the limit is not read. Real definitions are a
+hundred times shorter."""
 
 _LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
 _NAME = re.compile(r"[^ \t#=]+")
@@ -45,8 +46,8 @@ def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, t
 
 
 class _Head(NamedTuple):
-    """The part before the value of a field or constant. The type of a known name is primitive or a message that may
-    exist."""
+    """The part before the value of a field or constant. `type_is_known` is true if the type is primitive or was read
+    without errors."""
 
     type: FieldType
     type_span: Span
@@ -88,7 +89,7 @@ class _Parser:
         self.report = report
         self.sections = [_OpenSection()]
         self.opening = True  # only comment lines so far in this section
-        self.above: list[str] = []  # comment lines that wait for the element below them
+        self.above: list[str] = []  # comment lines above the next element
         self.last: _Element | None = None  # the element that an indented comment line continues
 
     def run(self) -> tuple[Section, ...]:
@@ -192,9 +193,9 @@ class _Parser:
         self.add(item, comment)
 
     def head(self, type_span: Span, end: int) -> _Head:
-        mistakes = len(self.report)
+        errors_before = len(self.report)
         type_ = parse_type(self.text, type_span, self.package, self.report)
-        is_known = type_.is_primitive or len(self.report) == mistakes
+        is_known = type_.is_primitive or len(self.report) == errors_before
         name_start = skip_blanks(self.text, type_span.end, end)
         name = _NAME.match(self.text, name_start, end)
         name_span = Span(*name.span()) if name else Span(name_start, name_start)

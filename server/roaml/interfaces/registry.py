@@ -96,7 +96,7 @@ class Registry:
         self._parsed: dict[str, tuple[tuple[Kind, str, str, bytes], Parsed]] = {}
 
     def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
-        """A registry with another view of the files; both share the parsed definitions."""
+        """A registry that reads files with `read`. Both registries share the parsed definitions."""
         other = Registry(self.search_path, read)
         other._parsed = self._parsed
         return other
@@ -111,7 +111,7 @@ class Registry:
         return self.find("action", package, name)
 
     def resolve(self, kind: Kind, type_name: str) -> Definition | NotFound:
-        """The definition of `type_name`, a name that `split_type_name` can read."""
+        """The definition of a type such as `std_msgs/Int32`."""
         names = split_type_name(type_name, kind)
         if names is None:
             return self._malformed(kind, type_name)
@@ -122,7 +122,8 @@ class Registry:
         return parsed.definition if isinstance(parsed, Parsed) else parsed
 
     def other_definition(self, kind: Kind, package: str, name: str) -> Definition | None:
-        """Another, different definition of the same type, which is not used because this one is found first."""
+        """A different definition of the same type that is not used, because another one precedes it in the search path;
+        `None` if there is none."""
         first = self.find(kind, package, name)
         if isinstance(first, NotFound) or not _is_type_name(package, name):
             return None
@@ -133,7 +134,7 @@ class Registry:
         return None
 
     def parsed(self, kind: Kind, package: str, name: str) -> Parsed | NotFound:
-        """Like `find`, with the errors in the definition's file."""
+        """The result of `find` together with the errors in the file of the definition."""
         if not _is_type_name(package, name):
             return self._malformed(kind, f"{package}/{name}")
         path = self.search_path.locate(package, kind, name)
@@ -172,8 +173,8 @@ class Registry:
         return NotFound(Reason.UNKNOWN_TYPE, kind, requested, close, other_kind, looked_in)
 
     def _malformed(self, kind: Kind, requested: str) -> NotFound:
-        """The intended type of a malformed name such as `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare
-        `Int32`."""
+        """The result for a malformed name such as `std_msgs.msg.Int32`, `std_msgs::msg::Int32` or a bare `Int32`, with
+        the types that were probably intended."""
         words = [word for word in _WORD_BREAKS.split(requested[:_MAX_NAME_LENGTH]) if word and word not in KINDS]
         close: tuple[str, ...] = ()
         if words:

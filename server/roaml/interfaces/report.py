@@ -48,5 +48,5 @@ class FileFindings:
 
 
 def shorten(written: str) -> str:
-    """Text of a file as messages show it, shortened if it is long."""
+    """Text of a file for a message, shortened to 40 characters."""
     return written if len(written) <= 40 else f"{written[:40]}…"

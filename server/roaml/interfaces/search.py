@@ -2,8 +2,8 @@
 """The search for definition files.
 
 - Places are searched in this order: workspace folders, `--ros-path` folders, the prefixes of `AMENT_PREFIX_PATH`, and
-  the standard packages of this tool. The first file is used, type by type: a folder that contains a part of a package
-  hides no other type of it.
+  the standard packages of this tool. The first file of each type is used. So a place that contains only some types of a
+  package does not hide the other types of the package in later places.
 - A package is a folder with a definition file in its `msg/`, `srv/` or `action/`. Its name is that in its `package.xml`
   if there is one, otherwise that of the folder.
 - Only folder listings and the head of `package.xml` are read, once: a place is listed at the first request and again
@@ -27,8 +27,8 @@ MAX_DEPTH = 6
 """The maximum depth of packages below a workspace or `--ros-path` folder."""
 
 MAX_FOLDERS = 10_000
-"""The maximum number of folders that are searched in such a place, the nearest first: it may be a home folder or
-`/`."""
+"""The maximum number of folders that are searched below a workspace or `--ros-path` folder, which may be a home folder
+or `/`. Folders at a smaller depth are searched first."""
 
 SYSTEM_FOLDERS = frozenset({"/dev", "/proc", "/sys"})
 """Folders of the operating system without files of users; they are not searched."""
@@ -58,7 +58,7 @@ class SearchPath:
         self._workspace = _absolute(workspace)
         self._ros_paths = _absolute(ros_paths)
         self._ament_prefixes = _absolute(ament_prefixes)
-        self._asked: tuple[_Place, ...] | None = None
+        self._known_places: tuple[_Place, ...] | None = None
         self._packages: Mapping[str, Mapping[Kind, tuple[str, ...]]] | None = None
 
     def locate(self, package: str, kind: Kind, name: str) -> str | None:
@@ -71,8 +71,8 @@ class SearchPath:
     def repetitions(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
         """All files that define `package/name`; the first one is used.
 
-        The standard packages are left out: they are for users without their own. Of the ament prefixes only the first
-        that has the type is included, because prefixes overlay each other intentionally.
+        The standard packages are left out, because every other definition replaces them intentionally. For the same
+        reason, only the first ament prefix that has the type is included.
         """
         folders: list[str] = []
         in_prefix = False
@@ -85,8 +85,8 @@ class SearchPath:
         return tuple(dict.fromkeys(folders))
 
     def packages(self) -> Mapping[str, Mapping[Kind, tuple[str, ...]]]:
-        """All that can be located: package -> kind -> names, packages and names sorted, with an entry for every
-        kind."""
+        """All types that can be located: package -> kind -> names, with an entry for every kind. Packages and names are
+        sorted."""
         if self._packages is None:
             packages: dict[str, dict[Kind, set[str]]] = {}
             for place in self._places():
@@ -101,7 +101,7 @@ class SearchPath:
         return self._packages
 
     def looked_in(self) -> tuple[str, ...]:
-        """Phrases for the places, for the message that a type was not found."""
+        """Phrases for the places that are searched, for the message that a type was not found."""
         places = (
             *(f"the workspace {self._described(path)}" for path in self._workspace),
             *(f"{self._described(path)} from --ros-path" for path in self._ros_paths),
@@ -117,18 +117,18 @@ class SearchPath:
 
     def refresh(self) -> None:
         """Discard all listings: files or folders were created or deleted."""
-        self._asked = None
+        self._known_places = None
         self._packages = None
 
     def _places(self) -> tuple[_Place, ...]:
-        if self._asked is None:
-            self._asked = (
+        if self._known_places is None:
+            self._known_places = (
                 *(_Tree(path) for path in self._workspace),
                 *(_Share(_share(path)) if _is_ament_prefix(path) else _Tree(path) for path in self._ros_paths),
                 *(_Share(_share(path)) for path in self._ament_prefixes),
                 _Share(_standard()),
             )
-        return self._asked
+        return self._known_places
 
 
 class _Place(Protocol):
@@ -142,7 +142,7 @@ class _Place(Protocol):
 
 
 class _Share:
-    """A folder whose subfolders are packages with the same name; only requested packages are listed."""
+    """A folder whose subfolders are packages with the names of the subfolders; only requested packages are listed."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -198,7 +198,8 @@ class _Tree:
 
 
 class _Listing(NamedTuple):
-    """The packages of a place, the files that others hide, and whether there are more folders than were searched."""
+    """The packages of a place, the files that are hidden by other files of the same types, and whether there are more
+    folders than were searched."""
 
     files: Mapping[str, _Files]
     hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]
@@ -206,7 +207,8 @@ class _Listing(NamedTuple):
 
 
 def _scan(root: str) -> _Listing:
-    """The packages in and below `root`, level by level, so that of two equal types the nearer one is used."""
+    """The packages in and below `root`. Folders are read level by level, so that the definition at the smallest depth
+    is used if a type is defined several times."""
     packages: dict[str, dict[Kind, dict[str, str]]] = {}
     hidden: dict[tuple[str, Kind, str], tuple[str, ...]] = {}
     entered: set[tuple[int, int]] = set()
@@ -293,7 +295,7 @@ def _is_ament_prefix(folder: str) -> bool:
 
 @cache
 def _standard() -> str:
-    from importlib import resources  # noqa: PLC0415  costs more than all of this package
+    from importlib import resources  # noqa: PLC0415  takes longer to import than all of this package
 
     return str(resources.files("roaml.interfaces") / "standard")
 

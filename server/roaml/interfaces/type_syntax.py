@@ -25,7 +25,8 @@ _HEADER = "std_msgs/Header"
 
 
 def find_type(text: str, start: int, end: int) -> Span:
-    """The span of the type that begins at `start` and ends before a name; it includes `<= 5` and `[ 5 ]`."""
+    """The span of the type that begins at `start` and ends before a name. It includes bounds and sizes with spaces,
+    such as `<= 5` and `[ 5 ]`."""
     token = _TOKEN.match(text, start, end)
     return Span(start, token.end() if token else start)
 
@@ -58,7 +59,7 @@ def parse_type(text: str, span: Span, package: str, report: FileFindings) -> Fie
 
 
 def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int | None]:
-    """The text between the brackets."""
+    """The kind of an array and its number of elements, read from `size`, the text between the brackets."""
     if not size:
         return ArrayKind.UNBOUNDED, None
     is_bounded = size.startswith("<")
@@ -69,7 +70,7 @@ def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int 
 
 
 def _limit(written: str, span: Span, forms: str, report: FileFindings) -> int | None:
-    """The N of `<=N`; `None` with a finding that explains the valid `forms`."""
+    """The N of `<=N`; `None` if it is invalid, which is reported with the sentence `forms` about the valid forms."""
     number = written.removeprefix("<=")
     if number != written and _LIMIT.fullmatch(number) and 1 <= int(number) <= _GREATEST_LIMIT:
         return int(number)
@@ -100,7 +101,8 @@ def _name_with_package(written: str, span: Span, report: FileFindings) -> str:
     if middle in (["srv"], ["action"]):
         report.add(
             span,
-            f"a field contains messages; `{shorten(written)}` is {'a service' if middle == ['srv'] else 'an action'}",
+            f"the type of a field must be a message; `{shorten(written)}` is "
+            f"{'a service' if middle == ['srv'] else 'an action'}",
         )
     elif middle not in ([], ["msg"]):
         report.add(span, "a message type is written `package/Name`")

@@ -57,7 +57,7 @@ class ArrayKind(enum.Enum):
     """The kind of an array, by its number of elements."""
 
     NONE = "none"
-    """No array: `T`."""
+    """Not an array: `T`."""
     FIXED = "fixed"
     """Exactly `size` elements: `T[N]`."""
     BOUNDED = "bounded"
@@ -169,7 +169,7 @@ class Definition:
 
     @property
     def full_name(self) -> str:
-        """`package/Name`, as models spell it."""
+        """The name of the type in models: `package/Name`."""
         return f"{self.package}/{self.name}"
 
     @property

@@ -50,7 +50,7 @@ def value_end(text: str, start: int, line_end: int) -> int:
 def parse_value(text: str, span: Span, type_: FieldType, report: FileFindings) -> Value | None:
     """The value in `text[span]`, or `None` with a finding. The value of an array is a tuple.
 
-    Nested messages have no literals, so any value of one is an error.
+    A nested message cannot be written as a literal, so any value for it is an error.
     """
     if not type_.is_primitive:
         report.add(

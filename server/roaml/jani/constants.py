@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values that the user chooses for the constants without a value."""
+"""Sets the constants of a model that have no value to values that the user chooses."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from roaml.suggest import nearest_name
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
 _REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
-_WANTED: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number", REAL: "a number"}
+_TYPE_PHRASES: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number", REAL: "a number"}
 
 
 def with_constants(model: Model, texts: Iterable[str]) -> Model:
-    """A model with values for some of its constants.
+    """A copy of `model` in which some constants have values.
 
     Args:
         texts: assignments of the form `NAME=VALUE`.
 
     Raises:
-        ValueError: a text is not of this form; there is no constant with this name, or it has a value; or the value is
-            not of its type. The message contains the reason.
+        ValueError: a text does not have this form, the constant does not exist or already has a value, or the value
+            does not have the type of the constant. The message states the reason.
     """
     given: dict[str, str] = {}
     for text in texts:
@@ -43,7 +43,9 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
     for name in given:
         if name not in known:
             close = nearest_name(name, known)
-            hint = f"did you mean {close}?" if close else f"the model has: {', '.join(known) or 'none'}"
+            hint = (
+                f"did you mean {close}?" if close else f"the constants of the model are: {', '.join(known) or 'none'}"
+            )
             raise ValueError(f"there is no constant {name}; {hint}")
         if known[name].value is not None:
             raise ValueError(f"the constant {name} has a value in the model, which --constant cannot change")
@@ -57,7 +59,8 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
             try:
                 values[constant.name] = evaluate(constant.value, values, {})
             except EvaluationError:
-                # It depends on a constant without a value, or calls a function; bounds that need it are not checked.
+                # The value depends on a constant without a value, or calls a function. Bounds that depend on it are not
+                # checked.
                 continue
     return replace(model, constants=tuple(constants))
 
@@ -73,10 +76,10 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
     elif base is REAL and _REAL.fullmatch(text) and math.isfinite(float(text)):
         value = Real(float(text))
     if value is None:
-        type_phrase = _WANTED.get(base) if isinstance(base, BasicType) else None
-        raise ValueError(
-            f"the constant {constant.name} must be {type_phrase or 'of a type that cannot be given'}, not '{text}'"
-        )
+        type_phrase = _TYPE_PHRASES.get(base) if isinstance(base, BasicType) else None
+        if type_phrase is None:
+            raise ValueError(f"the constant {constant.name} has a type whose values --constant does not support")
+        raise ValueError(f"the constant {constant.name} must be {type_phrase}, not '{text}'")
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):
             bound = None if end is None else _number(end, known)

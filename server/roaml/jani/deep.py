@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recursion without the Python stack, so that no nesting in a file overflows it.
+"""Recursion without the Python stack, so that deeply nested files cannot overflow it.
 
-A recursive function is written as a generator that yields each recursive call and is sent the call's result:
+A recursive function is written as a generator. It yields each recursive call, and `yield` returns the result:
 
     def depth(node: Node) -> Steps[int]:
         below = 0
@@ -20,11 +20,11 @@ from typing import Any, TypeAlias, TypeVar
 T = TypeVar("T")
 
 Steps: TypeAlias = Generator[Any, Any, T]
-"""A computation of a `T` in steps; each step is another computation whose result it needs."""
+"""A computation whose result is a `T`. Each value that it yields is another computation whose result it needs."""
 
 
 def run(steps: Steps[T]) -> T:
-    """The result of `steps`."""
+    """The result of the computation `steps`."""
     stack: list[Steps[Any]] = [steps]
     result: Any = None
     while stack:
@@ -40,6 +40,6 @@ def run(steps: Steps[T]) -> T:
 
 
 def done(result: T) -> Steps[T]:
-    """A computation without any step."""
+    """A computation that has the result `result` without any step."""
     return result
     yield  # never reached: makes this a generator

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expressions, which have a value in each state of a model.
 
-- Frozen; equal if they have the same content, wherever they are.
-- They may nest as deeply as memory allows: walk them with `walk` or `roaml.jani.deep`, never by plain recursion.
+- Expressions are immutable. Two expressions are equal if their content is equal; their origins are ignored.
+- Expressions may be nested as deeply as memory allows. Visit them with `walk` or `roaml.jani.deep`, never by plain
+  recursion.
 """
 
 from __future__ import annotations
@@ -35,14 +36,14 @@ class Real(Node):
 
 @dataclass(frozen=True, slots=True)
 class NamedNumber(CommentedNode):
-    """`{"constant": "e"}` or `{"constant": "π"}`."""
+    """A named real number: `{"constant": "e"}` or `{"constant": "π"}`."""
 
     constant: NumberConstant
 
 
 @dataclass(frozen=True, slots=True)
 class Name(Node):
-    """A variable, constant or parameter."""
+    """A reference to a variable, constant or parameter."""
 
     identifier: str
 
@@ -62,7 +63,7 @@ class Binary(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Conditional(CommentedNode):
-    """`ite`: `then` if `test` holds, otherwise `otherwise`."""
+    """`ite`: the value of `then` if `test` holds; otherwise the value of `otherwise`."""
 
     test: Expression
     then: Expression
@@ -86,7 +87,7 @@ class ArrayValue(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class ArrayConstructor(CommentedNode):
-    """`ac`: the array of `body` for `variable` = 0, ..., `length` - 1."""
+    """`ac`: an array of `length` elements, the values of `body` for `variable` = 0, ..., `length` - 1."""
 
     variable: str
     length: Expression
@@ -152,14 +153,15 @@ class Sample(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Derivative(CommentedNode):
-    """`der`: the derivative of a continuous variable by time."""
+    """`der`: the derivative of a continuous variable with respect to time."""
 
     variable: str
 
 
 @dataclass(frozen=True, slots=True)
 class Missing(Node):
-    """A part that cannot be read; a finding of the reader contains the reason. A model with findings is not written."""
+    """A part that cannot be read. A finding of the reader states the reason. A model with such a part is not
+    written."""
 
 
 Expression: TypeAlias = (
@@ -191,7 +193,7 @@ LValue: TypeAlias = Name | ArrayAccess | DatatypeAccess | OptionAccess | Missing
 
 
 def children(expression: Expression) -> tuple[Expression, ...]:
-    """The direct subexpressions, in the order in which they are written."""
+    """The direct subexpressions, in the order of the JANI file."""
     match expression:
         case Binary():
             return (expression.left, expression.right)

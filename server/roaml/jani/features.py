@@ -7,7 +7,7 @@ import enum
 
 
 class Feature(enum.Enum):
-    """A registered extension. Names beginning with `x-` are free for vendors and not listed here."""
+    """An extension that JANI defines. Names that begin with `x-` are reserved for tools and are not listed."""
 
     ARRAYS = "arrays"
     DATATYPES = "datatypes"
@@ -29,4 +29,4 @@ SUPPORTED = frozenset(Feature) - {
     Feature.NAMED_EXPRESSIONS,
     Feature.TRADEOFF_PROPERTIES,
 }
-"""The extensions whose syntax `roaml.jani` can read and write; the others may be declared, but not used."""
+"""The extensions whose syntax `roaml.jani` reads and writes. A file may declare other extensions, but not use them."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of expressions and formulas, and the undeclared names in them.
+"""Infers the types of expressions and formulas, and reports type errors and undeclared names in them.
 
-- Codes of findings: `jani-name` and `jani-type`; their positions are the origins of the nodes.
-- A part that was reported has type `UNKNOWN` and causes no further findings.
-- An int can be used as a real; there is no other conversion (`types.fits`). Array equality and nested path formulas are
-  accepted, although most tools support neither.
+- The findings have the codes `jani-name` and `jani-type`. Their positions are the origins of the nodes.
+- A part with a reported error has the type `UNKNOWN` and causes no further findings.
+- An int can be used as a real; there is no other conversion (`types.fits`). Equality of arrays and nested path formulas
+  are accepted, although most tools support neither.
 """
 
 from __future__ import annotations
@@ -83,8 +83,8 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class TypeScope:
-    """The names that are declared somewhere. `variables` also contains constants and parameters; `constants` cannot be
-    assigned to."""
+    """The names that can be used in one place of a model. `variables` also contains constants and parameters; the names
+    in `constants` cannot be assigned to."""
 
     variables: Mapping[str, Type]
     functions: Mapping[str, Function] = field(default_factory=dict)
@@ -93,7 +93,7 @@ class TypeScope:
 
 
 class PathKind(enum.Enum):
-    """The kind of a formula that holds or does not hold on a path, instead of a type."""
+    """The kind of a path formula, which has no type: it holds on a path, not in a state."""
 
     PATH = "path"
 
@@ -102,7 +102,7 @@ PATH = PathKind.PATH
 
 Kind: TypeAlias = Type | PathKind
 Bound: TypeAlias = Mapping[str, Type]
-"""The names that an expression itself declares."""
+"""The types of the names that enclosing expressions declare, such as the variable of an array constructor."""
 
 
 class Inference:
@@ -113,7 +113,8 @@ class Inference:
         self.notes = Notes()
 
     def expect(self, node: Formula, kind: Kind, target: Type, subject: str) -> None:
-        """Report `node`, of type `kind`, unless it fits `target`."""
+        """Report `node` if its kind or type `kind` does not fit `target`. `subject` is a phrase for it in the
+        message."""
         if isinstance(kind, PathKind):
             self.notes.type(span_of(node), f"{subject} cannot be a formula about paths; use it in `Pmin` or `Pmax`")
         elif not fits(kind, target):
@@ -187,7 +188,7 @@ class Inference:
         return UNKNOWN
 
     def apply(self, node: Node, operator: Operator, operands: list[tuple[Formula, Type]]) -> Type:
-        """The type of the result of `operator`."""
+        """The type of the result of `operator`. Operands whose types do not fit are reported."""
         types = [type_ for _, type_ in operands]
         signature = operator.signature
         if signature is Signature.EQUALITY:
@@ -214,10 +215,10 @@ class Inference:
                 return assert_never(signature)
 
     def joined(self, node: Node, left: Type, right: Type) -> Type:
-        """The common type of both values, or a finding that there is none."""
+        """The common type of two values; `UNKNOWN` and a finding if there is none."""
         result = join(left, right)
         if result is None:
-            message = f"the two values must have one type, but they are {describe(left)} and {describe(right)}"
+            message = f"the two values must have the same type, but they are {describe(left)} and {describe(right)}"
             self.notes.type(span_of(node), message)
             return UNKNOWN
         return result
@@ -230,7 +231,7 @@ class Inference:
                 if isinstance(array_type, ArrayType):
                     return array_type.element
                 if not isinstance(array_type, UnknownType):
-                    self.notes.type(span_of(array), f"only an array has elements, not {describe(array_type)}")
+                    self.notes.type(span_of(array), f"only an array has elements; this value is {describe(array_type)}")
                 return UNKNOWN
             case ArrayValue(elements):
                 common: Type | None = None
@@ -251,7 +252,7 @@ class Inference:
                 if isinstance(type_, DatatypeType):
                     return self.member(node, type_.name, member)
                 if not isinstance(type_, UnknownType):
-                    self.notes.type(span_of(record), f"only a datatype has members, not {describe(type_)}")
+                    self.notes.type(span_of(record), f"only a datatype has members; this value is {describe(type_)}")
                 return UNKNOWN
             case DatatypeValue(datatype, members):
                 declared = self.scope.datatypes.get(datatype)
@@ -264,7 +265,7 @@ class Inference:
                 given = {name for name, _ in members}
                 for part in declared.members if declared else ():
                     if part.name not in given:
-                        self.notes.type(span_of(node), f"a `{datatype}` needs a value for `{part.name}`")
+                        self.notes.type(span_of(node), f"a value of `{datatype}` needs the member `{part.name}`")
                 return DatatypeType(datatype) if declared else UNKNOWN
             case _:
                 return assert_never(node)
@@ -353,7 +354,7 @@ class Inference:
             self.expect(node, kind, BOOL, f"an operand of `{operator}`")
 
     def combine(self, node: Node, operator: Operator, operands: list[tuple[Formula, Kind]]) -> Kind:
-        """The result of an operator on formulas; a logical one may combine formulas about a path."""
+        """The kind or type of the result of an operator on formulas. Logical operators may combine path formulas."""
         states = [(operand, kind) for operand, kind in operands if not isinstance(kind, PathKind)]
         if len(states) == len(operands):
             return self.apply(node, operator, states)
@@ -407,7 +408,7 @@ class Inference:
 
 
 def _is_natural(exponent: Formula) -> bool:
-    """Whether an int to the power of `exponent` is known to be an int."""
+    """Whether `exponent` is a literal that is not negative, so that an int to this power is an int."""
     return isinstance(exponent, Integer) and exponent.value >= 0
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON objects of a known shape: their members; everything else is reported.
+"""Reads the members of JSON objects that must have a certain shape, and reports everything that does not fit.
 
-- A member is reported once: if it cannot be read as JSON or is of the wrong kind, it is treated as missing.
+- A member is reported at most once: a member that is not valid JSON or has the wrong kind is treated as missing.
 - An unknown member is an error, because it may change the meaning of the model. Only members that are known to be
-  comments (`HARMLESS`) are skipped where JANI does not define them.
+  comments (`HARMLESS`) are ignored if JANI does not define them.
 """
 
 from __future__ import annotations
@@ -17,27 +17,33 @@ from roaml.json_syntax import JsonArray, JsonBool, JsonError, JsonNumber, JsonOb
 from roaml.text import Span
 
 HARMLESS = frozenset(("comment", "metadata"))
-"""Members that never have a meaning, wherever they are."""
+"""The names of members that never change the meaning of a model."""
 
 
 class ObjectShape(NamedTuple):
-    """The kind of an object, with its article, and its required and optional members. `is_open` means that other
-    members are comments."""
+    """The shape of an object.
 
-    what: str
+    Attributes:
+        phrase: the kind of the object with its article, for messages.
+        required: the names of the members that it must have.
+        allowed: the names of all members that it may have.
+        is_open: whether other members are comments, which are ignored.
+    """
+
+    phrase: str
     required: frozenset[str]
     allowed: frozenset[str]
     is_open: bool = False
 
 
-def shape(what: str, required: str, optional: str = "", is_open: bool = False) -> ObjectShape:
-    """`required` and `optional` are names, separated by spaces."""
+def shape(phrase: str, required: str, optional: str = "", is_open: bool = False) -> ObjectShape:
+    """An object shape. `required` and `optional` are names of members, separated by spaces."""
     needed = frozenset(required.split())
-    return ObjectShape(what, needed, needed | frozenset(optional.split()), is_open)
+    return ObjectShape(phrase, needed, needed | frozenset(optional.split()), is_open)
 
 
 class ValueSource:
-    """The source of values: the path of the file and the notes on it."""
+    """A file from which JSON values are read: its path and the findings in it."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         self.path = path
@@ -47,19 +53,19 @@ class ValueSource:
         return Origin(self.path, span)
 
     def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
-        """The members of `value`; `None` (and a finding) if it is not an object."""
+        """The members of `value`; `None` and a finding if it is not an object."""
         if isinstance(value, JsonObject):
             return Members(value, form, self)
-        self.wrong_kind(value, form.what + " must be an object `{ }`")
+        self.wrong_kind(value, form.phrase + " must be an object `{ }`")
         return None
 
     def wrong_kind(self, value: JsonValue | None, expected: str) -> None:
         if value is not None and not isinstance(value, JsonError):
-            self.notes.syntax(value.span, f"{expected}, not as {kind(value)}")
+            self.notes.syntax(value.span, f"{expected}, not {kind(value)}")
 
 
 class Members:
-    """The members of one object; if two have the same name, the last one is used."""
+    """The members of one object. If names are repeated, the last member is used."""
 
     def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.object = value
@@ -78,19 +84,19 @@ class Members:
                     continue
                 place, known = member.key_content_span, sorted(form.allowed)
                 severity = Severity.WARNING if form.is_open else None
-                self.notes.unknown("member", key, place, known, code=SYNTAX, severity=severity, owner=form.what)
+                self.notes.unknown("member", key, place, known, code=SYNTAX, severity=severity, owner=form.phrase)
             elif member.value is not None and not isinstance(member.value, JsonError):
                 self.values[key] = member.value
         if missing:
             names = " and ".join(f"`{name}`" for name in sorted(missing))
-            self.notes.syntax(Span(value.start, value.start + 1), f"{form.what} needs {names}")
+            self.notes.syntax(Span(value.start, value.start + 1), f"{form.phrase} needs {names}")
 
     @property
     def origin(self) -> Origin:
         return self.source.origin(self.object.span)
 
     def string(self, key: str) -> JsonString | None:
-        """The member `key`, which must be a string that is not empty."""
+        """The member `key`, which must be a non-empty string; `None` if it is missing or not such a string."""
         value = self.values.get(key)
         if isinstance(value, JsonString):
             if value.value:
@@ -105,7 +111,7 @@ class Members:
         return None if value is None else value.value
 
     def comment(self, key: str = "comment") -> str | None:
-        """The member `key`, a comment string, which may be empty."""
+        """The member `key`, which must be a string and may be empty; `None` if it is missing or not a string."""
         value = self.values.get(key)
         if isinstance(value, JsonString):
             return value.value
@@ -130,12 +136,12 @@ class Members:
         return None
 
     def items(self, key: str) -> tuple[JsonValue, ...]:
-        """The items of the list `key`; empty if there is no such list."""
+        """The items of the list in the member `key`; empty if it is missing or not a list."""
         array = self.array(key)
         return () if array is None else array.items
 
     def array(self, key: str) -> JsonArray | None:
-        """The list `key`."""
+        """The list in the member `key`; `None` if it is missing or not a list."""
         value = self.values.get(key)
         if isinstance(value, JsonArray):
             return value

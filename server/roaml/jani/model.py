@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A JANI model: automata that share variables and synchronise on actions.
 
-- Frozen; every part has an `origin`, which equality ignores.
-- A synchronisation lists only the automata that take part: the table of automata x vectors of the JSON form is never
-  built.
+- A model is immutable. Every part has an `origin`, which equality ignores.
+- A synchronisation lists only the automata that take part in it. The table of the JSON format, which has an entry for
+  each automaton and each synchronisation, is never stored.
 """
 
 from __future__ import annotations
@@ -47,14 +47,15 @@ class Metadata(Node):
 
 @dataclass(frozen=True, slots=True)
 class Clause(CommentedNode):
-    """An expression for which JANI allows a comment: a guard, rate, probability, time progress, restriction."""
+    """An expression for which JANI allows a comment: a guard, a rate, a probability, a time progress condition or a
+    restriction of initial states."""
 
     exp: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Constant(CommentedNode):
-    """A constant. Without `value`, the user of the model chooses the value."""
+    """A constant. If `value` is `None`, the user of the model chooses the value."""
 
     name: str
     type: Type
@@ -63,8 +64,8 @@ class Constant(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Variable(CommentedNode):
-    """A variable. Without `initial_value`, it may initially have any value. A transient variable is reset in each
-    state."""
+    """A variable. If `initial_value` is `None`, any initial value is possible. A transient variable is reset to its
+    initial value in each state."""
 
     name: str
     type: Type
@@ -120,8 +121,8 @@ class Location(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Assignment(CommentedNode):
-    """`target := value`. Assignments with equal `index` are simultaneous, those with a smaller one are executed
-    before."""
+    """The assignment `target := value`. Assignments with equal `index` are simultaneous; assignments with a smaller
+    index are executed first."""
 
     target: LValue
     value: Expression
@@ -130,7 +131,7 @@ class Assignment(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Destination(CommentedNode):
-    """The target of an edge, its probability (the default is 1), and its assignments."""
+    """A target of an edge, with its probability (1 if it is `None`) and its assignments."""
 
     location: str
     probability: Clause | None = None
@@ -139,8 +140,8 @@ class Destination(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Edge(CommentedNode):
-    """From the location `source` to one of `destinations`. Without `action` it is silent, without `guard` it is
-    enabled."""
+    """An edge from the location `source` to one of `destinations`. An edge without `action` is silent; an edge without
+    `guard` is always enabled."""
 
     source: str
     destinations: tuple[Destination, ...]
@@ -162,7 +163,8 @@ class Automaton(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Element(CommentedNode):
-    """An automaton as a part of the system."""
+    """An automaton as an element of the parallel composition. `input_enable` contains the actions that it can always
+    take."""
 
     automaton: str
     input_enable: tuple[str, ...] = ()
@@ -170,12 +172,12 @@ class Element(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Sync(CommentedNode):
-    """Edges that are taken together.
+    """A synchronisation: edges that several automata take together.
 
     Attributes:
-        participants: index of a system element, and the action of its edge, in the order of the elements. All other
-            elements keep their locations.
-        result: the action of the whole; `None` if it is silent.
+        participants: the index of each element that takes part, with the action of its edge, in the order of the
+            elements. All other elements keep their locations.
+        result: the action of the whole step; `None` if the step is silent.
     """
 
     participants: tuple[tuple[int, str], ...]
@@ -192,7 +194,7 @@ class System(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Model(Node):
-    """A whole model. `features` may omit those that its parts require; the writer adds them."""
+    """A whole model. `features` need not contain the features that its parts require, because the writer adds them."""
 
     type: ModelType
     automata: tuple[Automaton, ...]

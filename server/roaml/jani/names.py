@@ -13,7 +13,12 @@ from roaml.text import Span, TextEdit
 
 
 class DeclaredNames:
-    """Names of one kind; reports names that are declared twice or do not exist."""
+    """The declared names of one kind. Names that are declared twice, or used without a declaration, are reported.
+
+    Args:
+        kind: the kind, such as `variable`, for messages.
+        outer: the names of the same kind in the model, for names in an automaton.
+    """
 
     def __init__(self, kind: str, notes: Notes, outer: DeclaredNames | None = None) -> None:
         self._kind = kind
@@ -29,7 +34,7 @@ class DeclaredNames:
             rename = Fix(f"Rename this one to `{new}`", (TextEdit(span, quote(new)[1:-1]),), preferred=False)
             self._report(name, f"{self._kind} `{text}` is declared twice", first, None, rename)
         elif self._outer and text in self._outer._first:
-            message = f"{self._kind} `{text}` hides that of the model"
+            message = f"{self._kind} `{text}` hides the {self._kind} of the model with the same name"
             self._report(name, message, self._outer._first[text], Severity.WARNING)
 
     def use(self, name: JsonString) -> None:

@@ -14,7 +14,7 @@ Origin: TypeAlias = Location
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Node:
-    """`origin` is the place from which the node comes; equality ignores it."""
+    """A part of a model. `origin` is the place from which it comes; equality ignores it."""
 
     origin: Origin | None = field(default=None, compare=False, repr=False)
 

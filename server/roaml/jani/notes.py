@@ -15,13 +15,14 @@ NAME = "jani-name"
 TYPE = "jani-type"
 
 _MAX_GUESSES = 20
-"""The maximum number of suggestions in one file; each requires a comparison with all known names."""
+"""The maximum number of suggestions in one file. It is limited because each requires a comparison with all known
+names."""
 
 _MAX_SUGGESTION_LENGTH = 200
 
 
 class Notes:
-    """A list of findings that is filled while the file is read."""
+    """The findings in a file. They are added while the file is read."""
 
     def __init__(self) -> None:
         self._findings: list[Finding] = []
@@ -53,9 +54,13 @@ class Notes:
         fix: bool = True,
         owner: str = "",
     ) -> None:
-        """Report that `name` is not in `known`, and suggest the nearest of them.
+        """Report that `name` is not in `known`, and suggest the most similar name.
 
-        With `fix`, `span` is exactly the text of the name. `owner` is a phrase for what lacks the name.
+        Args:
+            kind: the kind of the name, for the message.
+            span: the position of the finding.
+            fix: whether `span` is exactly the text of the name, so that a fix can replace it.
+            owner: a phrase for the part that has no such name, for the message.
         """
         message = f"{owner} has no {kind} `{name[:80]}`" if owner else f"there is no {kind} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()

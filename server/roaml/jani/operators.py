@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operators of JANI expressions: an operator *is* its symbol and its function.
+"""The operators of JANI expressions, with their symbols, functions and types.
 
-This is the only list of them: reader, writer, types, values and the tests read it. The functions take and return Python
-values (bool, int, float) and raise what Python raises: ZeroDivisionError, OverflowError, ValueError (outside the
-domain); `roaml.jani.semantics` converts these to errors with a position.
+The reader, the writer, the inference of types, the evaluation and the tests use this one list. The functions take and
+return Python values (bool, int, float). They raise the exceptions of Python: `ZeroDivisionError`, `OverflowError`, and
+`ValueError` outside of the domain. `roaml.jani.semantics` converts these to errors with a position.
 """
 
 from __future__ import annotations
@@ -37,14 +37,18 @@ class Signature(enum.Enum):
 def remainder(left: float, right: float) -> float:
     """The Euclidean remainder of `left / right`: 0 <= result < |right|, for all signs.
 
-    JANI does not define the sign; Storm and PRISM compute this for positive divisors. (In ECMAScript, C and IEEE, the
-    result has the sign of `left`.)
+    JANI does not define the sign of the result. Storm and PRISM return the same result for positive divisors. In
+    ECMAScript, C and IEEE 754, the result has the sign of `left`.
     """
     return left % abs(right)
 
 
 def power(base: float, exponent: float) -> float:
-    """`base` to the power of `exponent`; an int if both are and the exponent is not negative."""
+    """`base` to the power of `exponent`. The result is an int if both are ints and the exponent is not negative.
+
+    Raises:
+        OverflowError: the result is too large.
+    """
     if isinstance(base, int) and isinstance(exponent, int) and exponent >= 0:
         if base.bit_length() * exponent > _MAX_BITS:
             raise OverflowError
@@ -60,11 +64,11 @@ class Operator(enum.Enum):
     """The base of all operators.
 
     Attributes:
-        symbol: its symbol in JANI.
-        function: computes the result.
-        signature: the types of operands and result.
-        feature: the extension of JANI that a file using it must declare.
-        spellings: other names that are accepted on reading and never written.
+        symbol: the symbol of the operator in JANI.
+        function: the function that computes the result.
+        signature: the types of the operands and the result.
+        feature: the extension of JANI that a file with this operator must declare; `None` if it needs none.
+        spellings: other symbols that the reader accepts. They are never written.
     """
 
     def __init__(
@@ -82,7 +86,7 @@ class Operator(enum.Enum):
         self.spellings = spellings
 
     def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
-        """Pickle by name: functions without a name cannot be pickled."""
+        """Pickle the operator by its name, because lambda functions cannot be pickled."""
         return getattr, (type(self), self.name)
 
 
@@ -196,7 +200,7 @@ class Distribution(enum.Enum):
 
 UNARY_OPERATORS = {spelling: op for op in UnaryOperator for spelling in (op.symbol, *op.spellings)}
 BINARY_OPERATORS = {spelling: op for op in BinaryOperator for spelling in (op.symbol, *op.spellings)}
-"""Every accepted spelling -> its operator."""
+"""Accepted symbol -> its operator."""
 
 NUMBER_CONSTANTS = {constant.symbol: constant for constant in NumberConstant}
 DISTRIBUTIONS = {distribution.symbol: distribution for distribution in Distribution}

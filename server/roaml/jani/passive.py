@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passive automata: they follow steps of others and only write variables that no other automaton reads. Without them, a
-model behaves in the same way."""
+"""Removes passive automata from a model. They only take part in steps of other automata, and only write variables that
+no other automaton reads, so the model behaves in the same way without them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from roaml.jani.properties import Formula, identifiers
 
 
 def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:
-    """The variables of the model that only passive automata write, and on which nothing else and no formula depends."""
+    """The variables of the model that only passive automata write, and on which no other automaton and no formula
+    depends."""
     passive = [_follows(automaton) for automaton in model.automata]
     if model.restrict_initial is not None or any(element.input_enable for element in model.system.elements):
         return frozenset()
@@ -39,8 +40,11 @@ def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:
 
 
 def without_passive(model: Model, *formulas: Formula) -> Model:
-    """The model without the `unread_variables`, and without the passive automata that then do nothing. The model itself
-    if there are none. Its other properties may name variables that were removed."""
+    """The model without the `unread_variables`, and without the passive automata that then have no assignments.
+
+    If there are no unread variables, the result is `model` itself. Properties of the model that are not in `formulas`
+    may refer to variables that were removed.
+    """
     gone = unread_variables(model, *formulas)
     if not gone:
         return model
@@ -64,7 +68,7 @@ def without_passive(model: Model, *formulas: Formula) -> Model:
 
 
 def _without(automaton: Automaton, gone: frozenset[str]) -> Automaton:
-    """The automaton without its assignments to some variables; the automaton itself if there are none."""
+    """The automaton without its assignments to the variables `gone`; `automaton` itself if there are none."""
     if all(_target(assignment) not in gone for assignment in _assignments(automaton.edges)):
         return automaton
     edges = tuple(
@@ -81,7 +85,8 @@ def _without(automaton: Automaton, gone: frozenset[str]) -> Automaton:
 
 
 def _follows(automaton: Automaton) -> bool:
-    """Whether an automaton has one location, with at most one edge per action, which is always enabled."""
+    """Whether an automaton has a single location, no variables, and at most one edge for each action, which is always
+    enabled."""
     actions = [edge.action for edge in automaton.edges]
     return (
         len(automaton.locations) == 1
@@ -97,7 +102,7 @@ def _assignments(edges: tuple[Edge, ...]) -> Iterator[Assignment]:
 
 
 def _target(assignment: Assignment) -> str:
-    """The variable that an assignment writes, or a part of it."""
+    """The variable that an assignment writes completely or in part."""
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):
         target = target.array
@@ -105,7 +110,7 @@ def _target(assignment: Assignment) -> str:
 
 
 def _read(automaton: Automaton) -> set[str]:
-    """The names in the expressions of an automaton, and those of the variables that it writes."""
+    """The names in the expressions of an automaton, including the variables that it writes."""
     expressions: list[Expression] = []
     for edge in automaton.edges:
         if edge.guard is not None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties: formulas about the states, paths and probabilities of a model.
+"""The types of properties: formulas about the states, paths and probabilities of a model.
 
-A `Formula` is an expression or contains a part that a single state cannot determine: a path, a probability, a reward, a
-set of states. Operators above such a part are `UnaryFormula`, `BinaryFormula` and `ConditionalFormula`, so an
-`Expression` never contains one.
+A `Formula` is an expression, or it contains a part whose value a single state does not determine: a path formula, a
+probability, a reward or a set of states. Operators that have such a part as operand are `UnaryFormula`, `BinaryFormula`
+and `ConditionalFormula`, so an `Expression` never contains such a part.
 """
 
 from __future__ import annotations
@@ -58,7 +58,8 @@ class PathQuantifier(enum.Enum):
 
 
 class UnaryPathOperator(enum.Enum):
-    """`F`: at some time; `G`: always; `X`: in the next state. F and G are derived operators."""
+    """An operator on paths: `F` (at some time), `G` (always) or `X` (in the next state). F and G are derived
+    operators."""
 
     FINALLY = "F"
     GLOBALLY = "G"
@@ -66,8 +67,10 @@ class UnaryPathOperator(enum.Enum):
 
 
 class BinaryPathOperator(enum.Enum):
-    """`U`: right at some time, left until then; `W`: the same, or left always; `R`: right until left, or always.
+    """A binary operator on paths.
 
+    `U`: the right operand holds at some time, and the left operand holds until then. `W`: the same, or the left operand
+    always holds. `R`: the right operand holds until, and at the time when, the left operand holds, or it always holds.
     R is a derived operator.
     """
 
@@ -77,7 +80,7 @@ class BinaryPathOperator(enum.Enum):
 
 
 class StatePredicate(enum.Enum):
-    """Predicates on states that no expression can describe."""
+    """A predicate on states that no expression can describe."""
 
     INITIAL = "initial"
     DEADLOCK = "deadlock"
@@ -85,7 +88,8 @@ class StatePredicate(enum.Enum):
 
 
 class Accumulation(enum.Enum):
-    """When a reward is counted: on every step, over time, on leaving a state (feature `state-exit-rewards`)."""
+    """The way in which a reward is accumulated: on every step, over time, or on leaving a state (feature
+    `state-exit-rewards`)."""
 
     STEPS = "steps"
     TIME = "time"
@@ -94,7 +98,7 @@ class Accumulation(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Interval(CommentedNode):
-    """Bounds of a number; `None` is no bound, and `None` for `…_exclusive` is false."""
+    """The bounds of a number. A bound that is `None` does not exist; `None` for `…_exclusive` means false."""
 
     lower: Expression | None = None
     upper: Expression | None = None
@@ -104,7 +108,7 @@ class Interval(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class RewardBound(CommentedNode):
-    """The accumulated value of `reward` is within `bounds`."""
+    """A requirement that the accumulated value of `reward` is within `bounds`."""
 
     reward: Expression
     accumulate: tuple[Accumulation, ...]
@@ -144,7 +148,7 @@ class ConditionalFormula(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Filter(CommentedNode):
-    """`function` of the values that `values` has in the states for which `states` holds."""
+    """The result of `function` on the values of `values` in the states in which `states` holds."""
 
     function: FilterFunction
     values: Formula
@@ -159,7 +163,7 @@ class Probability(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Quantified(CommentedNode):
-    """`path` holds on all paths, or on some."""
+    """The requirement that `path` holds on all paths, or on at least one path."""
 
     quantifier: PathQuantifier
     path: Formula
@@ -167,9 +171,10 @@ class Quantified(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class Expectation(CommentedNode):
-    """The expected value of `reward`: accumulated if `accumulate` is given, until `reach` holds or at an instant.
+    """The expected value of `reward` at an instant or when `reach` holds for the first time. It is accumulated until
+    then if `accumulate` is not `None`.
 
-    Attributes that are `None` are not in the file.
+    An attribute is `None` if the file does not contain it.
     """
 
     operator: ExpectationOperator
@@ -183,7 +188,7 @@ class Expectation(CommentedNode):
 
 @dataclass(frozen=True, slots=True)
 class SteadyState(CommentedNode):
-    """The long-run probability of `value` if it is a state formula, otherwise the long-run average reward."""
+    """The long-run probability of `value` if it is a state formula; otherwise its long-run average as a reward."""
 
     operator: SteadyStateOperator
     value: Formula
@@ -192,7 +197,7 @@ class SteadyState(CommentedNode):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathBounds(CommentedNode):
-    """Limits on the steps, the time and the rewards within which a path formula is decided."""
+    """Limits on the steps, the time and the rewards within which a path formula must be satisfied."""
 
     step_bounds: Interval | None = None
     time_bounds: Interval | None = None
@@ -230,7 +235,7 @@ ProperFormula: TypeAlias = (
     | BinaryPath
     | Predicate
 )
-"""A formula that is not an expression."""
+"""A formula that is not an expression: its value depends on more than a single state."""
 
 Formula: TypeAlias = Expression | ProperFormula
 
@@ -284,11 +289,11 @@ def walk(formula: Formula) -> Iterator[Formula]:
 
 
 def identifiers(formula: Formula) -> Iterator[tuple[str, Span]]:
-    """The variables and constants of the model that `formula` uses, with the position of each use, in the order
-    written.
+    """The names of the variables and constants of the model that `formula` uses, with the position of each use, in the
+    order of the text.
 
-    Names that the formula itself declares (in array constructors and selections) are left out. The position of a name
-    that was not read from a file is empty.
+    Names that the formula itself declares, in array constructors and selections, are left out. The position of a name
+    that was not read from a file is an empty span.
     """
     stack: list[tuple[Formula, frozenset[str]]] = [(formula, frozenset())]
     while stack:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> the declarations of a model or an automaton: actions, constants, variables, datatypes, functions."""
+"""Reads the declarations of a model or an automaton from JSON: actions, constants, variables, datatypes and
+functions."""
 
 from __future__ import annotations
 
@@ -49,14 +50,14 @@ class DeclarationReader(FormulaReader):
 
     def actions_of(self, model: Members) -> tuple[Action, ...]:
         actions: list[Action] = []
-        for members in self.each(model, "actions", _ACTION):
+        for members in self.objects(model, "actions", _ACTION):
             if name := self.declare(members, self.actions):
                 actions.append(Action(name, comment=members.comment(), origin=members.origin))
         return tuple(actions)
 
     def constants(self, model: Members) -> tuple[Constant, ...]:
         constants: list[Constant] = []
-        for members in self.each(model, "constants", _CONSTANT):
+        for members in self.objects(model, "constants", _CONSTANT):
             if name := self.declare(members, self.variables):
                 value = self.optional(members, "value")
                 type_ = self.type(members, "type")
@@ -66,7 +67,7 @@ class DeclarationReader(FormulaReader):
     def variables_of(self, owner: Members, names: DeclaredNames) -> tuple[Variable, ...]:
         """The variables of a model or an automaton."""
         variables: list[Variable] = []
-        for members in self.each(owner, "variables", _VARIABLE):
+        for members in self.objects(owner, "variables", _VARIABLE):
             if name := self.declare(members, names):
                 variable = Variable(
                     name,
@@ -82,10 +83,10 @@ class DeclarationReader(FormulaReader):
     def datatypes(self, model: Members) -> tuple[Datatype, ...]:
         datatypes: list[Datatype] = []
         names = DeclaredNames("datatype", self.notes)
-        for members in self.each(model, "datatypes", _DATATYPE):
+        for members in self.objects(model, "datatypes", _DATATYPE):
             parts: list[DatatypeMember] = []
             part_names = DeclaredNames("member", self.notes)
-            for part in self.each(members, "members", _DATATYPE_MEMBER):
+            for part in self.objects(members, "members", _DATATYPE_MEMBER):
                 if name := self.declare(part, part_names):
                     type_ = self.type(part, "type")
                     parts.append(DatatypeMember(name, type_, comment=part.comment(), origin=part.origin))
@@ -96,10 +97,10 @@ class DeclarationReader(FormulaReader):
     def functions_of(self, owner: Members, names: DeclaredNames) -> tuple[Function, ...]:
         """The functions of a model or an automaton."""
         functions: list[Function] = []
-        for members in self.each(owner, "functions", _FUNCTION):
+        for members in self.objects(owner, "functions", _FUNCTION):
             parameters: list[Parameter] = []
             parameter_names = DeclaredNames("parameter", self.notes)
-            for part in self.each(members, "parameters", _PARAMETER):
+            for part in self.objects(members, "parameters", _PARAMETER):
                 if name := self.declare(part, parameter_names):
                     type_ = self.type(part, "type")
                     parameters.append(Parameter(name, type_, comment=part.comment(), origin=part.origin))
@@ -116,7 +117,7 @@ class DeclarationReader(FormulaReader):
         return tuple(functions)
 
     def type(self, members: Members, key: str) -> Type:
-        """The type at `key`; types can be nested as deeply as expressions."""
+        """The type in the member `key`. Types can be nested as deeply as expressions, so this is a loop."""
         value = members.values.get(key)
         wrappers: list[type[ArrayType | OptionType]] = []
         while isinstance(value, JsonObject) and (kind := value.get("kind")) and isinstance(kind, JsonString):
@@ -153,8 +154,8 @@ class DeclarationReader(FormulaReader):
 
     # ---------------------------------------------------------------- members
 
-    def each(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
-        """The objects of the list `key`."""
+    def objects(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
+        """The members of each object in the list `key`. Items that are not objects are reported and left out."""
         for item in owner.items(key):
             if members := self.members(item, form):
                 yield members
@@ -167,7 +168,7 @@ class DeclarationReader(FormulaReader):
         return name.value
 
     def use(self, members: Members, key: str, names: DeclaredNames) -> str | None:
-        """The name at `key`, which must be declared."""
+        """The name in the member `key`. A name that is not declared is reported."""
         name = members.string(key)
         if name is None:
             return None
@@ -175,7 +176,7 @@ class DeclarationReader(FormulaReader):
         return name.value
 
     def uses(self, members: Members, key: str, names: DeclaredNames) -> tuple[str, ...]:
-        """The names in the list `key`, which must be declared."""
+        """The names in the list `key`. Names that are not declared are reported."""
         used: list[str] = []
         for item in members.items(key):
             if isinstance(item, JsonString):

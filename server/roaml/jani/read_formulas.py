@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> expressions and property formulas.
+"""Reads expressions and property formulas from JSON.
 
-- A missing or unreadable operand is a `Missing`, with a finding; the rest is read.
-- Names are not resolved and types not checked here, see `roaml.jani.typecheck`.
-- The origin of a name (and of the derivative of one) is the text of the name, without quotes; that of everything else
-  is the whole JSON value.
+- A missing or unreadable operand is reported and becomes a `Missing` node; the other parts are read.
+- Names are not resolved and types are not checked; see `roaml.jani.typecheck`.
+- The origin of a name, or of a derivative, is the text of the name without quotes. The origin of any other node is the
+  whole JSON value.
 """
 
 from __future__ import annotations
@@ -85,15 +85,15 @@ class FormulaReader(ValueSource):
         return run(self._expression(value))
 
     def formula(self, value: JsonValue) -> Formula:
-        """`value` as a formula of a property."""
+        """The formula of a property in `value`."""
         return run(self._formula(value))
 
     def lvalue(self, value: JsonValue) -> LValue:
-        """`value` as the target of an assignment."""
+        """The target of an assignment in `value`; `Missing` and a finding if it is not a valid target."""
         target = self.expression(value)
         if isinstance(target, LValue) and isinstance(_root(target), (Name, Missing)):
             return target
-        self.notes.syntax(value.span, "only a variable or a part of one can be assigned to")
+        self.notes.syntax(value.span, "the target of an assignment must be a variable or a part of one")
         return Missing(origin=target.origin)
 
     # ---------------------------------------------------------------- any kind
@@ -150,12 +150,12 @@ class FormulaReader(ValueSource):
         return Missing(origin=self.origin(value.span))
 
     def _unknown_operator(self, op: JsonString) -> None:
-        meant = _SPELLINGS.get(op.value.lower().strip())
-        if meant is None:
+        similar = _SPELLINGS.get(op.value.lower().strip())
+        if similar is None:
             self.notes.unknown("operator", op.value, op.content_span, _FORMS, code=SYNTAX)
         else:
-            fix = Fix(f"Change to `{meant}`", (TextEdit(op.content_span, meant),))
-            message = f"there is no operator `{op.value}`{did_you_mean((meant,))}"
+            fix = Fix(f"Change to `{similar}`", (TextEdit(op.content_span, similar),))
+            message = f"there is no operator `{op.value}`{did_you_mean((similar,))}"
             self.notes.add(Finding(SYNTAX, op.content_span, message, None, (fix,)))
 
     # ---------------------------------------------------------------- members
@@ -187,7 +187,7 @@ class FormulaReader(ValueSource):
         return tuple(parts)
 
     def choice(self, value: JsonValue | None, kind: str, choices: type[E]) -> E | None:
-        """The member of `choices` that `value` names."""
+        """The member of the enumeration `choices` with the value `value`; `None` and a finding if there is none."""
         if not isinstance(value, JsonString):
             self.wrong_kind(value, f"a {kind} must be a string")
             return None
@@ -427,7 +427,7 @@ class FormulaReader(ValueSource):
 
 
 def _root(target: LValue) -> Expression:
-    """The variable that `target` is a part of."""
+    """The innermost expression of a target: the variable that it changes, if it is valid."""
     inner: Expression = target
     while True:
         match inner:
@@ -438,7 +438,7 @@ def _root(target: LValue) -> Expression:
 
 
 class _Form(NamedTuple):
-    """The shape of the objects with a certain `op`, and the node that is created from them."""
+    """The shape of the objects with a certain `op`, and the function that creates the node from them."""
 
     shape: ObjectShape
     build: Callable[[FormulaReader, Members, str], Steps[Formula]]
@@ -481,7 +481,7 @@ _SPELLINGS = {
     "gt": ">",
     "mod": "%",
 }
-"""Names of JANI's operators in other languages, in lower case."""
+"""Name of an operator in other languages, in lower case -> the operator of JANI."""
 
 _FORMS: dict[str, _Form] = {
     **_forms(UNARY_OPERATORS, FormulaReader._unary, "exp"),
@@ -507,4 +507,4 @@ _FORMS: dict[str, _Form] = {
     **_forms(_symbols(BinaryPathOperator), FormulaReader._binary_path, "left right", _BOUNDS),
     **_forms(_symbols(StatePredicate), FormulaReader._predicate),
 }
-"""Every `op` that JANI defines."""
+"""Every `op` that JANI defines -> its form."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON -> JANI models and property lists, with all errors in them.
+"""Reads JANI models and lists of properties from JSON, and reports the errors in them.
 
-- Never fails: parts that cannot be read are reported and left out, the rest is read. A model that was read without
-  errors can be written, checked and run.
-- Codes of findings: `jani-syntax` (not of the shape that JANI defines), `jani-name` (undefined or declared twice),
-  `jani-type`. Errors in the JSON itself were reported by `roaml.json_syntax.parse` and are not reported again.
+- Reading raises no exception: parts that cannot be read are reported and left out, and the other parts are read. A
+  model that is read without errors can be written, checked and run.
+- The findings have the codes `jani-syntax` (JANI does not allow the shape), `jani-name` (undefined or declared twice)
+  and `jani-type`. Errors in the JSON itself are not reported again; `roaml.json_syntax.parse` reports them.
 - Every origin is a position in the file.
 """
 
@@ -39,7 +39,8 @@ from roaml.json_syntax import JsonObject, JsonString, JsonValue
 
 
 def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Finding, ...]]:
-    """The model in `value`, the JSON of the file `path`; `None` if it is not an object."""
+    """The model in `value`, the JSON of the file `path`, and the findings. The model is `None` if `value` is not an
+    object."""
     notes = Notes()
     model = _ModelReader(path, notes).model(value)
     if model is None:
@@ -49,10 +50,11 @@ def read_model(value: JsonValue, path: str = "") -> tuple[Model | None, tuple[Fi
 
 
 def read_properties(value: JsonValue, path: str = "") -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
-    """The properties in `value`, the JSON of a property file or of a model: an object with a list `properties`.
+    """The properties in `value`, and the findings. `value` is the JSON of a property file or of a model: an object with
+    a list `properties`.
 
-    Its other members are ignored. Names and types are not checked, since the variables are declared elsewhere; use
-    `typecheck.check_property` and `properties.identifiers` for that.
+    Other members of the object are ignored. Names and types are not checked, because the variables are declared in
+    another file; `typecheck.check_property` and `properties.identifiers` do this.
     """
     notes = Notes()
     reader = _ModelReader(path, notes)
@@ -85,7 +87,8 @@ _PROPERTY = shape("a property", "name expression", "comment")
 
 
 class _ModelReader(DeclarationReader):
-    """Reads one file. Declarations are read before the parts that can refer to them, so names are resolved at once."""
+    """Reads one file. Declarations are read before the parts that refer to them, so that names can be resolved at
+    once."""
 
     def __init__(self, path: str, notes: Notes) -> None:
         super().__init__(path, notes)
@@ -155,7 +158,7 @@ class _ModelReader(DeclarationReader):
     # ---------------------------------------------------------------- automata
 
     def automata_of(self, model: Members) -> tuple[Automaton, ...]:
-        return tuple(self.automaton(members) for members in self.each(model, "automata", _AUTOMATON))
+        return tuple(self.automaton(members) for members in self.objects(model, "automata", _AUTOMATON))
 
     def automaton(self, members: Members) -> Automaton:
         locations = DeclaredNames("location", self.notes)
@@ -173,7 +176,7 @@ class _ModelReader(DeclarationReader):
 
     def locations(self, automaton: Members, names: DeclaredNames) -> tuple[Location, ...]:
         locations: list[Location] = []
-        for members in self.each(automaton, "locations", _LOCATION):
+        for members in self.objects(automaton, "locations", _LOCATION):
             if name := self.declare(members, names):
                 location = Location(
                     name,
@@ -187,14 +190,14 @@ class _ModelReader(DeclarationReader):
 
     def transient_values(self, location: Members) -> tuple[TransientValue, ...]:
         values: list[TransientValue] = []
-        for members in self.each(location, "transient-values", _TRANSIENT_VALUE):
+        for members in self.objects(location, "transient-values", _TRANSIENT_VALUE):
             target = self.target(members)
             value = self.required(members, "value")
             values.append(TransientValue(target, value, comment=members.comment(), origin=members.origin))
         return tuple(values)
 
     def edges(self, automaton: Members, locations: DeclaredNames) -> Iterator[Edge]:
-        for members in self.each(automaton, "edges", _EDGE):
+        for members in self.objects(automaton, "edges", _EDGE):
             yield Edge(
                 self.use(members, "location", locations) or "",
                 tuple(self.destinations(members, locations)),
@@ -206,7 +209,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def destinations(self, edge: Members, locations: DeclaredNames) -> Iterator[Destination]:
-        for members in self.each(edge, "destinations", _DESTINATION):
+        for members in self.objects(edge, "destinations", _DESTINATION):
             yield Destination(
                 self.use(members, "location", locations) or "",
                 self.clause(members, "probability"),
@@ -216,7 +219,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def assignments(self, destination: Members) -> Iterator[Assignment]:
-        for members in self.each(destination, "assignments", _ASSIGNMENT):
+        for members in self.objects(destination, "assignments", _ASSIGNMENT):
             yield Assignment(
                 self.target(members),
                 self.required(members, "value"),
@@ -237,7 +240,7 @@ class _ModelReader(DeclarationReader):
         return System(elements, syncs, comment=members.comment(), origin=members.origin)
 
     def elements(self, system: Members) -> Iterator[Element]:
-        for members in self.each(system, "elements", _ELEMENT):
+        for members in self.objects(system, "elements", _ELEMENT):
             yield Element(
                 self.use(members, "automaton", self.automata) or "",
                 self.uses(members, "input-enable", self.actions),
@@ -246,7 +249,7 @@ class _ModelReader(DeclarationReader):
             )
 
     def syncs(self, system: Members, size: int) -> Iterator[Sync]:
-        for members in self.each(system, "syncs", _SYNC):
+        for members in self.objects(system, "syncs", _SYNC):
             participants: list[tuple[int, str]] = []
             if vector := members.array("synchronise"):
                 for index, item in vector.items_but_nulls:
@@ -265,7 +268,7 @@ class _ModelReader(DeclarationReader):
         """The properties of a model or a property file."""
         properties: list[Property] = []
         names = DeclaredNames("property", self.notes)
-        for members in self.each(owner, "properties", _PROPERTY):
+        for members in self.objects(owner, "properties", _PROPERTY):
             value = members.values.get("expression")
             formula = Missing(origin=members.origin) if value is None else self.formula(value)
             name = self.declare(members, names) or ""

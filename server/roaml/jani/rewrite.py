@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Transform formulas and expressions from the leaves up, at any depth."""
+"""Transforms formulas and expressions of any depth, from the leaves to the root."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ N = TypeVar("N", bound=Node)
 
 
 def rewrite(node: N, change: Callable[[Node], Node]) -> N:
-    """`node` with `change` applied to all its parts, inner before outer, and to itself.
+    """A copy of `node` in which `change` has been applied to all its parts, inner before outer, and to the node itself.
 
-    `change` must return a node that is allowed in the same place. Unchanged parts are shared.
+    `change` must return a node that is allowed in the same place. The copy shares unchanged parts with `node`.
     """
     result: N = run(_rewritten(node, change))
     return result

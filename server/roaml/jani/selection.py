@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Selection of properties by their names."""
+"""Selects properties by their names."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 
 class Named(Protocol):
-    """A property in any form."""
+    """A property of any type that has a name."""
 
     @property
     def name(self) -> str: ...
@@ -18,17 +18,17 @@ NamedT = TypeVar("NamedT", bound=Named)
 
 
 class PropertyError(ValueError):
-    """A property does not exist; the message lists the properties that exist."""
+    """Raised if a property does not exist. The message lists the properties that exist."""
 
 
 def select(
     properties: Sequence[NamedT], names: Iterable[str], owner: str, others: Sequence[str] = ()
 ) -> tuple[NamedT, ...]:
-    """The properties with these names, in the order of the names.
+    """The properties named `names`, in the order of the names.
 
     Args:
-        owner: what the properties belong to, for the message: `model` or `system`.
-        others: further names that can be chosen, for the message.
+        owner: `model` or `system`: a word for the owner of the properties in the message.
+        others: further names that users may select, for the message.
 
     Raises:
         PropertyError: a property does not exist.

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The value of an expression in a state.
+"""Evaluates expressions in a state.
 
-- Defines the meaning; the faster engines are tested against it.
+- This module defines the meaning of expressions; tests compare the faster engines with it.
 - `∧`, `∨`, `⇒` and `ite` evaluate only the operands that they need, from left to right, so that `i < n ∧ a[i] = 0` is
   safe.
-- Ints are exact, reals are IEEE doubles. `/` divides reals, `%` is the Euclidean remainder, `log` takes the base on its
-  right, `floor` and `ceil` return ints (`roaml.jani.operators`).
-- An expression without a value is an `EvaluationError` with its position: division by zero, an index outside of its
-  array, an undefined variable, a value of the wrong type, a random or nondeterministic choice.
+- Ints are exact, reals are IEEE 754 doubles. `/` divides reals, `%` is the Euclidean remainder, the right operand of
+  `log` is the base, `floor` and `ceil` return ints (`roaml.jani.operators`).
+- The evaluation of an expression without a value raises `EvaluationError` with a position. Causes are a division by
+  zero, an index outside of its array, an undefined variable, a value of the wrong type, or a random or nondeterministic
+  choice.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ from roaml.jani.operators import BinaryOperator, Operator, Signature
 
 MAX_ARRAY_LENGTH = 1_000_000
 MAX_CALLS = 10_000
-"""The maximum depth of function calls; a deeper recursion is treated as endless."""
+"""The maximum depth of function calls. A deeper recursion is regarded as endless."""
 
 _LARGE = 1e21
 
@@ -72,7 +73,7 @@ Value: TypeAlias = "bool | int | float | tuple[Value, ...] | Record | Some | Non
 
 
 class EvaluationError(Exception):
-    """An expression has no value. `origin` is the position of the part without a value, if known."""
+    """Raised if an expression has no value. `origin` is the position of the part without a value; `None` if unknown."""
 
     def __init__(self, message: str, origin: Origin | None) -> None:
         super().__init__(message)
@@ -81,13 +82,17 @@ class EvaluationError(Exception):
 
 
 class DivisionByZeroError(EvaluationError):
-    """A number is divided by zero."""
+    """Raised if a number is divided by zero."""
 
 
 def evaluate(
     expression: Expression, variables: Mapping[str, Value], functions: Mapping[str, Function] | None = None
 ) -> Value:
-    """The value of `expression` where variables and constants have the given values.
+    """The value of `expression` in a state.
+
+    Args:
+        variables: name of a variable or constant -> its value in the state.
+        functions: name of a function -> the function.
 
     Raises:
         EvaluationError: the expression has no value.
@@ -100,7 +105,7 @@ _DECIDED_BY_LEFT = {
     BinaryOperator.OR: (True, True),
     BinaryOperator.IMPLIES: (False, True),
 }
-"""For each logical operator: the left value that decides the result, and the result."""
+"""Logical operator -> the value of the left operand that decides the result, and the result."""
 
 
 class _Evaluation:
@@ -110,7 +115,7 @@ class _Evaluation:
         self.calls = 0
 
     def value(self, node: Expression, bound: Mapping[str, Value]) -> Steps[Value]:
-        """The value of `node`; `bound` are parameters and the variables of array constructors."""
+        """The value of `node`. `bound` contains the values of parameters and of variables of array constructors."""
         match node:
             case Boolean() | Integer() | Real():
                 return node.value
@@ -186,7 +191,7 @@ class _Evaluation:
             case DatatypeAccess(record, member):
                 value: Value = yield self.value(record, bound)
                 if not isinstance(value, Record) or member not in value.members:
-                    raise EvaluationError(f"this has no member `{member}`", node.origin)
+                    raise EvaluationError(f"the value has no member `{member}`", node.origin)
                 return value.members[member]
             case DatatypeValue(datatype, pairs):
                 members: dict[str, Value] = {}
@@ -266,7 +271,7 @@ def _integer(value: Value, node: Expression) -> int:
 
 
 def _kind(value: Value) -> str:
-    """The kind of a value; values of different kinds are not comparable."""
+    """A word for the kind of a value. Values of different kinds cannot be compared."""
     match value:
         case bool():
             return "bool"
@@ -281,7 +286,7 @@ def _kind(value: Value) -> str:
 
 
 def _shown(value: Value) -> str:
-    """`value` as text for a message."""
+    """The text of `value` for a message."""
     match value:
         case bool():
             return "true" if value else "false"

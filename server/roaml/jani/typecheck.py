@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names and types in all expressions of a model, a property or a single expression.
+"""Checks the names and types in all expressions of a model, in a property or in a single expression.
 
-- Codes of findings: `jani-name` and `jani-type`; their positions are the origins of the parts of the model.
-- Requires only the model, so the output of the translator is checked like that of the reader.
+- The findings have the codes `jani-name` and `jani-type`. Their positions are the origins of the parts of the model.
+- The check needs only the model, so the models of the translation are checked in the same way as those of the reader.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from roaml.jani.types import (
 
 
 def model_scope(model: Model) -> TypeScope:
-    """The names that are declared everywhere in `model`, including its properties."""
+    """The names that can be used everywhere in `model`, including its properties."""
     constants = {constant.name: constant.type for constant in model.constants}
     return TypeScope(
         {**constants, **{variable.name: variable.type for variable in model.variables}},
@@ -45,7 +45,7 @@ def model_scope(model: Model) -> TypeScope:
 
 
 def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
-    """The names that are declared in `automaton` of a model with `scope`."""
+    """The names that can be used in `automaton`, an automaton of the model with the scope `scope`."""
     local = {variable.name: variable.type for variable in automaton.variables}
     functions = {function.name: function for function in automaton.functions}
     return replace(
@@ -57,21 +57,21 @@ def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
 
 
 def expression_type(expression: Expression, scope: TypeScope) -> tuple[Type, tuple[Finding, ...]]:
-    """The type of `expression`, and the errors in it."""
+    """The type of `expression`, and findings for the errors in it."""
     checker = _Checker(scope)
     type_ = run(checker.type(expression, {}))
     return type_, checker.notes.findings
 
 
 def check_property(property_: Property, scope: TypeScope) -> tuple[Finding, ...]:
-    """The errors in names and types of `property_` in `scope`."""
+    """Findings for the errors in names and types in `property_`."""
     checker = _Checker(scope)
     checker.property(property_)
     return checker.notes.findings
 
 
 def check_model(model: Model) -> tuple[Finding, ...]:
-    """The errors in names and types of the expressions of `model`."""
+    """Findings for the errors in names and types in the expressions of `model`."""
     scope = model_scope(model)
     checker = _Checker(scope)
     for constant in model.constants:
@@ -140,7 +140,7 @@ class _Checker(Inference):
                 self.notes.type(span_of(function.body), message)
 
     def declared(self, type_: Type, declaration: Node) -> None:
-        """Check the type of a declaration: its datatypes exist, its bounds are numbers."""
+        """Check the type of a declaration: its datatypes must exist, and its bounds must be numbers."""
         while isinstance(type_, (ArrayType, OptionType)):
             type_ = type_.element if isinstance(type_, ArrayType) else type_.content
         if isinstance(type_, DatatypeType) and type_.name and type_.name not in self.scope.datatypes:
@@ -150,7 +150,7 @@ class _Checker(Inference):
                 self.store(bound, type_.base, "a bound of this type")
 
     def store(self, value: Expression | None, target: Type, subject: str) -> None:
-        """Check that `value` can be stored in something of type `target`."""
+        """Check that `value` can be stored in a variable of type `target`. `subject` names it in the message."""
         if value is None:
             return
         given = run(self.type(value, {}))

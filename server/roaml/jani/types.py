@@ -21,7 +21,7 @@ class BasicType(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class BoundedType:
-    """`base` is int or real; `None` is no bound."""
+    """A number with bounds. `base` is int or real; a bound that is `None` does not exist."""
 
     base: BasicType
     lower: Expression | None = None
@@ -35,21 +35,21 @@ class ArrayType:
 
 @dataclass(frozen=True, slots=True)
 class DatatypeType:
-    """A datatype that the model declares under this name."""
+    """The datatype that the model declares with the name `name`."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class OptionType:
-    """A value of type `content`, or no value."""
+    """An option: a value of type `content`, or no value."""
 
     content: Type
 
 
 @dataclass(frozen=True, slots=True)
 class UnknownType:
-    """The type of an expression with a reported error, or with several types. It fits everywhere."""
+    """The type of an expression with a reported error, or with several possible types. It fits every type."""
 
 
 Type: TypeAlias = BasicType | BoundedType | ArrayType | DatatypeType | OptionType | UnknownType
@@ -61,15 +61,16 @@ UNKNOWN = UnknownType()
 
 
 def value_type(type_: Type) -> Type:
-    """The type of the values of a variable of `type_`: without bounds; those of clocks are reals."""
+    """The type of the values of a variable of type `type_`: the type without its bounds; real for clocks and continuous
+    variables."""
     if isinstance(type_, BoundedType):
         return type_.base
     return REAL if type_ in (BasicType.CLOCK, BasicType.CONTINUOUS) else type_
 
 
 def fits(type_: Type, target: Type) -> bool:
-    """Whether a value of `type_` may be stored where `target` is declared. An int fits a real; nothing else
-    converts."""
+    """Whether a value of type `type_` may be stored in a variable of type `target`. An int fits a real; there is no
+    other conversion."""
     while True:
         type_, target = value_type(type_), value_type(target)
         match type_, target:
@@ -86,9 +87,9 @@ def fits(type_: Type, target: Type) -> bool:
 
 
 def join(left: Type, right: Type) -> Type | None:
-    """The smallest type that contains the values of both; `None` if there is none."""
+    """The smallest type that contains the values of both types; `None` if there is none."""
     if left is right:
-        return value_type(left)  # the case of elements of long arrays
+        return value_type(left)  # fast path: the elements of long arrays share one type
     left, right = value_type(left), value_type(right)
     if isinstance(left, UnknownType) or isinstance(right, UnknownType):
         return UNKNOWN

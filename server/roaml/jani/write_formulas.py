@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions and property formulas -> compact JSON.
+"""Writes expressions and property formulas as compact JSON.
 
-- Collects the features that a file with them must declare.
-- A formula read from a file is written as the same JSON value, except that operators have their JANI spelling.
+- The writer collects the features that a file with these formulas must declare.
+- A formula that was read from a file is written as the same JSON value, except that operators have their JANI symbols.
 """
 
 from __future__ import annotations
@@ -62,22 +62,22 @@ from roaml.jani.properties import (
 from roaml.json_syntax import quote
 
 Part: TypeAlias = "str | Formula"
-"""A piece of JSON: text, or a formula that is not written yet."""
+"""A piece of JSON: finished text, or a formula that is not written yet."""
 
 _DERIVED_PATHS = {UnaryPathOperator.FINALLY, UnaryPathOperator.GLOBALLY, BinaryPathOperator.RELEASE}
 
 
 class FormulaWriter:
-    """Writes formulas; `features` are those required by the formulas written so far."""
+    """Writes formulas. `features` contains the features that the formulas written so far require."""
 
     def __init__(self) -> None:
         self.features: set[Feature] = set()
 
     def text(self, formula: Formula) -> str:
-        """`formula` as JSON.
+        """The JSON text of `formula`.
 
         Raises:
-            ValueError: a part is missing or not finite, so that JSON cannot express it.
+            ValueError: a part of the formula is missing, or is a number that is not finite.
         """
         done: list[str] = []
         stack: list[Part] = [formula]
@@ -90,7 +90,7 @@ class FormulaWriter:
         return "".join(done)
 
     def parts(self, node: Formula) -> list[Part]:
-        """`node` as JSON in which its operands are not written yet."""
+        """The JSON of `node` as a list of pieces, in which the operands are not written yet."""
         match node:
             case Name(identifier):
                 return [quote(identifier)]
@@ -206,7 +206,7 @@ class FormulaWriter:
 
 
 def _start(node: CommentedNode) -> str:
-    """The beginning of an object; its comment is written first."""
+    """The beginning of the JSON object of a node, with its comment."""
     return "{" if node.comment is None else f'{{"comment":{quote(node.comment)},'
 
 

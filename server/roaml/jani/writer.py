@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A JANI model -> JSON text.
+"""Writes a JANI model as JSON text.
 
 - The same model always gives the same bytes.
-- The output is read back as an equal model: numbers keep their value and their type (int or real).
-- Features are declared as the parts of the model require them, in addition to those that the model itself declares.
-- The synchronisation table, automata x vectors in JSON, is streamed: only one line of it is in memory at a time.
+- Reading the output gives an equal model: numbers keep their value and their type (int or real).
+- The output declares the features of the model, and the features that its parts require.
+- The table of synchronisations, which has an entry for each automaton and each synchronisation, is streamed: only one
+  of its lines is in memory at a time.
 """
 
 from __future__ import annotations
@@ -40,17 +41,17 @@ from roaml.json_syntax import indented, quote
 
 
 def write(model: Model, indent: int | None = None) -> Iterator[str]:
-    """The JSON text of `model` in pieces: compact, or with `indent` spaces per level.
+    """The JSON text of `model` in pieces: compact if `indent` is `None`, otherwise with `indent` spaces for each level.
 
     Raises:
-        ValueError: the model has parts that a reader could not read, see `FormulaWriter.text`.
+        ValueError: the model has parts that the reader could not read; see `FormulaWriter.text`.
     """
     chunks = _Writer().model(model)
     return chunks if indent is None else indented(chunks, indent)
 
 
 def write_properties(properties: Iterable[Property], indent: int | None = None) -> str:
-    """The JSON text of a list of properties."""
+    """The JSON text of a list of properties; for `indent`, see `write`."""
     text = _list(map(_Writer().property, properties))
     return text if indent is None else "".join(indented([text], indent))
 
@@ -60,9 +61,9 @@ class _Writer:
         self.formulas = FormulaWriter()
 
     def model(self, model: Model) -> Iterator[str]:
-        """The chunks; none begins or ends inside a token or between the brackets of an empty list."""
+        """The JSON text in chunks. No chunk begins or ends inside a token, or between the brackets of an empty list."""
         declarations = self.declarations(model)
-        # Written first, because the features that they require precede them in the file.
+        # Automata and properties are written first, because the features that they require precede them in the file.
         automata = [self.automaton(automaton) for automaton in model.automata]
         properties = _list(map(self.property, model.properties))
         yield f'{{"jani-version":1,"name":{quote(model.name)},"type":"{model.type.value}",'
@@ -80,7 +81,7 @@ class _Writer:
         yield f',"properties":{properties}}}'
 
     def declarations(self, model: Model) -> str:
-        """The part before the automata."""
+        """The members of the model that precede the automata."""
         members = _object(
             datatypes=_unless_empty(map(self.datatype, model.datatypes)),
             variables=_list(map(self.variable, model.variables)),
@@ -92,7 +93,7 @@ class _Writer:
         return members[1:-1]
 
     def features(self, model: Model) -> list[str]:
-        """The features that the model declares, then those that the parts written so far require."""
+        """The features that the model declares, followed by those that the parts written so far require."""
         if model.functions or any(automaton.functions for automaton in model.automata):
             self.formulas.features.add(Feature.FUNCTIONS)
         if model.datatypes:
@@ -158,7 +159,7 @@ class _Writer:
                 return assert_never(type_)
 
     def nested(self, type_: ArrayType | OptionType) -> str:
-        """The text of a type; types can be nested as deeply as expressions."""
+        """The JSON text of a type. Types can be nested as deeply as expressions, so this is a loop."""
         inner: Type = type_
         depth = 0
         text = ""
@@ -265,7 +266,7 @@ def _element(element: Element) -> str:
 
 
 def _sync(sync: Sync, size: int) -> str:
-    """A line of the table: `null` for every element that does not take part."""
+    """A line of the table of synchronisations, with `null` for every element that does not take part."""
     parts: list[str] = []
     done = 0
     for index, action in sorted(sync.participants):
@@ -284,7 +285,7 @@ def _text(text: str | None) -> str | None:
 
 
 def _object(**members: str | None) -> str:
-    """A JSON object; `a_b` becomes the key `a-b`, members that are `None` are left out."""
+    """A JSON object. The argument `a_b` becomes the member `a-b`; arguments that are `None` are left out."""
     return (
         "{" + ",".join(f'"{key.replace("_", "-")}":{text}' for key, text in members.items() if text is not None) + "}"
     )

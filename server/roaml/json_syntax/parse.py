@@ -81,7 +81,7 @@ _NO_NUMBERS = {"nan", "infinity", "inf"}
 
 
 class _Key(NamedTuple):
-    """A name that waits for its value. `colon` is false until its colon has been read."""
+    """A name whose value has not been read yet. `colon` is false until the colon after the name has been read."""
 
     text: str
     start: int
@@ -111,9 +111,10 @@ class _Parser:
 
     Attributes:
         root: the value of the whole text, once it is complete.
-        start, is_object, parts: the innermost open bracket and the values or members in it (without one: the text).
+        start, is_object, parts: the innermost open bracket and the values or members in it; outside of all brackets,
+            the beginning of the text and the values in it.
         key: the name whose value follows.
-        wants_comma: whether a complete value precedes, so that a comma must separate what follows.
+        wants_comma: whether a complete value has been read, so that a comma must precede the next value.
         stack: the brackets around the innermost one.
         comma: the offset of a comma before an unusual token, or -1.
         hopeless: whether parsing has stopped; open brackets are then closed without further findings.
@@ -209,7 +210,7 @@ class _Parser:
         return end
 
     def name(self, text: str, start: int, end: int, comma: int, quotes: tuple[int, int] = (1, 1)) -> None:
-        """Read a string, or text that was probably meant as one, before a colon."""
+        """Read a name before a colon: a string, or text without quotes that is probably intended as a name."""
         if not self.is_object:
             self.report(Span(start, end), "a name with a value is only allowed in `{ }`")
             self.value(JsonString(start, end, text), comma)
@@ -259,7 +260,7 @@ class _Parser:
         return (bracket.is_object for bracket in self.stack[1:])
 
     def leave(self, end: int) -> None:
-        """End the innermost bracket at `end`; it becomes a value of the one around it."""
+        """End the innermost bracket at `end`; it becomes a value in the bracket around it."""
         value: JsonValue
         if self.is_object:
             value = JsonObject(self.start, end, tuple(self.parts))
@@ -287,7 +288,7 @@ class _Parser:
             at -= 1
         return at
 
-    # ---------------------------------------------------------------- mistakes of structure
+    # ---------------------------------------------------------------- errors in the structure
 
     def odd_comma(self, at: int, comma: int) -> None:
         """Report a missing or surplus comma before `at`."""
@@ -353,7 +354,7 @@ class _Parser:
         return self.word(at, comma)
 
     def end(self, at: int) -> int:
-        """The text ends without a complete value."""
+        """Report that the text ends at `at` without a complete value; return `at`."""
         if not self.stack:
             self.root = JsonError(0, at)
             self.report(Span(0, at), "a value is missing" if self.text.strip() else "the file is empty")
@@ -385,7 +386,7 @@ class _Parser:
         if not closed:
             raw = raw.rstrip(_DELIMITERS)
         span = Span(at, at + 1 + len(raw) + closed)
-        value, mistakes = unescape(raw, at + 1)
+        value, problems = unescape(raw, at + 1)
         if not closed:
             name = _NAME_AND_COLON.match(raw) if self.is_object and self.key is None else None
             close = _insertion(at + 1 + name.end(1), mark) if name else _replacement(span, quote(value))
@@ -393,12 +394,12 @@ class _Parser:
         elif mark == "'":
             self.report(span, "a string needs double quotes", _replacement(span, quote(value)))
         else:
-            for message, edit in mistakes:
+            for message, edit in problems:
                 self.report(edit.span, message, _replacement(*edit))
         return self.string_or_name(JsonString(*span, value, (1, int(closed))), comma)
 
     def word(self, at: int, comma: int) -> int:
-        """A run of characters without quotes: a misspelled number or literal, a string or a name."""
+        """Read characters without quotes: a misspelled number or literal, a string, or a name."""
         word = _WORD.match(self.text, at)
         assert word is not None
         text = word[0].rstrip()
@@ -417,9 +418,9 @@ class _Parser:
         return string.end
 
     def bare(self, text: str, span: Span) -> JsonValue:
-        """Read a word without quotes as the value that was probably meant."""
+        """The value that a word without quotes is probably intended to be; report how JSON writes it."""
         if literal := _FOREIGN_LITERALS.get(text):
-            self.report(span, f"JSON writes `{literal}`", _replacement(span, literal))
+            self.report(span, f"`{text}` is not a JSON literal; write `{literal}`", _replacement(span, literal))
             return JsonNull(*span) if literal == "null" else JsonBool(*span, literal == "true")
         if text.lstrip("+-").lower() in _NO_NUMBERS:
             self.report(span, f"JSON does not support the number `{text[:40]}`")
@@ -468,7 +469,8 @@ def _removal(span: Span) -> Fix:
 
 
 def _number(text: str) -> str | None:
-    """The JSON number that `text` probably means: `+1`, `007`, `.5`, `1.`; `None` if there is none."""
+    """`text` in the form of a JSON number, for numbers of other languages such as `+1`, `007`, `.5` and `1.`; `None` if
+    it is not a number."""
     match = _SLOPPY_NUMBER.match(text)
     if match is None or not (match[2] or match[3]):
         return None

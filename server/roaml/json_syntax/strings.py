@@ -30,19 +30,19 @@ _SPECIAL = re.compile(
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
-class StringMistake(NamedTuple):
+class StringProblem(NamedTuple):
     """A character that is not allowed in a string, with its replacement."""
 
     message: str
     edit: TextEdit
 
 
-def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
+def unescape(raw: str, start: int) -> tuple[str, list[StringProblem]]:
     """The value of `raw`, the text between the quotes, and the errors in it. `start` is its offset in the source.
 
     For an invalid escape, the character after the backslash is kept; a control character is unchanged.
     """
-    mistakes: list[StringMistake] = []
+    problems: list[StringProblem] = []
 
     def resolve(match: re.Match[str]) -> str:
         high, low, code, simple, wrong, control = match.groups()
@@ -55,8 +55,8 @@ def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
         span = Span(start + match.start(), start + match.end())
         if control:
             written = quote(control)[1:-1]
-            mistakes.append(
-                StringMistake(f"inside a string this character must be written `{written}`", TextEdit(span, written))
+            problems.append(
+                StringProblem(f"inside a string this character must be written `{written}`", TextEdit(span, written))
             )
             return control
         message = (
@@ -64,10 +64,10 @@ def unescape(raw: str, start: int) -> tuple[str, list[StringMistake]]:
             if wrong == "\\u"
             else f"JSON has no escape `{wrong}`; a backslash itself is written `\\\\`"
         )
-        mistakes.append(StringMistake(message, TextEdit(span, "\\" + wrong)))
+        problems.append(StringProblem(message, TextEdit(span, "\\" + wrong)))
         return wrong[1:]
 
-    return _SPECIAL.sub(resolve, raw), mistakes
+    return _SPECIAL.sub(resolve, raw), problems
 
 
 def quote(text: str) -> str:

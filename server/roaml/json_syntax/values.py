@@ -60,14 +60,14 @@ _NULL_AND_COMMA = len("null,")
 
 @dataclass(frozen=True, slots=True)
 class JsonArray(_Value):
-    """`parts` are the items, but a run of nulls is one part: most values of a JANI file are the nulls of its
-    synchronisation table, automata x vectors."""
+    """A list. `parts` are its items, except that a run of nulls is one part. Most values in a JANI file are the nulls
+    of its synchronisation table, which has a column for each automaton."""
 
     parts: tuple[JsonValue | Nulls, ...]
 
     @property
     def items(self) -> tuple[JsonValue, ...]:
-        """All items, each one a value. They are created anew for each call if there are runs of nulls."""
+        """All items, with a value for each `null`. If there are runs of nulls, each call creates a new tuple."""
         items: list[JsonValue] = []
         for part in self.parts:
             if isinstance(part, Nulls):

@@ -25,7 +25,7 @@ _R = "{urn:roaml:roles}"
 
 @dataclass(frozen=True, slots=True)
 class ValueChoice:
-    """One value of an enumeration. `use` is its successor if it is deprecated."""
+    """One value of an enumeration. `use` is the value that replaces it if it is deprecated, otherwise ""."""
 
     value: str
     documentation: str
@@ -34,7 +34,15 @@ class ValueChoice:
 
 @dataclass(frozen=True, slots=True)
 class SimpleType:
-    """The set of values of an attribute: a base type of XML Schema (without prefix) restricted by facets."""
+    """The set of values of an attribute: a base type of XML Schema (without prefix) restricted by facets.
+
+    Attributes:
+        choices: the values of an enumeration; empty if the type is not an enumeration.
+        pattern: a regular expression for the whole value, or "".
+        non_empty: whether the value must not be empty.
+        above: the exclusive minimum, if any.
+        least, most: the inclusive minimum and maximum, if any.
+    """
 
     base: str = "string"
     choices: tuple[ValueChoice, ...] = ()
@@ -70,12 +78,13 @@ class AttributeType:
     """An attribute of an element.
 
     Attributes:
-        defines: kind of symbol that the value names first, if any.
-        refers: kinds of symbols that the value may name.
-        value: the role of any other value.
+        defines: the kind of symbol that the value defines, if any.
+        refers: the kinds of symbols to which the value may refer.
+        value: the role of a value that neither defines a symbol nor refers to one.
         value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
-        ignored: whether no rule reports that the attribute has no effect; `None` if it has an effect.
-        use: the successor, if the attribute is deprecated.
+        ignored: `None` if the attribute has an effect; otherwise, `False` if a rule reports that it has none, and
+            `True` if no rule reports this.
+        use: the attribute that replaces it if it is deprecated, otherwise "".
         port: the port of a tree node that the attribute sets, if any.
     """
 
@@ -102,7 +111,8 @@ class Multiplicity:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """An event variable. `only` restricts it to "cond" or "body"."""
+    """An event variable. It is available in conditions if `only` is "cond", in bodies if `only` is "body", and in both
+    if `only` is empty."""
 
     name: str
     only: str = ""
@@ -118,11 +128,11 @@ class ElementType:
         any_is_opaque: whether the grammar ignores the names and the content of these children.
         any_attribute: whether attributes that are not listed are allowed; attributes in foreign namespaces always are.
         text: whether character data is allowed.
-        sends, receives: part of an interface or of the tree protocol, if any.
-        code: the corresponding result code, or 0.
-        ignored: whether it has no effect on the model.
-        use: the successor, if the element is deprecated.
-        node: the kind of a node of a tree.
+        sends, receives: the part of an interface or of the tree protocol that the element sends or receives, if any.
+        code: the result code of an action that corresponds to the element, or 0.
+        ignored: whether the element has no effect on the model.
+        use: the element that replaces it if it is deprecated, otherwise "".
+        node: the kind of node if the element is a node of a tree.
         translated: false for tree nodes that are known but cannot be translated.
         program_only: whether a tree node can be translated only as a program (docs/spec/nodes.md#library).
     """
@@ -155,7 +165,7 @@ class ElementType:
         return tuple(a for a in self.attributes.values() if a.port and not a.port.alias_of)
 
     def port_key(self, name: str) -> str:
-        """The name of the port that an attribute sets, which may have several names."""
+        """The primary name of the port that the attribute `name` sets; `name` may be another name of the port."""
         attribute = self.attributes.get(name)
         return (attribute.port.alias_of if attribute and attribute.port else "") or name
 
@@ -188,7 +198,7 @@ class Grammar:
         return etree.XMLSchema(etree.parse(str(schema_path(self.schema))))
 
     def child(self, parent: ElementType, name: str) -> ElementType | None:
-        """The type of `name` inside `parent`; `None` if it is not allowed there."""
+        """The type of a child element `name` of `parent`; `None` if the child is not allowed."""
         if name in parent.local:
             return parent.local[name]
         if name in parent.children or (parent.any_child is not None and not parent.any_is_opaque):
@@ -207,7 +217,8 @@ class Grammar:
         return element
 
     def find(self, name: str) -> ElementType | None:
-        """The element with this name, wherever it is allowed; global ones first."""
+        """The type of an element with this name, `None` if the grammar has none. A global element takes precedence over
+        one that is declared inside another element."""
         return self.elements.get(name) or self._by_name.get(name)
 
     @cached_property
@@ -220,7 +231,7 @@ class Grammar:
 
     @cached_property
     def _everywhere(self) -> tuple[ElementType, ...]:
-        """All elements, the global ones first, then those that are only declared inside others."""
+        """All elements: first the global ones, then those that are only declared inside other elements."""
         elements = list(self.elements.values())
         for element in elements:
             elements += element.local.values()
@@ -238,7 +249,7 @@ XML_GRAMMARS = (HL_SCXML, PLAIN_SCXML, SYSTEM, XML_PROPERTIES, STRUCTS, BEHAVIOR
 
 @dataclass
 class _Shape:
-    """The parts of one complex type, while it is read."""
+    """The parts of a complex type that have been read so far."""
 
     attributes: dict[str, AttributeType] = field(default_factory=dict)
     children: dict[str, Multiplicity] = field(default_factory=dict)
@@ -302,7 +313,8 @@ class _Reader:
         )
 
     def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
-        """Add to `shape` what `node`, a part of a complex type that may occur `occurs` times, contributes."""
+        """Add the attributes and children that `node` declares to `shape`. `node` is a part of a complex type and may
+        occur `occurs` times."""
         if node.get("mixed") == "true":
             shape.text = True
         for part in node:
@@ -360,7 +372,7 @@ class _Reader:
         )
 
     def simple(self, node: Any) -> SimpleType:
-        """The simple type of an attribute: built in, named, or declared inside it."""
+        """The simple type of an attribute. It is built in, a named type of the schema, or declared in the attribute."""
         definition = node.find(f"{_XS}simpleType")
         if definition is None:
             name = node.get("type", "xs:string")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The declarations of a JSON Schema of `schemas/` for a place in a JSON document.
+"""Finds the declarations in a JSON Schema of `schemas/` that apply to a place in a JSON document.
 
 - Supports what the schemas use: references, `allOf`, `if`/`then`/`else`, `properties`, `additionalProperties`, `items`,
   `required`, `enum` and `const`.
@@ -47,8 +47,8 @@ class JsonGrammar:
         return definition
 
     def applying(self, schema: Schema, value: JsonValue | None) -> Iterator[Schema]:
-        """The parts of a schema that apply to a value, the outermost first; `None` is a value that is not written
-        yet."""
+        """The parts of a schema that apply to a value, the outermost first. `None` represents a value that is not
+        written yet."""
         stack, seen = [schema], 0
         while stack and seen < _MAX_DEPTH:
             seen += 1
@@ -63,7 +63,8 @@ class JsonGrammar:
             stack += reversed(branches)
 
     def keys(self, schema: Schema, value: JsonObject) -> dict[str, Key]:
-        """The members that an object may have."""
+        """The members that the object `value` may have, by name. Existing members decide which conditions of the schema
+        apply."""
         keys: dict[str, Key] = {}
         applying = list(self.applying(schema, value))
         required = {name for part in applying for name in part.get("required", ())}
@@ -98,26 +99,27 @@ class JsonGrammar:
         return ()
 
     def operators(self, kind: str) -> Iterator[tuple[str, Schema]]:
-        """The operators of formulas or expressions as they are written, with the declarations of their objects."""
+        """The operators of formulas or expressions, each with the declaration of the objects that use it. `kind` is the
+        name of the definition of formulas or expressions."""
         for branch in self.definition(kind)["then"]["then"]["allOf"]:
             described = self._resolve(branch["then"]["$ref"])
             for operator in self.choices(branch["if"]["properties"]["op"]):
                 yield operator, described
 
     def title(self, schema: Schema) -> str:
-        return self._said(schema, "title")
+        return self._annotation(schema, "title")
 
     def text(self, schema: Schema) -> str:
-        """The documentation of a place, Markdown."""
-        return self._said(schema, "description")
+        """The documentation of a place, in Markdown."""
+        return self._annotation(schema, "description")
 
     def is_a(self, schema: Schema, definition: str) -> bool:
-        """Whether a definition describes a place."""
+        """Whether the definition with the name `definition` applies to the place that `schema` describes."""
         target = self.definition(definition)
         return any(part is target for part in self.applying(schema, None))
 
     def matches(self, schema: Schema, value: JsonValue | None) -> bool:
-        """Whether a value satisfies a condition (of an `if`)."""
+        """Whether a value satisfies the condition `schema` of an `if`."""
         if "$ref" in schema and not self.matches(self._resolve(schema["$ref"]), value):
             return False
         if "type" in schema and not _has_type(value, schema["type"]):
@@ -134,9 +136,10 @@ class JsonGrammar:
             return all(self.matches(inner[name], members[name]) for name in inner if name in members)
         return True
 
-    def _said(self, schema: Schema, word: str) -> str:
-        """The declaration of a place takes precedence over that of its kind."""
-        return next((str(part[word]) for part in self.applying(schema, None) if word in part), "")
+    def _annotation(self, schema: Schema, keyword: str) -> str:
+        """The value of an annotation such as `title`; "" if there is none. The declaration of a place takes precedence
+        over the definitions to which it refers."""
+        return next((str(part[keyword]) for part in self.applying(schema, None) if keyword in part), "")
 
     def _resolve(self, reference: str) -> Schema:
         return self.definition(reference.rpartition("/")[2])

@@ -27,14 +27,14 @@ from roaml.xml_syntax.escapes import replace_forbidden
 from roaml.xml_syntax.names import SPACE, is_local_name
 
 _UNREAD = ("xml-syntax", "nesting-too-deep")
-"""Findings after which the tree may not be the whole document."""
+"""The codes of findings after which parts of the document may be missing in the tree."""
 
 SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
 
 @dataclass(frozen=True, slots=True)
 class UnknownElement:
-    """No element of the grammar has this name."""
+    """An element whose name does not occur in the grammar."""
 
     element: Element
     parent: ElementType
@@ -51,7 +51,8 @@ class MisplacedElement:
 
 @dataclass(frozen=True, slots=True)
 class TooManyElements:
-    """More elements of this name than `most`; `first` is the first of them."""
+    """An element that exceeds the allowed number `most` of elements with its name in `parent`; `first` is the first of
+    them."""
 
     element: Element
     first: Element
@@ -61,7 +62,8 @@ class TooManyElements:
 
 @dataclass(frozen=True, slots=True)
 class MissingElement:
-    """`element` lacks a required child; `names` are the possible ones, empty for any."""
+    """`element` lacks a required child. `names` are the names of the children that it may be; if empty, it may be any
+    child."""
 
     element: Element
     type: ElementType
@@ -146,8 +148,8 @@ class Misfit:
 
 
 def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Grammar) -> Iterator[Misfit]:
-    """The topmost elements below `root` that the grammar does not know or does not allow where they are. Much faster
-    than `validate`."""
+    """The topmost elements below `root` that the grammar does not know or does not allow where they are. This is much
+    faster than `validate`."""
     if root is None or root.name not in grammar.roots:
         return
     known = dict(namespaces)
@@ -173,7 +175,7 @@ def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
 
 
 _ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attribute=True, text=True)
-"""An unknown element in a place where any element is allowed: the elements in it may be known."""
+"""The type of an unknown element where any element is allowed. The elements in it may be known."""
 
 
 def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Violation]:
@@ -251,7 +253,7 @@ def _counts(element: Element, type_: ElementType, counts: dict[str, list[Element
 
 
 def unmet(simple: SimpleType, value: str) -> str:
-    """A noun phrase for what `value` should be; "" if it is valid."""
+    """A noun phrase for the values that `simple` allows; "" if `value` is one of them."""
     text = value.strip(SPACE)
     if simple.choices:
         choices = [choice.value for choice in simple.choices if not choice.use]
@@ -326,7 +328,7 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
 
 
 _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
-"""A cache of names: a document repeats the same few names."""
+"""Cached, because a document repeats the same few names."""
 
 
 def _new(parent: Any, element: Element) -> Any:

@@ -41,13 +41,13 @@ class Node:
     Attributes:
         library: the name of its library, "" for nodes of a `<TreeNodesModel>`.
         children: the minimum and maximum number of children.
-        since: the first version of the library that has it, "" if all supported versions have it.
-        until: the first version that no longer has it, or "".
+        since: the first version of the library that has the node, "" if all supported versions have it.
+        until: the first version that no longer has the node, or "".
         succeeds: whether it always returns SUCCESS in trees that set its ports as the library's own trees do.
         running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
         program_only: whether its translation exists only for trees whose nodes are executed as by the library
             (docs/spec/nodes.md#library).
-        in_systems: how it differs in trees of systems, or "".
+        in_systems: how the node differs in trees of systems, as a sentence, or "".
     """
 
     name: str
@@ -86,7 +86,7 @@ class Absent:
     Attributes:
         reason: what the name is, as the end of a sentence.
         instead: the name of the node that is probably intended, or "".
-        not_translated: which other node can be translated into a model of a system, as the end of a sentence.
+        not_translated: which similar node can be translated into a model of a system, as the end of a sentence.
     """
 
     name: str

@@ -27,7 +27,7 @@ from roaml.expr.tree import (
     ObjectLiteral,
     Unary,
 )
-from roaml.expr.types import UNKNOWN, Array, Struct, Type, leaves, unwrap, wrap
+from roaml.expr.types import UNKNOWN, Array, Type, leaves, member_type
 from roaml.lower.build import event_data, indexed, integer, length, name
 from roaml.scxml.names import FIELD_PREFIX
 from roaml.text import Span
@@ -174,20 +174,13 @@ def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
         if isinstance(step, Index):
             indexes.append(lower_expr(step.index, scope))
             type_ = type_.element if isinstance(type_, Array) else UNKNOWN
-        elif step is steps[-1] and step.name == "length" and _member(type_, "length") is None:
+        elif step is steps[-1] and step.name == "length" and member_type(type_, "length") is None:
             ends_with_length = True
         else:
             names.append(step.name)
-            type_ = _member(type_, step.name) or UNKNOWN
+            type_ = member_type(type_, step.name) or UNKNOWN
     path = _event_parameter(root.name, names) if is_event else (root.name, *names)
     return AccessedVariable(expr.span, is_event, path, tuple(indexes), ends_with_length, type_)
-
-
-def _member(type_: Type, member: str) -> Type | None:
-    """A member of a struct, or of the structs in an array."""
-    inner, bounds = unwrap(type_)
-    own = inner.member(member) if isinstance(inner, Struct) else None
-    return None if own is None else wrap(own, bounds)
 
 
 def _event_parameter(variable: str, names: list[str]) -> Path:

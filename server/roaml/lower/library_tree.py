@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,7 +20,7 @@ from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_auto
 from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
-from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import PortValues, compiled_scripts, flags_at, port_values, program_of
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.outline import MachineOutline
@@ -42,14 +42,14 @@ WORLD = 0.1
 class LibraryTree:
     """
     Attributes:
-        automata: instance -> the automata of its conditions, the outermost first, and of its program; that of a machine
-            is not among them.
+        codes: instance -> what determines the automata of its conditions, the outermost first, and of its program; that
+            of a machine is not among them.
         addresses: instance -> its address in events, if that is not its number.
         board: the blackboard.
         refusals: why the tree cannot be translated.
     """
 
-    automata: Mapping[int, tuple[Automaton, ...]]
+    codes: Mapping[int, tuple[NodeCode, ...]]
     addresses: Mapping[int, str]
     board: Board
     refusals: tuple[TreeRefusal, ...]
@@ -57,19 +57,9 @@ class LibraryTree:
     def address(self, number: int) -> str:
         return self.addresses.get(number, str(number))
 
-
-def library_tree(system: System, files: Mapping[str, TreeFile]) -> LibraryTree:
-    """The tree of a system, translated.
-
-    Args:
-        files: the tree files of the system, by path.
-    """
-    return _Builder(system, files).tree()
-
-
-def entry_outlines(system: System, files: Mapping[str, TreeFile]) -> Mapping[str, EntryOutline]:
-    """The variables of the blackboard of a tree."""
-    return _Builder(system, files).outlines()
+    def automata(self, number: int) -> tuple[Automaton, ...]:
+        """The automata of an instance, in the order of `codes`."""
+        return tuple(node_automaton(code).automaton for code in self.codes[number])
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +92,14 @@ class _Part:
     name: str
 
 
-class _Builder:
+class LibraryTreeBuilder:
+    """Translates the tree of a system. The variables of its blackboard are known before the rest is translated.
+
+    Args:
+        system: its `entries` are not used.
+        files: the tree files of the system, by path.
+    """
+
     def __init__(self, system: System, files: Mapping[str, TreeFile]) -> None:
         self.system, self.files = system, files
         self.initial: dict[str, str] = {}
@@ -118,6 +115,8 @@ class _Builder:
             list(node.ports())  # finds the constants of subtrees
         self.board = build_board(self.tree_of_parts, {}, used, self.machine_types())
         self.index = {id(part): index for index, part in enumerate(nodes)}
+        self.tick_rate = Fraction(str(system.parameters.tick_rate))
+        self.known_children: dict[Hashable, Child | None] = {}
 
     # ------------------------------------------------------------------- parts
 
@@ -180,7 +179,9 @@ class _Builder:
 
     # ---------------------------------------------------------------- automata
 
-    def outlines(self) -> Mapping[str, EntryOutline]:
+    def entries(self) -> Mapping[str, EntryOutline]:
+        """The variables of the blackboard, by name."""
+
         def outline(name: str, type_: str) -> EntryOutline:
             ports = self.system.blackboard.get(name, ())
             read = name in self.board.read or any(bound.port.read for bound in ports)
@@ -190,10 +191,12 @@ class _Builder:
         return {name: outline(name, entry.type_name) for name, entry in self.board.entries.items()} | flags
 
     def tree(self) -> LibraryTree:
-        automata: dict[int, tuple[Automaton, ...]] = {}
+        """The translated tree."""
+        codes: dict[int, tuple[NodeCode, ...]] = {}
+        refusals = list(self.refusals)
         children: dict[int, Child] = {}
         for instance in reversed(self.system.instances):
-            built: list[Automaton] = []
+            translated: list[NodeCode] = []
             child = Child(str(instance.number), STATUSES, False)
             for part in reversed(self.parts[instance.number]):
                 try:
@@ -204,18 +207,35 @@ class _Builder:
                         continue
                     below = [child] if part.address != self.parts[instance.number][-1].address else None
                     below = below or [children[number] for number in instance.children]
-                    made = node_automaton(self.code(part, part.program, tuple(below)))
-                    built.append(made.automaton)
-                    child = made.child
+                    code = self.code(part, part.program, tuple(below))
+                    child = self.child(code)
+                    translated.append(code)
                 except NodeTooLargeError:
-                    self.refusals.append(TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states"))
+                    refusals.append(TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states"))
                 except TreeRefusal as refusal:
-                    self.refusals.append(refusal)
+                    refusals.append(refusal)
             children[instance.number] = child
-            automata[instance.number] = tuple(reversed(built))
+            codes[instance.number] = tuple(reversed(translated))
         addresses = {n: parts[-1].address for n, parts in self.parts.items() if len(parts) > 1}
-        self.refusals.sort(key=lambda refusal: (refusal.origin.path, refusal.origin.span.start))
-        return LibraryTree(automata, addresses, self.board, tuple(self.refusals))
+        refusals.sort(key=lambda refusal: (refusal.origin.path, refusal.origin.span.start))
+        return LibraryTree(codes, addresses, self.board, tuple(refusals))
+
+    def child(self, code: NodeCode) -> Child:
+        """What the parent of a node has to know of it. Automata of nodes with equal shapes are built only once.
+
+        Raises:
+            NodeTooLargeError: the node has too many states.
+        """
+        shape = code.shape
+        if shape not in self.known_children:
+            try:
+                self.known_children[shape] = node_automaton(code).child
+            except NodeTooLargeError:
+                self.known_children[shape] = None
+        known = self.known_children[shape]
+        if known is None:
+            raise NodeTooLargeError
+        return replace(known, address=code.address)
 
     @cached_property
     def constants_of_machines(self) -> frozenset[str]:
@@ -249,7 +269,7 @@ class _Builder:
         number = self.index[id(part)]
         is_condition = node.type in (MACHINE, "SubTree")
         values = PortValues() if is_condition else port_values(node, program, self.board)
-        if asks_world(program):
+        if program.asks_world:
             values.known["event"] = WORLD
         return NodeCode(
             part.address,
@@ -263,7 +283,7 @@ class _Builder:
             (),
             values.elements,
             flags_at(node, self.board),
-            Fraction(str(self.system.parameters.tick_rate)),
+            self.tick_rate,
             counts=False,
             origin=node.origin,
             is_halted_always=True,

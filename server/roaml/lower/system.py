@@ -52,7 +52,7 @@ def _automata(
     machines = {automaton.instance.number: (automaton, machine) for automaton, machine in members if automaton.instance}
     for instance in system.instances:
         if program.library is not None:
-            yield from program.library.automata[instance.number]
+            yield from program.library.automata(instance.number)
         if instance.number in machines:
             yield from lower_machine(*machines[instance.number], program, timers)
     if (board := blackboard(program)) is not None:

@@ -21,10 +21,12 @@ class MockError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Mock:
-    """Attributes:
-    pattern: the name of a node or of its type; `*` and `?` stand for any characters.
-    probability: of SUCCESS; for nodes that ask about the world, of the event at a tick.
-    duration: for which an action is RUNNING, in ms.
+    """A mock: the behaviour of the leaves whose name or type matches a pattern.
+
+    Attributes:
+        pattern: the name of a node or of its type; `*` matches any text and `?` any character.
+        probability: the probability of SUCCESS or, for nodes that depend on the world, of their event at a tick.
+        duration: how long an action is RUNNING, in ms.
     """
 
     pattern: str
@@ -36,7 +38,7 @@ def read_mock(text: str) -> Mock:
     """The mock in a text such as `FollowPath: 0.9 in 2 s`.
 
     Raises:
-        MockError: it is not valid.
+        MockError: `text` is not a valid mock.
     """
     match = _MOCK.match(text.strip())
     if match is None:
@@ -58,20 +60,21 @@ def read_mock(text: str) -> Mock:
 
 
 def read_mocks(text: str) -> tuple[Mock, ...]:
-    """The mocks in the text of a file: one in each line; `#` begins a comment.
+    """The mocks in the text of a file. Each line contains one mock; `#` begins a comment.
 
     Raises:
-        MockError: one is not valid.
+        MockError: a line is not a valid mock.
     """
     lines = (line.partition("#")[0].strip() for line in text.splitlines())
     return tuple(read_mock(line) for line in lines if line)
 
 
 def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
-    """The mock for a node: that of its name, else of its type, else of the first pattern that fits, `*` last.
+    """The mock for a node: the mock of its name, otherwise of its type, otherwise of the first pattern that matches,
+    `*` last. `None` if no mock matches.
 
     Args:
-        succeeds: whether the node is known to succeed always: then `*` does not concern it.
+        succeeds: whether the node is known to always succeed; `*` does not apply to these nodes.
     """
     for exact in (name, type_):
         for mock in mocks:
@@ -87,6 +90,6 @@ def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = Fals
 
 
 def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
-    """The mocks that fit none of the nodes, which are pairs of name and type; `*` is never among them."""
+    """The mocks that match none of the nodes, without `*`. Nodes are pairs of name and type."""
     words = {word for node in nodes for word in node}
     return tuple(m for m in mocks if m.pattern != ALL and not any(fnmatchcase(word, m.pattern) for word in words))

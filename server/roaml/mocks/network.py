@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An executed tree with mocks -> plain SCXML (docs/spec/mocks.md)."""
+"""Translates an executed tree with mocks to plain SCXML (docs/spec/mocks.md)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.lower.programs.nodes import PortValues, asks_world, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import PortValues, compiled_scripts, flags_at, port_values, program_of
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
@@ -46,13 +46,14 @@ from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 from roaml.text import Location
 
 DEFAULT_RATE = Fraction(10)
-"""Ticks of the tree in a second."""
+"""The default number of ticks of the tree per second, in Hz."""
 DEFAULT_MAX_TIME = 600 * 10**9
-"""In ns."""
+"""The default limit of the simulated time, in ns."""
 EVENT_PROBABILITY = 0.1
-"""The probability that something happens in the world at a tick, for nodes without a mock."""
+"""The probability of the event that a node depends on (docs/spec/mocks.md#world), at each tick, if the node has no
+mock."""
 TICKS = "ticks"
-"""The variable of the root with the number of ticks."""
+"""The name of the root's variable that counts the ticks."""
 MAX_TEXT_LENGTH = 100
 """The maximum length of a text in the blackboard."""
 
@@ -62,10 +63,10 @@ class MockOptions:
     """How a tree without a system is executed.
 
     Attributes:
-        mocks: of leaves; the first one that fits best is used (`roaml.mocks.mock.mock_for`).
-        entries: entry of the root blackboard -> the text that the host sets.
-        rate: ticks in a second.
-        max_time: in ns.
+        mocks: the mocks of leaves; `roaml.mocks.mock.mock_for` selects the mock of a leaf.
+        entries: entries of the root blackboard, with the texts that the host sets.
+        rate: the number of ticks per second.
+        max_time: the limit of the simulated time, in ns.
         counts: whether mocks count their answers, for measurements.
     """
 
@@ -81,8 +82,8 @@ class MockedLeaf:
     """A leaf with its mock.
 
     Attributes:
-        duration: in ticks; `None` for conditions and synchronous actions.
-        is_known: whether its library says that it succeeds; no mock is for it.
+        duration: how long the leaf is RUNNING, in ticks; `None` for conditions and synchronous actions.
+        is_known: whether the leaf has no mock because its library declares that it always succeeds.
     """
 
     node: ExecutedNode
@@ -93,12 +94,11 @@ class MockedLeaf:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MockedTree:
-    """A tree with mocks, translated.
+    """The translation of a tree with mocks.
 
     Attributes:
-        leaves: those that have mocks.
-        assumed: nodes that ask about the world and have no mock: the probability of an event at a tick is
-            `EVENT_PROBABILITY`.
+        leaves: the leaves that have mocks.
+        assumed: the nodes that depend on the world and have no mock; their event has `EVENT_PROBABILITY`.
     """
 
     tree: ExecutedTree
@@ -109,7 +109,7 @@ class MockedTree:
 
 
 class MissingMocksError(Exception):
-    """Leaves have no mock. `leaves` are pairs of name and type."""
+    """Raised if leaves have no mock; `leaves` are these leaves."""
 
     def __init__(self, leaves: Sequence[ExecutedNode]) -> None:
         super().__init__()
@@ -121,7 +121,7 @@ def mocked(forest: Forest, options: MockOptions) -> MockedTree:
 
     Raises:
         TreeRefusal: the tree cannot be translated.
-        MissingMocksError: leaves have no mock.
+        MissingMocksError: a leaf needs a mock and has none.
     """
     return _Builder(unfold(forest), options).build()
 
@@ -178,7 +178,7 @@ class _Builder:
             outputs = tuple(self.outputs(node, board))
         else:
             values = port_values(node, program, board)
-        if asks_world(program):
+        if program.asks_world:
             values.known["event"] = self.event(node)
         return NodeCode(
             str(node.number),
@@ -223,7 +223,8 @@ class _Builder:
         return EVENT_PROBABILITY
 
     def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[BoardEntry, tuple[Known, ...]]]:
-        """What a mock writes: ports that may be outputs, if the tree reads their entries."""
+        """The entries that a mock writes, with their possible values: ports that may be outputs, if the tree reads
+        their entries."""
         written = []
         for port, entry, _, _ in node.ports():
             declared = node.known.port(port) if node.known else None
@@ -241,8 +242,8 @@ class _Builder:
 
 
 def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location, counts: bool) -> Automaton:
-    """The automaton that ticks the tree until it answers something else than RUNNING; with `counts`, it counts the
-    ticks."""
+    """The automaton that ticks the tree until the tree returns a status other than RUNNING; with `counts`, it also
+    counts the ticks."""
     response = tree_event(ROOT_NUMBER, "response")
 
     def to(state: str, *body: Statement) -> tuple[Target, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree of a forest: every node once for each use, with the entries to which its names refer
+"""Builds the executed tree of a forest: it contains a node once for each use, with the entries to which its names refer
 (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
@@ -22,12 +22,14 @@ MAX_DEPTH = 200
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TreeFrame:
-    """One use of a tree: the meaning of its names.
+    """One use of a tree, which determines the entries to which names in the tree refer.
 
     Attributes:
-        prefix: of the names of its own entries.
-        remapped: name -> entry outside.
-        trees: the trees around it and its own.
+        prefix: the prefix of the full names of its own entries.
+        remapped: names in the tree, with the full names of the outer entries to which they refer.
+        autoremap: whether all other names refer to the entries of `outer`.
+        outer: the frame of the tree that contains this one; `None` for the main tree.
+        trees: the names of this tree and of the trees that contain it.
     """
 
     prefix: str
@@ -50,7 +52,7 @@ def unfold(forest: Forest) -> ExecutedTree:
     """The executed tree of the analysed file.
 
     Raises:
-        TreeRefusal: there is none, or it cannot be told which one it is.
+        TreeRefusal: the file has no executed tree, it is not clear which tree is executed, or the tree is invalid.
     """
     tree = _main_tree(forest)
     unfolder = _Unfolder(forest)
@@ -90,14 +92,14 @@ class _Unfolder:
 
     def tree(self, path: str, tree: Tree, frame: TreeFrame, depth: int) -> int:
         if len(tree.roots) != 1:
-            raise TreeRefusal(Location(path, tree.element.name_span), "a tree has exactly one node at its top")
+            raise TreeRefusal(Location(path, tree.element.name_span), "a tree needs exactly one root node")
         return self.node(path, tree.roots[0], frame, depth)
 
     def node(self, path: str, node: TreeNode, frame: TreeFrame, depth: int) -> int:
         origin = Location(path, node.element.name_span)
         if self.count >= MAX_NODES or depth > MAX_DEPTH:
             raise TreeRefusal(
-                origin, f"the tree is too large: at most {MAX_NODES} nodes, {MAX_DEPTH} inside each other"
+                origin, f"the tree is too large: at most {MAX_NODES} nodes and {MAX_DEPTH} levels of nesting"
             )
         number = ROOT_NUMBER + self.count
         self.count += 1

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""XML tree -> `Machine`. Unknown and misplaced parts are left out; the grammar rules report them."""
+"""Builds a `Machine` from an XML tree. Unknown and misplaced parts are left out; rules about the grammar report
+them."""
 
 from __future__ import annotations
 
@@ -205,7 +206,8 @@ class _Builder:
         return (Target(None, name_of(element.get("target")), None, self.body(element)),)
 
     def handle(self, element: Element, type_: ElementType) -> Name | None:
-        """The handle that a callback or a sending element refers to; older models name the interface instead."""
+        """The handle that a callback or a sending element refers to, in `name`; without `name`, the interface that it
+        names, as in models in the older dialect."""
         if type_.attributes.get("name") is None or not type_.attributes["name"].refers:
             return None
         named = name_of(element.get("name"))
@@ -263,7 +265,7 @@ class _Builder:
         for child in self.children(element):
             if child.name in ("elseif", "else"):
                 parts.append((child, []))
-                # Content inside a marker is an error, but still part of the branch.
+                # Content inside `<elseif>` or `<else>` is an error, but is still part of the branch.
                 parts[-1][1].extend(self.body(child))
             elif child.name in self.executables:
                 parts[-1][1].append(self.statement(child))

@@ -10,8 +10,11 @@ _FOREIGN_ATTRIBUTES = ("targetexpr", "eventexpr")
 
 
 def dialect_of(machine: Machine, document: Document, in_older_system: bool | None) -> Dialect:
-    """The dialect of a machine: that of the system that lists it (`in_older_system`); otherwise its root and content
-    determine it."""
+    """The dialect of a machine: the dialect of the system that lists it, or the dialect that its root and content show.
+
+    Args:
+        in_older_system: whether a system in the older dialect lists the machine; `None` if no system lists it.
+    """
     if in_older_system is not None:
         return Dialect.OLDER if in_older_system else Dialect.CURRENT
     if machine.root == "ascxml":

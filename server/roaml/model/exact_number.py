@@ -6,11 +6,13 @@ from __future__ import annotations
 from fractions import Fraction
 
 SMALLEST, GREATEST = 1e-30, 1e30
-"""The size of numbers other than 0. The fraction of `1e-9999999` would have ten million digits."""
+"""The smallest and greatest absolute value of a number other than 0. Without these limits, the fraction of `1e-9999999`
+would have ten million digits."""
 
 
 def exact_number(text: str) -> Fraction | None:
-    """The value of a decimal number, as in ` 0.5` or `2e3`; `None` if it is not one, or of an impossible size."""
+    """The value of `text`, a decimal number such as ` 0.5` or `2e3`; `None` if it is not a number, or if its absolute
+    value is outside the limits `SMALLEST` and `GREATEST`."""
     try:
         size = abs(float(text))
         if "/" in text or not (SMALLEST <= size <= GREATEST or (size == 0 and _is_zero(text))):
@@ -21,5 +23,5 @@ def exact_number(text: str) -> Fraction | None:
 
 
 def _is_zero(text: str) -> bool:
-    """Whether a number that is 0 as a float is 0, not only too small."""
+    """Whether a number is exactly 0. A float is also 0 if the number is too small for it."""
     return not any(digit in "123456789" for digit in text.lower().partition("e")[0])

@@ -2,9 +2,10 @@
 """The executed tree with all its instances: subtrees expanded, nodes numbered, ports bound
 (docs/spec/trees.md#instances, docs/spec/trees.md#subtrees).
 
-- Works on outlines, which contain no positions: an instance has its file, its tree and its index in that tree.
-- A subtree that cannot be expanded (because it is unknown or recursive) is left out; rules on the files themselves
-  report it.
+- The input consists of outlines, which contain no positions. An instance refers to its node by the file, the tree, and
+  the position in that tree.
+- A subtree that cannot be expanded, because it is unknown or recursive, is left out. Rules that check the files report
+  it.
 """
 
 from __future__ import annotations
@@ -26,8 +27,13 @@ ROOT_NUMBER = 1000
 
 @dataclass(frozen=True, slots=True)
 class NodeOutline:
-    """A node without positions. `position` counts the nodes of its tree in pre-order from 0; `condition` means that it
-    is written as `<Condition>`."""
+    """A node of a tree, without positions in the text.
+
+    Attributes:
+        position: its index among the nodes of its tree in pre-order, from 0.
+        plugin: the name of its plugin; the ID of the tree if it is a subtree.
+        condition: whether it is written as `<Condition>`.
+    """
 
     position: int
     plugin: str
@@ -50,9 +56,11 @@ class TreeFileOutline:
     """A file of trees without positions.
 
     Attributes:
-        defaults: (plugin, port, value) of `<TreeNodesModel>`; `declared` are all its (plugin, port).
-        from_project: whether it is included because a project beside the executed file lists it, so that it contributes
-            only subtrees.
+        main: the value of `main_tree_to_execute`; "" if it is not given.
+        defaults: the default values in `<TreeNodesModel>`, as (plugin, port, value).
+        declared: all ports in `<TreeNodesModel>`, as (plugin, port).
+        from_project: whether the file is included only because a Groot2 project in the same directory as the executed
+            file lists it. Such a file provides only subtrees.
         conditions: the plugins that are conditions in `<TreeNodesModel>`.
     """
 
@@ -84,7 +92,7 @@ PortValue: TypeAlias = PortConstant | Reference
 
 @dataclass(frozen=True, slots=True)
 class NodeSource:
-    """The node of a file from which something was created."""
+    """A reference to a node in a file: the file, the tree, and the position of the node in the tree."""
 
     path: str
     tree: str
@@ -93,13 +101,13 @@ class NodeSource:
 
 @dataclass(frozen=True, slots=True)
 class TreeUse:
-    """One use of a tree: that of the executed tree, or that of a `<SubTree>`.
+    """One use of a tree: the executed tree itself, or a `<SubTree>` node.
 
     Attributes:
         name: the name of the `<SubTree>`; the ID of the tree if it has none.
         tree: the ID of the tree.
         outer: the index of the use around it; `None` for the executed tree.
-        frame: the meaning of its names.
+        frame: the mapping of the names in this use to blackboard variables.
         scripts: the conditions and scripts of the `<SubTree>`, by attribute.
     """
 
@@ -115,11 +123,11 @@ class Instance:
     """One node of the executed tree.
 
     Attributes:
-        number: 1000 for the root, then counted in pre-order; part of event names.
+        number: 1000 for the root, then increasing in pre-order; the number is a part of event names.
         automaton: `BT_plugin_<number>_<name>`.
         ports: the values that the tree sets, including defaults of `<TreeNodesModel>`.
         children: the numbers of its children.
-        condition: whether it is written or modelled as `<Condition>`.
+        condition: whether it is written as `<Condition>`, or declared so in `<TreeNodesModel>`.
         use: the index of the `TreeUse` that the node is in.
         scripts: its conditions and scripts (docs/spec/trees.md#scripts), by attribute.
     """
@@ -185,23 +193,23 @@ def _outlines(root: TreeNode) -> NodeOutline:
 
 
 def nodes_of(file: TreeFile, tree_id: str) -> tuple[TreeNode, ...]:
-    """The nodes of the first tree with this name, by position."""
+    """The nodes of the first tree named `tree_id`, in pre-order; empty if there is no such tree."""
     return file.nodes_by_tree.get(tree_id, ())
 
 
 def tree_called(file: TreeFile, tree_id: str) -> Tree | None:
-    """The first tree with this name."""
+    """The first tree named `tree_id`; `None` if there is none."""
     return next((tree for tree in file.trees if (tree.id.value if tree.id else "") == tree_id), None)
 
 
 def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
-    """The node of a file that `source` names."""
+    """The node of a file that `source` refers to; `None` if it does not exist."""
     tree_nodes = nodes_of(file, source.tree)
     return tree_nodes[source.position] if source.position < len(tree_nodes) else None
 
 
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
-    """The tree that is executed; if it is ambiguous, the names of the candidates.
+    """The tree that is executed; if it is ambiguous, the names of the possible trees.
 
     It is the tree in `main_tree_to_execute` of the first file, otherwise the only tree that no other tree uses.
     """
@@ -211,7 +219,7 @@ def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ..
         for tree in trees:
             if tree.id == main:
                 return tree
-        # A file with one tree needs no names: its tree is executed whatever its name is (docs/spec/trees.md#main-tree).
+        # The only tree of a file is executed whatever its name is (docs/spec/trees.md#main-tree).
         return trees[0] if len(trees) == 1 else tuple(tree.id for tree in trees)
     trees = [tree for file in files for tree in file.trees if not file.from_project]
     if len(trees) == 1:
@@ -231,8 +239,8 @@ def _walk(root: NodeOutline | None) -> Iterator[NodeOutline]:
 
 
 def is_whole(files: tuple[TreeFileOutline, ...]) -> bool:
-    """Whether `expand` is complete: the executed tree and all subtrees are known, and the tree is not too
-    large."""
+    """Whether the result of `expand` is complete: the executed tree and all its subtrees are known, and the tree is not
+    too large."""
     trees = {tree.id: tree for file in files for tree in file.trees}
     main = main_tree(files)
     if isinstance(main, tuple) or len(trees) < sum(len(file.trees) for file in files):
@@ -267,8 +275,9 @@ class TreeExtent:
     Attributes:
         nodes: the number of nodes, with all subtrees expanded.
         depth: the maximum nesting depth of subtrees.
-        largest: the use of a subtree, in the executed tree or below it, that makes it so large: where the tree in which
-            it stands is still too large, and what stands for it is not, or is used most often. None if there is none.
+        largest: the `<SubTree>` that contributes most to the size. It is searched from the executed tree downwards,
+            through the largest subtree at each level, and the search ends at the first subtree that alone is within the
+            limits. `None` if there are no subtrees.
     """
 
     nodes: int
@@ -296,8 +305,8 @@ def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
 
 
 def _innermost_first(main: TreeOutline, trees: Mapping[str, TreeOutline]) -> Iterator[str]:
-    """The names of the trees of which `main` consists, each after the trees that it uses; those of a cycle in any
-    order."""
+    """The names of `main` and of all trees that it uses, directly or indirectly. Each name follows the names of the
+    trees that it uses; the trees of a cycle are in any order."""
     entered, done = {main.id}, set[str]()
     stack = [(main.id, _used(main, trees))]
     while stack:
@@ -342,19 +351,20 @@ def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """One instance of a tree: how its names translate to names of the whole blackboard.
+    """One use of a tree, with the mapping of the names in it to the full names of blackboard variables.
 
     Attributes:
-        use: the `<SubTree>` node of the instance; `None` for the executed tree.
+        use: the `<SubTree>` node; `None` for the executed tree.
         name: the name of that node; the ID of the tree if it has none.
-        word, suffix: its part of `prefix`, `<word><suffix>__`: the name of that node, and what makes it unique.
-        prefix: the beginning of the full names of its variables.
-        remapped: the values that its names have from outside.
-        autoremap: whether other names may have values from outside.
-        outer: the enclosing instance.
+        word, suffix: the last part of `prefix` is `<word><suffix>__`. The word is the name of that node as an
+            identifier, the suffix makes the prefix unique.
+        prefix: the beginning of the full names of the variables of this use.
+        remapped: the names that the attributes of the `<SubTree>` bind, with their values outside.
+        autoremap: whether all other names are bound to the variables of the same name outside.
+        outer: the enclosing use.
         names: the variables that the nodes of the tree refer to.
-        inside: the trees around the instance and its own.
-        scripts: the conditions and scripts of that node.
+        inside: the IDs of this tree and of all enclosing trees.
+        scripts: the conditions and scripts of the `<SubTree>`.
         looked_up: a cache of resolved names.
     """
 
@@ -373,14 +383,17 @@ class Frame:
     looked_up: dict[str, PortValue | None] = field(default_factory=dict, repr=False)
 
     def resolve(self, name: str) -> PortValue:
-        """The outermost variable to which automatic remapping leads, as long as a node there uses the name."""
+        """The blackboard variable or constant that `name` refers to in this use, after all remappings.
+
+        Automatic remapping leads to the outermost enclosing tree that uses the name.
+        """
         if name.startswith("@"):
             return Reference(name[1:])
         return self._outer_value(name) or Reference(f"{self.prefix}{name}")
 
     def _outer_value(self, name: str) -> PortValue | None:
-        """The value of a name in the outermost instance that remaps or uses it; `None` if neither this instance nor
-        those that it takes its names from remap or use it."""
+        """The value of a name in the outermost use of a tree that remaps or uses it; `None` if neither this use nor the
+        uses from which it takes its names do so."""
         asked: list[Frame] = []
         frame: Frame | None = self
         while frame is not None and name not in frame.remapped and name not in frame.looked_up:
@@ -394,7 +407,7 @@ class Frame:
         return value
 
     def value(self, key: str, text: str) -> PortValue:
-        """The value of the attribute `key`; `{=}` refers to the variable of its name."""
+        """The value of the attribute `key` with the text `text`; `{=}` refers to the variable named `key`."""
         variable = blackboard_variable(text)
         return PortConstant(text) if variable is None else self.resolve(key if variable == "=" else variable)
 
@@ -405,8 +418,8 @@ class Expansion:
 
     Attributes:
         instances: its nodes in pre-order.
-        frames: the instances of trees of which it consists, each after the enclosing one; the executed tree is first.
-        frame_of: the number of a node -> the enclosing instance of a tree.
+        frames: all uses of trees, each after the enclosing one; the executed tree is first.
+        frame_of: number of an instance -> the use of a tree that contains it.
     """
 
     instances: tuple[Instance, ...] = ()
@@ -439,7 +452,7 @@ def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
 
 @dataclass(slots=True)
 class _Placed:
-    """An instance whose children are not created yet."""
+    """An instance while it is built: its children may not exist yet."""
 
     plugin: str
     name: str
@@ -452,7 +465,8 @@ class _Placed:
 
 
 class _Expander:
-    """Works with an explicit stack: subtrees may be nested more deeply than Python's call stack allows."""
+    """Expands a tree with an explicit stack, because subtrees may be nested more deeply than Python's call stack
+    allows."""
 
     def __init__(self, files: tuple[TreeFileOutline, ...]) -> None:
         self.trees = _by_id(files)
@@ -501,7 +515,7 @@ class _Expander:
         return Expansion(tuple(instances), tuple(self.frames), self.frame_of)
 
     def place(self, node: NodeOutline, frame: Frame, parent: int | None) -> int:
-        """The number of a new instance of a node."""
+        """Create an instance of `node` and return its number."""
         number = ROOT_NUMBER + len(self.placed)
         settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
         ports = tuple((key, frame.value(key, text)) for key, text in settings.items())
@@ -515,7 +529,7 @@ class _Expander:
         return number
 
     def enter(self, node: NodeOutline, inner: TreeOutline, frame: Frame) -> Frame:
-        """The frame of a subtree instance: its prefix is unique, its attributes rename variables."""
+        """The frame for the `<SubTree>` `node` that uses the tree `inner`. Its prefix is unique."""
         word, suffix = re.sub(r"\W", "_", node.name or node.plugin, flags=re.ASCII), ""
         word = word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"
         first = prefix = f"{frame.prefix}{word}__"
@@ -579,12 +593,13 @@ def _names(tree: TreeOutline) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class StrayRemap:
-    """An attribute of a `<SubTree>` that is not a variable of the subtree.
+    """An attribute of a `<SubTree>` whose name is not a variable of the subtree.
 
     Attributes:
         source: the node of the `<SubTree>`.
-        key: the attribute; `outer` is its value.
-        meant: the variables of the subtree with similar names that are not passed, the nearest first.
+        key: the name of the attribute.
+        outer: the value of the attribute.
+        meant: the variables of the subtree with similar names that no attribute sets, the most similar first.
         names: the variables of the subtree.
     """
 
@@ -596,8 +611,11 @@ class StrayRemap:
 
 
 def stray_remaps(files: tuple[TreeFileOutline, ...], path: str | None = None) -> Iterator[StrayRemap]:
-    """All attributes of subtrees, in all trees of a system or in those of the file `path`, that are not variables of
-    their subtree."""
+    """All attributes of `<SubTree>` nodes whose names are not variables of their subtree.
+
+    Args:
+        path: the file whose trees are searched; `None` for the trees of all files.
+    """
     trees = _by_id(files)
     declared = {pair for file in files for pair in file.declared}
     words = _Words(trees)
@@ -620,10 +638,10 @@ def _strays(
 
 
 class _Words:
-    """The names that each tree uses, with those of the subtrees that take all names from it.
+    """The names that each tree uses, including the names of its subtrees with automatic remapping.
 
-    The names are numbered, and a set of names is an integer with these bits: of subtrees in each other, each has the
-    names of all that are inside.
+    Each name has a number, and a set of names is an integer with one bit for each name. This saves memory if subtrees
+    are nested deeply, because each tree contains the names of all subtrees inside.
     """
 
     def __init__(self, trees: Mapping[str, TreeOutline]) -> None:
@@ -646,7 +664,8 @@ class _Words:
         return self._decoded[bits]
 
     def _take_all(self, inner: Mapping[str, frozenset[str]]) -> None:
-        """Gives each tree the names of its inner ones, until nothing changes: after one round, if there is no cycle."""
+        """Add the names of the subtrees in `inner` to those of each tree, until nothing changes. Without a cycle, one
+        round is sufficient."""
         try:
             order = tuple(TopologicalSorter(inner).static_order())
         except CycleError:
@@ -660,7 +679,7 @@ class _Words:
 
 
 def _taking_all(tree: TreeOutline, trees: Mapping[str, TreeOutline]) -> frozenset[str]:
-    """The subtrees in a tree that take all names from it."""
+    """The IDs of the subtrees in `tree` that are used with automatic remapping."""
     subtrees = (node for node in _walk(tree.root) if node.is_subtree and node.plugin in trees)
     return frozenset(node.plugin for node in subtrees if _is_autoremapped(node))
 
@@ -671,8 +690,8 @@ def _is_autoremapped(node: NodeOutline) -> bool:
 
 
 def _words(tree: TreeOutline) -> frozenset[str]:
-    """Every name in the values of a tree's attributes: variables, and names in scripts; `{=}` is the name of the
-    attribute."""
+    """Every name in the values of the attributes of a tree: names of variables, and names in scripts. The value `{=}`
+    contains the name of its attribute."""
     words: set[str] = set()
     for node in _walk(tree.root):
         for key, text in node.attributes:

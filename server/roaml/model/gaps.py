@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The facts that the unreadable parts of a machine might declare for the rest of the system.
+"""The facts that the unreadable parts of a machine may contribute to the system.
 
-- A gap is one possible fact, by kind and name: `<ros_topic_publsher topic="/level">` might publish on `/level`, but
-  cannot provide a service. An element that resembles nothing in the language causes no gap.
-- A rule that searches for something in the system (a publisher of a topic, a sender of an event, ...) checks whether a
-  gap may provide it, and reports nothing then: one error is reported once. All other errors are reported.
+- A gap is one possible fact, by kind and name: the misspelled `<ros_topic_publsher topic="/level">` may publish on
+  `/level`, but it cannot provide a service. An element that is similar to no element of the language causes no gap.
+- A rule that needs a fact about the system, such as a publisher of a topic or a sender of an event, reports nothing if
+  a gap may provide this fact, because the unreadable part is reported already. All other errors are reported.
 - Gaps contain no positions, so they are parts of outlines. `machine_gaps` returns them with their positions.
 """
 
@@ -30,13 +30,13 @@ from roaml.xml_syntax import Element
 
 
 class GapAct(Vocabulary):
-    """What an unreadable part may do besides using an interface."""
+    """An act of an unreadable part that does not use a ROS interface."""
 
     ANYTHING = "anything"
     SENDS = "event-sender"
     RECEIVES = "event-receiver"
     PARAMETER = "event-sender parameter"
-    """Gives a parameter to an event that it sends."""
+    """Sets a parameter of an event that it sends."""
     PORT = "port"
     VARIABLE = "variable"
     """Reads or writes a variable of the blackboard."""
@@ -53,8 +53,12 @@ class GapAct(Vocabulary):
 
 
 class InterfaceAct(NamedTuple):
-    """What an unreadable part may do with an interface, from the general to the specific: it declares one, it sends or
-    handles a part of it, or it reads or sets a field of that part."""
+    """An act of an unreadable part that uses a ROS interface.
+
+    Attributes:
+        part: the part that is sent or handled; `None` if the act may also be a declaration of the interface.
+        is_of_field: whether the act only reads or sets a field of `part`.
+    """
 
     kind: SymbolKind
     part: ProtocolPart | None = None
@@ -69,9 +73,10 @@ class Gap:
     """A fact that an unreadable part of a file may contain.
 
     Attributes:
-        act: what is done.
-        name: the topic, service or action as written, the event, the port; `None` if it may be any.
-        port: the port that provides the name, if any.
+        act: what the part may do.
+        name: the name of the topic, service or action as written, of the event, or of the port; `None` if any name is
+            possible.
+        port: the port whose value is the name; "" if there is none.
     """
 
     act: Act
@@ -80,7 +85,8 @@ class Gap:
 
 
 def answers(act: Act, missing: Act) -> bool:
-    """Whether a gap with `act` may also do what is missing: a machine that may declare a publisher may also publish."""
+    """Whether a part that may do `act` may also do `missing`: a machine that may declare a publisher may also
+    publish."""
     if act is GapAct.ANYTHING or act == missing:
         return True
     if isinstance(act, GapAct) or isinstance(missing, GapAct):
@@ -100,11 +106,11 @@ def machine_gaps(
     namespaces: Mapping[str, str],
     has_type: Callable[[str, str], bool],
 ) -> tuple[PlacedGap, ...]:
-    """The gaps of a machine with the places of their causes, in no particular order.
+    """The gaps of a machine with the positions of their causes, in no particular order.
 
     Args:
-        namespaces: the prefixes of the document with their namespaces.
-        has_type: whether there is a ROS type of a kind (msg, srv, action) and name as written.
+        namespaces: prefix in the document -> namespace.
+        has_type: whether there is a ROS type, given its kind (msg, srv or action) and its name as written.
     """
     return tuple(_Search(machine, typed, namespaces, has_type).all())
 
@@ -128,13 +134,13 @@ class _Search:
             for attribute in misfit.element.attributes
             if kind
         }
-        """The declarations that cannot be read: kind, and each name that may be the handle."""
+        """The declarations that cannot be read: their kind, with each attribute value that may be the handle."""
 
     def all(self) -> Iterator[PlacedGap]:
         for misfit in self.misfits:
             span = misfit.element.name_span
             yield from (PlacedGap(gap, span) for gap in self._unread(misfit.element, misfit.parent_type))
-            yield from (PlacedGap(gap, span) for gap in self._datum(misfit.element, misfit.parent))
+            yield from (PlacedGap(gap, span) for gap in self._facts_of_child(misfit.element, misfit.parent))
         if self.machine.name is None:
             yield PlacedGap(Gap(GapAct.NAME), self.machine.element.name_span)
         for declaration in self.machine.declarations:
@@ -146,25 +152,25 @@ class _Search:
     # ---------------------------------------------------- elements out of place
 
     def _kind_of(self, element: Element, parent: ElementType) -> SymbolKind | None:
-        """The kind of declaration that a misfit probably is, if any."""
+        """The kind of symbol that a misplaced or unknown element probably declares; `None` if it declares none."""
         type_ = HL_SCXML.find(element.name)
         types = [type_] if type_ is not None else self._resembling(element, parent)
         return next((kind for type_ in types if (kind := _kind(type_))), None)
 
     def _unread(self, top: Element, parent: ElementType) -> Iterator[Gap]:
-        """The facts that a misfit and its content may contain."""
+        """The facts that a misplaced or unknown element and its content may contain."""
         stack: list[tuple[Element, ElementType | None]] = [(top, parent)]
         while stack:
             element, outer = stack.pop()
             type_ = HL_SCXML.find(element.name)
             types = [type_] if type_ is not None else self._resembling(element, outer)
             for candidate in types:
-                yield from self._said(element, candidate)
+                yield from self._facts_as(element, candidate)
             stack += [(child, types[0] if types else None) for child in element.elements]
 
     def _resembling(self, element: Element, parent: ElementType | None) -> list[ElementType]:
-        """The types that an unknown element probably has: the element with the nearest name, otherwise those to
-        which its attributes fit."""
+        """The possible types of an unknown element: the type with the most similar name; if there is none, the types
+        allowed in `parent` that have its attributes."""
         allowed = list(parent.children) if parent is not None else []
         close = close_names(element.name, allowed, 1) or close_names(element.name, HL_SCXML.elements, 1)
         if close:
@@ -175,7 +181,8 @@ class _Search:
         return [t for t in types if any(self._gives_name(t, name, element) for name in names)]
 
     def _gives_name(self, type_: ElementType, attribute: str, element: Element) -> bool:
-        """Whether an attribute names a topic, event, port, ... in elements of this type."""
+        """Whether an attribute of an element of this type names a topic, service, action, event or port, or a
+        declaration that exists."""
         known = type_.attributes.get(attribute)
         if known is None:
             return False
@@ -185,8 +192,8 @@ class _Search:
         kinds = {d.kind for d in self.machine.declarations if handle and d.handle and d.handle.value == handle.value}
         return not kinds.isdisjoint(known.refers)
 
-    def _said(self, element: Element, type_: ElementType) -> Iterator[Gap]:
-        """The facts of an element if it were of this type."""
+    def _facts_as(self, element: Element, type_: ElementType) -> Iterator[Gap]:
+        """The facts of an element on the assumption that its type is `type_`."""
         if kind := _kind(type_):
             yield _declared(element, type_, kind)
         elif type_.sends is ProtocolPart.EVENT or type_.receives is ProtocolPart.EVENT:
@@ -201,20 +208,20 @@ class _Search:
             handle = meant(element, "name", type_.attributes)
             for kind in name.refers:
                 if kind in INTERFACE_KINDS:
-                    yield from self._over(InterfaceAct(kind, part), handle)
+                    yield from self._facts_about(InterfaceAct(kind, part), handle)
         elif "key" in type_.attributes:
             key = meant(element, "key", type_.attributes)
             yield Gap(GapAct.PORT, key.value if key else None)
         elif type_.sends in _IN_TREE or type_.receives in _IN_TREE:
             yield Gap(GapAct.TREE)
 
-    def _over(self, act: InterfaceAct, handle: Name | None) -> Iterator[Gap]:
-        """The facts about the declaration named `handle`, or one that it may be a misspelling of."""
+    def _facts_about(self, act: InterfaceAct, handle: Name | None) -> Iterator[Gap]:
+        """The facts of an act that refers to the declaration named `handle`, or to one with a similar name."""
         kind = act.kind
         right = [d for d in self.machine.declarations if d.kind is kind and d.handle is not None]
         named = [d for d in right if handle and d.handle and d.handle.value == handle.value]
         if handle is None:
-            # One of the existing declarations, or one that is missing.
+            # The act may refer to any declaration, including one that is missing.
             yield Gap(act)
             return
         if not named:
@@ -234,8 +241,9 @@ class _Search:
         if not named:
             yield Gap(InterfaceAct(kind))  # the declaration is missing
 
-    def _datum(self, element: Element, parent: Element) -> Iterator[Gap]:
-        """A field or parameter that is given in an unknown way: `<feild name="…">` in an element that sends."""
+    def _facts_of_child(self, element: Element, parent: Element) -> Iterator[Gap]:
+        """The facts of an unknown child of a sending element, which may set a field or parameter: `<feild
+        name="…">`."""
         if not element.attributes:
             return
         for chart in self.machine.charts:
@@ -276,7 +284,7 @@ class _Search:
                     yield from self._user(statement, statement.part)
                     if any(field.name is None for field in statement.fields):
                         yield from (PlacedGap(g, statement.element.name_span) for g in self._fields(statement))
-        # A field of unknown type does not exist in the ROS type, or the ROS type is unknown.
+        # The required type of a field is unknown if the ROS type is unknown or has no such field.
         for value in self.typed.values:
             owner = owners.get(value.element) if value.use is ValueUse.FIELD else None
             if owner is not None and (value.required is None or value.required == UNKNOWN):
@@ -299,7 +307,7 @@ class _Search:
             yield _about(act, declaration) if declaration is not None else Gap(act)
 
     def _user(self, user: RosSend | Handler, part: ProtocolPart) -> Iterator[PlacedGap]:
-        """An element that refers to no declaration, or to one of another kind."""
+        """The gaps of an element that refers to no declaration, or to a declaration of a wrong kind."""
         name = user.type.attributes.get("name")
         kinds = [kind for kind in name.refers if kind in INTERFACE_KINDS] if name else []
         declaration = find_handle(self.machine, user)
@@ -308,7 +316,7 @@ class _Search:
         handle = user.handle or meant(user.element, "name", user.type.attributes)
         span = user.handle.span if user.handle else user.element.name_span
         for kind in kinds:
-            yield from (PlacedGap(gap, span) for gap in self._over(InterfaceAct(kind, part), handle))
+            yield from (PlacedGap(gap, span) for gap in self._facts_about(InterfaceAct(kind, part), handle))
             if declaration is not None and declaration.kind in INTERFACE_KINDS:
                 # The declaration may be wrong.
                 yield PlacedGap(_about(InterfaceAct(kind), declaration), span)
@@ -366,24 +374,25 @@ _PARTS: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
     SymbolKind.ACTION_CLIENT: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
     SymbolKind.ACTION_SERVER: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
 }
-"""The parts of an interface with fields in the translation, which the other side may use."""
+"""Kind of declaration -> the parts of its interface that have fields in the translation; the other side may use
+them."""
 
 
 def _kind(type_: ElementType) -> SymbolKind | None:
-    """The kind of ROS interface that an element declares, if any."""
+    """The kind of ROS interface that an element declares; `None` if it declares none."""
     return next((a.defines for a in type_.attributes.values() if a.defines in INTERFACE_KINDS), None)
 
 
 def reads_of_ports(machine: Machine, typed: TypedMachine) -> Iterator[PortRead]:
-    """All places of a machine where a port is read."""
+    """All reads of ports in a machine."""
     values: list[Expression | Name | PortRead | None] = [value.value for value in typed.values]
     values += [d.interface for d in machine.declarations] + [d.rate for d in machine.declarations]
     yield from (value for value in values if isinstance(value, PortRead))
 
 
 def is_interface_name(name: str) -> bool:
-    """Whether `name` is a valid name of a topic, service or action: it becomes a part of event names
-    (docs/spec/plain-scxml.md#interface-names)."""
+    """Whether `name` is a valid name of a topic, service or action: not empty and without white space, because it
+    becomes a part of event names (docs/spec/plain-scxml.md#interface-names)."""
     return bool(name) and not any(character.isspace() for character in name)
 
 
@@ -396,7 +405,7 @@ def _about(act: Act, declaration: Declaration) -> Gap:
 
 
 def _declared(element: Element, type_: ElementType, kind: SymbolKind) -> Gap:
-    """A declaration that is not read, or whose name is not."""
+    """The gap of a declaration that cannot be read, or whose interface name cannot be read."""
     for attribute in INTERFACE_ATTRIBUTES:
         if attribute in type_.attributes:
             name = meant(element, attribute, type_.attributes)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The global variables of the translated system, which properties may use (docs/spec/jani.md#global-variables).
 
-Every event that is sent has `EVENT.valid` and one variable for each parameter, and for arrays also their lengths. The
-translation itself does not read this table; a test compares both.
+Every event that is sent has a flag `EVENT.valid` and one variable for each leaf of a parameter. Arrays and strings also
+have variables with their lengths. The translation does not read this table; a test compares the two.
 """
 
 from __future__ import annotations
@@ -27,15 +27,17 @@ from roaml.scxml.names import (
 )
 
 FindInterface = Callable[[str, str], InterfaceType | None]
-"""(kind, name as written) -> the ROS type."""
+"""Finds a ROS type by its kind (msg, srv or action) and its name as written; `None` if there is none."""
 
 
 @dataclass(frozen=True, slots=True)
 class GlobalVariable:
     """A variable of the translated system.
 
-    `event` and `parameter` identify its content ("valid" for the flag); `source` is the part of the models from which
-    it comes.
+    Attributes:
+        event: the event whose data it contains.
+        parameter: the parameter of the event; "valid" for the flag.
+        source: the part of the models that sends the event; `None` if it has no symbol.
     """
 
     name: str
@@ -56,6 +58,11 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     return table
 
 
+def event_names(system: System, interface: FindInterface) -> frozenset[str]:
+    """The names of the events of the translated system."""
+    return frozenset(event for event, _, _ in _events(system, interface))
+
+
 def event_parameters(system: System, interface: FindInterface) -> dict[str, dict[str, Type]]:
     """The parameters of each event of the translated system, with the types of the models."""
     parameters: dict[str, dict[str, Type]] = {}
@@ -66,8 +73,8 @@ def event_parameters(system: System, interface: FindInterface) -> dict[str, dict
 
 
 def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
-    """The variables of a parameter: its leaves, and the lengths of arrays (docs/spec/types.md#leaves,
-    docs/spec/jani.md#array-storage)."""
+    """The names and types of the variables of a parameter: its leaves, and the lengths of its arrays and strings
+    (docs/spec/types.md#leaves, docs/spec/jani.md#array-storage)."""
     for path, leaf in leaves(type_):
         full = "__".join((name, *path))
         inner, bounds = unwrap(leaf)

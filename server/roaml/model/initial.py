@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Initial values against declared types (docs/spec/types.md#initial-values): constants, array and object literals."""
+"""Checks initial values against declared types (docs/spec/types.md#initial-values). An initial value is a constant, or
+an array or object literal of constants."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ class MissingMembers:
 
 @dataclass(frozen=True, slots=True)
 class ExtraMember:
-    """An object literal has a member that the struct does not have, or that is repeated."""
+    """An object literal has a member that the struct does not have, or that is repeated (`twice`)."""
 
     span: Span
     struct: Struct
@@ -51,14 +52,15 @@ InitialProblem: TypeAlias = MissingMembers | ExtraMember | WrongType | TooLong |
 
 
 def check_initial(expr: Expr, target: Type) -> tuple[InitialProblem, ...]:
-    """Why `expr` cannot be an initial value of type `target`. Names are not constants."""
+    """The reasons why `expr` cannot be an initial value of type `target`; empty if it can. Names are not constants."""
     problems: list[InitialProblem] = []
     _check(expr, target, problems)
     return tuple(problems)
 
 
 def check_bound(expr: Expr, target: Type) -> tuple[InitialProblem, ...]:
-    """Why `expr` cannot be a bound of a variable: unlike for a value, an int is not allowed for a real."""
+    """The reasons why `expr` cannot be a bound of a variable of type `target`; empty if it can. Unlike an initial
+    value, a bound of a real variable cannot be an int."""
     problems = check_initial(expr, target)
     given, _ = infer.infer(expr, lambda _: None)
     if not problems and is_kind(target, ScalarKind.REAL) and is_kind(given, ScalarKind.INT):
@@ -77,7 +79,7 @@ def _check(expr: Expr, target: Type, problems: list[InitialProblem]) -> None:
                 _check(element, target.element, problems)
         case ObjectLiteral(), Unknown():
             pass
-        case ArrayLiteral(), Unknown():  # possibly of structs: then its elements may be objects
+        case ArrayLiteral(), Unknown():  # the unknown type may be a struct, so the elements may be object literals
             for element in expr.elements:
                 _check(element, target, problems)
         case ObjectLiteral(), _:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Struct declarations in a JSON Schema (docs/spec/types.md#json-structs).
 
-The root object is a struct named by its `title`; an inline object is a struct named after its property; a `$ref` names
-a definition, and only those that the root reaches exist. A part for which the language has no type is a finding; a
-struct that cannot be read, or that is not reached, is then declared as incomplete.
+The root object is a struct named by its `title`. An inline object is a struct named after its property. A `$ref` names
+a definition; definitions that the root does not reach declare no structs. A part that has no corresponding type in
+HL-SCXML is reported. If there are findings, a struct that cannot be read or is not reached is declared as incomplete.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _DEFINITIONS = ("$defs", "definitions")
 
 
 def structs_in_json(value: JsonValue) -> tuple[tuple[StructDeclaration, ...], tuple[Finding, ...]]:
-    """The structs of a schema, and the parts that cannot be structs."""
+    """The structs of a schema, and findings for the parts that cannot be read as structs."""
     reader = _Reader(value)
     reader.root()
     reader.unread()
@@ -53,7 +53,8 @@ class _Reader:
         self.object(schema, Name(title.value, title.content_span))
 
     def unread(self) -> None:
-        """An unreadable part may use the definitions that nothing else uses."""
+        """After findings, declare the definitions that are not reached as incomplete structs, because an unreadable
+        part may use them."""
         if not self.findings or not isinstance(self.value, JsonObject):
             return
         for section in _DEFINITIONS:
@@ -80,7 +81,7 @@ class _Reader:
             self.report(properties or schema, f"the struct `{name.value}` has no properties")
             self.incomplete(schema, name)
             return
-        # It is listed before the structs that it contains.
+        # A struct is listed before the structs that it contains.
         index = len(self.structs)
         self.structs.append(StructDeclaration(name, (), schema.span))
         members = tuple(self.member(member) for member in properties.members)

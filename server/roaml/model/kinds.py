@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kind of a file. The content decides, never the extension alone (docs/spec/files.md#dialects)."""
+"""Determines the kind of a file from its content, never from its extension alone (docs/spec/files.md#dialects)."""
 
 from __future__ import annotations
 
@@ -36,13 +36,15 @@ GRAMMARS: Mapping[FileKind, Grammar] = {
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
 INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")
 PROJECT_EXTENSION = ".btproj"
-"""Projects of Groot2, which list files of trees. They are read if a tree beside them is read, and never changed."""
+"""The extension of Groot2 projects, which list files of trees. A project is read if a tree in its directory is read. It
+is never changed."""
 EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
-"""Files with other extensions are read only when they are named."""
+"""The extensions of files that are searched for. Files with other extensions are read only if a user or a file names
+them."""
 
 CONFIG_FILE = "as2fm.toml"
 PROJECT_FILE = "pyproject.toml"
-"""Files that may contain a configuration in the table `tool.as2fm`."""
+"""The name of files that may contain a configuration in the table `tool.as2fm`."""
 
 CONFIG_FILES = (CONFIG_FILE, PROJECT_FILE)
 
@@ -64,7 +66,7 @@ _HEAD = 20_000
 
 
 def root_name(text: str) -> str:
-    """The name of the first element; "" if there is none near the beginning."""
+    """The name of the first XML element; "" if there is none near the beginning of the text."""
     at, head = 0, text[:_HEAD]
     while (less := head.find("<", at)) >= 0:
         if skipped := _SKIPPED.match(head, less):
@@ -77,7 +79,8 @@ def root_name(text: str) -> str:
 
 
 def kind_of(path: str, text: str) -> FileKind:
-    """The kind of a file by its content. A system that lists it may specify more (`roaml.project.analysis`)."""
+    """The kind of a file, from its content. A system that lists the file may determine its kind more precisely
+    (`roaml.project.analysis`)."""
     name = path.replace("\\", "/").rpartition("/")[2]
     if name == CONFIG_FILE or (name == PROJECT_FILE and _OUR_TABLE.search(text)):
         return FileKind.CONFIGURATION

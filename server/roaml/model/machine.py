@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A state machine document as typed data (docs/spec/machines.md): its content, independent of its system.
 
-- Frozen; built from one file alone, so equal texts give equal models.
-- Incomplete documents give incomplete models: everything that may be missing can be `None`; nothing is guessed.
-- Every part has its XML element and, through it, its grammar (`ElementType`) and its position.
+- A machine is immutable. It depends on one file only, so equal texts give equal machines.
+- An incomplete document gives an incomplete machine: every part that may be missing can be `None`; nothing is guessed.
+- Every part has its XML element, which leads to its grammar (`ElementType`) and its position.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Dialect(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Data:
-    """A variable. `comment_type` means that the type is in a comment before the element
+    """A variable of a machine. `comment_type` means that its type is written in a comment before the element
     (docs/spec/machines.md#type-comment)."""
 
     element: Element
@@ -50,10 +50,11 @@ class Declaration:
     Attributes:
         kind: the kind of symbol that it declares: publisher, subscriber, service-client, service-server, action-client,
             action-server or timer.
-        handle: the name that the rest of the file uses; without `name`, the interface as written.
-        interface: topic, service or action name; `None` for timers.
+        handle: the name by which the rest of the file refers to the declaration; without the attribute `name`, the name
+            of the interface as written.
+        interface: the name of the topic, service or action, or the port that provides it; `None` for timers.
         type: the ROS type; `None` for timers.
-        rate: the rate of a timer, in Hz.
+        rate: the rate of a timer in Hz, or the port that provides it.
     """
 
     element: Element
@@ -99,7 +100,8 @@ class Send:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Branch:
-    """One part of an `<if>`; `element` is the `<if>`, `<elseif>` or `<else>`. Only `<else>` has no condition."""
+    """A branch of an `<if>`. `element` is the `<if>`, `<elseif>` or `<else>`; a valid `<if>` or `<elseif>` has a
+    condition."""
 
     element: Element
     cond: Expression | None
@@ -108,7 +110,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class If:
-    """`otherwise` is `None` without `<else/>`."""
+    """An `<if>` with its branches. `otherwise` is the branch of `<else/>`, if there is one."""
 
     element: Element
     branches: tuple[Branch, ...]
@@ -117,9 +119,9 @@ class If:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RosSend:
-    """Sends a part of a ROS interface: a message, request, response, goal, feedback, result, ...
+    """An element that sends a part of a ROS interface, such as a message, request, response, goal or result.
 
-    `goal_id` and `thread_id` are `None` if the element has no such attribute or it is missing.
+    `goal_id` and `thread_id` are `None` if the attribute is missing or the element cannot have it.
     """
 
     element: Element
@@ -149,7 +151,8 @@ class ReturnHalted:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CallChild:
-    """Ticks a child, or halts it if `halts`. `child` is its index or a variable."""
+    """An element that ticks a child, or halts it if `halts` is true. `child` is the index of the child, or a variable
+    that contains it."""
 
     element: Element
     halts: bool
@@ -175,8 +178,8 @@ Statement: TypeAlias = Assign | Send | If | RosSend | ReturnStatus | ReturnHalte
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Target:
-    """The target of a transition. `probability` is its text; `None` if not given. `element` is the `<target>`, if
-    any."""
+    """A target of a transition. `element` is the `<target>`; `None` for the attribute `target`. `probability` is the
+    text of the attribute `prob`; `None` if it is missing."""
 
     element: Element | None
     state: Name | None
@@ -193,9 +196,9 @@ class Handler:
         event: the event of a plain transition.
         handle: the declaration that a ROS callback refers to.
         child: the child index of `bt_child_status` and `bt_child_halted`.
-        targets: one for a `target` attribute or none of both; all `<target>` children otherwise; accept and reject
-            of a goal response.
-        effective: false for elements that are accepted without effect (`ros_service_handle_error`).
+        targets: all `<target>` children; without them, or with the attribute `target`, exactly one target. The handler
+            of a goal response has two: for acceptance and for rejection.
+        effective: false for elements that are allowed but have no effect, such as `<ros_service_handle_error>`.
     """
 
     element: Element
@@ -250,8 +253,9 @@ class Chart:
 
     @cached_property
     def executed(self) -> tuple[Statement, ...]:
-        """The statements that a transition executes. Statements of `<onentry>` are left out if no transition leads to
-        the state, those of `<onexit>` if none leaves it (docs/spec/jani.md: they become parts of the transitions)."""
+        """The statements that transitions execute. The statements of an `<onentry>` are left out if no transition
+        enters its state, and those of an `<onexit>` if no transition leaves its state: they become parts of transitions
+        (docs/spec/jani.md)."""
         return tuple(statement for body in self._executed() for statement in statements(body))
 
     def _executed(self) -> Iterator[tuple[Statement, ...]]:
@@ -287,7 +291,7 @@ class Machine:
 
     Attributes:
         root: `ascxml` or `scxml`.
-        plain: uses none of the elements, declarations and types that HL-SCXML adds to SCXML
+        plain: whether the machine uses no element, declaration or type that HL-SCXML adds to SCXML
             (docs/spec/machines.md#plain-machines).
     """
 
@@ -317,7 +321,7 @@ class Machine:
 
 
 def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statement, ...]]]:
-    """Every sequence of statements of the chart that is executed as one, with the handler that starts it, if any."""
+    """Every body of the chart, with its state and its handler. The handler is `None` for `<onentry>` and `<onexit>`."""
     for state in chart.states:
         for body in (state.entry, state.exit):
             if body is not None:

@@ -13,12 +13,12 @@ EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
 
 
 def is_reserved(name: str) -> bool:
-    """Whether `name` cannot name a variable or member, as it is a reserved word of ECMAScript."""
+    """Whether `name` is a reserved word of ECMAScript, which cannot be the name of a variable or member."""
     return name in RESERVED or name in CONTEXTUAL
 
 
 def variable_problem(name: str) -> str:
-    """Why `name` is not a valid variable name; "" if it is."""
+    """A message that says why `name` is not a valid variable name; "" if it is valid."""
     if name in STATUSES:
         return f"`{name}` is the status of a tree node and cannot be the name of a variable"
     if name in ("length", "Math", "true", "false"):

@@ -15,9 +15,11 @@ MAX_DEPTH = 100
 
 @dataclass(frozen=True, slots=True)
 class TypeExtent:
-    """Attributes:
-    fields: the number of fields that are not structs.
-    depth: the maximum number of nested structs.
+    """The size of a struct or message.
+
+    Attributes:
+        fields: the number of fields that are not structs themselves, including those of nested structs.
+        depth: the maximum nesting depth of structs.
     """
 
     fields: int
@@ -29,10 +31,11 @@ class TypeExtent:
 
 
 def extents(members: Mapping[str, Sequence[str]]) -> dict[str, TypeExtent]:
-    """The extent of each name, inner ones first. A recursive use counts as one field.
+    """The extent of each struct or message; those that others contain come first. A recursive member is regarded as one
+    field.
 
     Args:
-        members: name -> the types of its members; names that are not keys are plain fields.
+        members: struct -> the types of its members; types that are not keys are not structs.
     """
     extent_of: dict[str, TypeExtent] = {}
     for name in _inner_first(members):

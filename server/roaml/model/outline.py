@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The part of a machine that the rest of the system uses: names and types, without positions.
+"""The outline of a machine: the names and types that the rest of the system uses, without positions.
 
-Two versions of a file with equal outlines are equal for every other file, so typing inside a transition rechecks only
-one file.
+If two versions of a file have equal outlines, the other files need not be checked again. So typing inside a transition
+rechecks only one file.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class PortOutline:
-    """`type` is as written; `read` and `written` state whether the machine reads or
-    writes the port."""
+    """A port of a plugin. `type` is the type as written; `read` and `written` state whether the machine reads or writes
+    the port."""
 
     key: str
     type: str
@@ -62,11 +62,11 @@ class InterfaceUse:
     """A declared ROS interface and its uses by the machine.
 
     Attributes:
-        name: topic, service or action as written; "" if it comes from port `port`.
-        sends, receives: the parts, as in the roles of the schema.
+        name: the topic, service or action as written; "" if the value of the port `port` provides it.
+        sends, receives: the parts of the interface that the machine sends and receives.
         fields: for each part that is sent, its fields with the types of their values, including fields that are not
             set.
-        awaited: for a subscriber, whether the machine can reach a state in which it waits for this topic alone.
+        awaited: for a subscriber, whether the machine can reach a state in which it waits only for this topic.
     """
 
     kind: SymbolKind
@@ -82,7 +82,7 @@ class InterfaceUse:
 
 @dataclass(frozen=True, slots=True)
 class EventSent:
-    """A `<send>`. Structs are one parameter here."""
+    """A `<send>`. A struct is one parameter."""
 
     event: str
     params: tuple[SentField, ...]
@@ -90,16 +90,27 @@ class EventSent:
 
 @dataclass(frozen=True, slots=True)
 class EventReceived:
-    """A transition on an event, and the parameters of it that are read."""
+    """A transition on an event.
+
+    Attributes:
+        reads: the parameters that are read.
+        forwarded: whether the types of parameters that are sent depend on them.
+    """
 
     event: str
     reads: frozenset[str]
+    forwarded: bool
 
 
 @dataclass(frozen=True, slots=True)
 class TimerOutline:
-    """A declared timer: its rate in Hz as written, or the port that provides it; the number of charts with a
-    callback."""
+    """A declared timer.
+
+    Attributes:
+        rate: the rate in Hz, as written.
+        port: the port that provides the rate; "" if there is none.
+        users: the number of charts with a callback of the timer.
+    """
 
     name: str
     rate: str
@@ -115,12 +126,14 @@ class ThreadOutline:
 
 @dataclass(frozen=True, slots=True)
 class PluginOutline:
-    """The participation of a machine in a behavior tree.
+    """The part that a machine has in a behavior tree.
 
     Attributes:
+        ticked, halted: whether it handles ticks and halts.
+        answers_tick, answers_halt: whether it answers ticks and halts.
         children: the greatest literal child index that it ticks or halts, plus 1.
         any_child: whether it ticks or halts children by a variable index.
-        ticked_children: the literal indices of the children that it ticks; `None` if it may tick any.
+        ticked_children: the literal indices of the children that it ticks; `None` if it may tick any child.
         halts_children: whether it halts children and waits for their answer.
     """
 
@@ -136,11 +149,12 @@ class PluginOutline:
 
 @dataclass(frozen=True)
 class MachineOutline:
-    """
+    """The outline of a machine.
+
     Attributes:
         gaps: the facts that its unreadable parts may contain.
-        all_ports: whether `ports` are complete, because all declarations of ports can be read.
-        charts: its behaviour; a chart that is too large to be analysed is empty.
+        all_ports: whether `ports` is complete: all declarations of ports can be read.
+        charts: the outline of the behaviour of each chart; it is empty for a chart that is too large to be analysed.
     """
 
     name: str
@@ -159,7 +173,7 @@ class MachineOutline:
 
     @property
     def takes_part_in_tree(self) -> bool:
-        """Whether the machine uses the behavior tree, including events with its name
+        """Whether the machine takes part in the behavior tree, or sends or receives plain events of the tree
         (docs/spec/files.md#removed-tree-events)."""
         plugin = self.plugin
         takes = plugin.ticked or plugin.halted
@@ -172,7 +186,7 @@ class MachineOutline:
         return next((port for port in self.ports if port.key == key), None)
 
     def use(self, kind: SymbolKind, handle: str) -> InterfaceUse | None:
-        """The first declaration of that kind and handle."""
+        """The first declaration with this kind and handle; `None` if there is none."""
         return self._uses.get((kind, handle))
 
     @cached_property
@@ -183,7 +197,7 @@ class MachineOutline:
 def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) -> MachineOutline:
     """The outline of a machine whose gaps are `gaps`."""
     types = {value.element: value.sent for value in typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)}
-    reads = _reads(typed)
+    reads, forwarding = _reads(typed), _forwarding(typed)
     return MachineOutline(
         machine.name.value if machine.name else "",
         machine.root,
@@ -203,7 +217,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
             )
         ),
         tuple(
-            EventReceived(handler.event.value, frozenset(reads[handler]))
+            EventReceived(handler.event.value, frozenset(reads[handler]), handler in forwarding)
             for handler in _handlers(machine)
             if handler.trigger is ProtocolPart.EVENT and handler.event
         ),
@@ -296,8 +310,8 @@ class _Waiting:
     Attributes:
         states: state -> the declarations that its effective handlers refer to, and the states that they lead to.
             States without any handler are left out.
-        sole: the declarations for which some state waits exclusively.
-        is_stuck: whether some state has no effective handler.
+        sole: the declarations that are the only ones for which some state waits.
+        is_stuck: whether some state has handlers, but no effective handler.
     """
 
     def __init__(self, machine: Machine, chart: Chart) -> None:
@@ -316,7 +330,8 @@ class _Waiting:
         self.is_stuck = not all(declarations)
 
     def awaits(self, subscriber: Declaration) -> bool:
-        """Whether the chart reaches, without a message of the topic, a state that only a message can leave."""
+        """Whether the chart can reach, without a message of the topic, a state that it leaves only on such a
+        message."""
         if subscriber not in self.sole and not self.is_stuck:
             return False
         pending, seen = [self.initial], {self.initial}
@@ -381,18 +396,30 @@ def _plugin(machine: Machine) -> PluginOutline:
 
 
 def _index(child: Name | None) -> int | None:
-    """The index of a child if it is a literal."""
+    """The index of a child if it is a literal; otherwise `None`."""
     return int(child.value[:6]) if child and child.value.isascii() and child.value.isdigit() else None
 
 
 def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
-    """Per handler of a plain event, the parameters `_event.data.NAME` that it reads."""
+    """Handler of a plain event -> the names in `_event.data.NAME` that it reads."""
     reads: defaultdict[Handler, set[str]] = defaultdict(set)
     for value in typed.values:
         handler = value.place.handler
         if handler is not None and handler.trigger is ProtocolPart.EVENT and isinstance(value.value, Expression):
             reads[handler].update(event_parameters(value.value.tree))
     return reads
+
+
+def _forwarding(typed: TypedMachine) -> set[Handler]:
+    """The handlers of plain events whose data the types of sent parameters depend on."""
+    return {
+        value.place.handler
+        for value in typed.values
+        if value.place.handler is not None
+        and value.use is ValueUse.PARAMETER
+        and isinstance(value.value, Expression)
+        and any(event_parameters(value.value.tree))
+    }
 
 
 def event_parameters(tree: Expr) -> Iterator[str]:

@@ -9,18 +9,18 @@ DEFAULT_MAX_ARRAY_SIZE = 100
 DEFAULT_TICK_RATE = 1.0
 DEFAULT_RANDOM_VALUES = 100
 MAX_RANDOM_VALUES = 10_000
-"""Each value is a destination of an edge in JANI."""
+"""The maximum of `random_values`. It is limited because each value is a destination of an edge in JANI."""
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    """How the system is translated.
+    """The parameters with which a system is translated.
 
     Attributes:
-        max_time: the bound of the clock in ns; None if it is not given or no number.
-        tick_rate: of the behavior tree, in Hz.
-        random_values: how many values `Math.random()` has: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
+        max_time: the bound of the clock in ns; `None` if it is not given or not a number.
+        tick_rate: the rate of ticks of the behavior tree, in Hz.
+        random_values: the number n of the values of `Math.random()`: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
     """
 
     max_time: int | None = None
@@ -32,7 +32,7 @@ class Parameters:
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """Parameters that replace those of a system file, where they are given; see `Parameters`."""
+    """Parameters that replace those of a system file. A parameter that is `None` replaces nothing; see `Parameters`."""
 
     max_time: int | None = None
     max_array_size: int | None = None

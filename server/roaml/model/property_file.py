@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property file in XML as typed data (docs/spec/xml-properties.md#file). Reading never raises."""
+"""A property file in XML as typed data (docs/spec/xml-properties.md#file). Reading a file raises no exception."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PortVariableKind(Vocabulary):
 
 
 class PortKind(Vocabulary):
-    """The kind of thing that a port listens to. The values are the names of the elements."""
+    """The kind of interface, node or event that a port listens to. The values are the names of the elements."""
 
     TOPIC = "ros_topic"
     SERVICE = "ros_service"
@@ -35,7 +35,8 @@ class PortKind(Vocabulary):
 
 
 class ObservedPart(Vocabulary):
-    """The part of an interface, or of the protocol of the tree, that a port listens to: its attribute `event`."""
+    """The part of an interface, or of the protocol of the tree, that a port listens to. The values are those of the
+    attribute `event`."""
 
     PUBLISH = "publish"
     REQUEST = "request"
@@ -60,14 +61,14 @@ NAME_ATTRIBUTES = {
     PortKind.NODE: "node",
     PortKind.PLAIN: "event",
 }
-"""Kind of port -> the attribute with the name of the interface, node or event that it listens to."""
+"""Kind of port -> the attribute with the name of the interface, node or event that the port listens to."""
 
 GUARANTEES, ASSUMES = "guarantees", "assumes"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortVariable:
-    """`field` is the dotted path into a message, or the parameter of an event."""
+    """A variable of a port. `field` is the dotted path of a field in a message, or the parameter of an event."""
 
     element: Element
     kind: PortVariableKind
@@ -79,7 +80,7 @@ class PortVariable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Port:
-    """`name` is the interface, node or event that it listens to, `event` the part of the interface."""
+    """A port. `name` is the interface, node or event that it listens to; `event` is the part of the interface."""
 
     element: Element
     kind: PortKind
@@ -115,7 +116,7 @@ class TimeInterval:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrittenFormula:
-    """A formula with its atoms, in the order of `notation.atoms`."""
+    """A formula with the conditions that are its atoms, in the order of `notation.atoms`."""
 
     source: Decoded
     notation: Notation
@@ -124,7 +125,8 @@ class WrittenFormula:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrittenProperty:
-    """`section` is `GUARANTEES` or `ASSUMES`. `conditions` are those in `<event>` or `<events>`."""
+    """A property as written. `section` is `GUARANTEES` or `ASSUMES`; `conditions` are the conditions in `<event>` or
+    `<events>`."""
 
     element: Element
     section: str

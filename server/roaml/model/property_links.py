@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links a property file to its system: the events of its ports, the conditions of its properties, and its problems
-(docs/spec/xml-properties.md)."""
+"""Links a property file to its system: finds the events of its ports, checks the conditions of its properties, and
+collects the problems (docs/spec/xml-properties.md)."""
 
 from __future__ import annotations
 
@@ -69,10 +69,10 @@ class LinkedProperty:
     """A property without problems, for which an observer can be built.
 
     Attributes:
-        conditions: input of its observer -> expression.
-        ports: the ports whose variables it reads; their events are its letters.
-        path: the path of its file.
-        sentence: what it requires.
+        conditions: input of the observer -> its expression.
+        ports: the ports whose variables the property reads; the observer makes a step at each of their events.
+        path: the path of the property file.
+        sentence: the property as an English sentence.
     """
 
     name: str
@@ -114,7 +114,8 @@ def link(
     Args:
         path: the path of the file.
         variables: the global variables of the translated system.
-        taken: name of a property in the files that the system lists before this one -> the file, as named in messages.
+        taken: name of a property in the files that the system lists before this one -> the name of that file for
+            messages.
     """
     return _Linker(file, system, find, variables, taken, path).linked()
 
@@ -168,7 +169,7 @@ class _Linker:
                 if variable.id in self.by_id:
                     self.report(ProblemKind.REPEATED_ID, name.span, f"another variable has the id `{variable.id}`")
                 elif not _is_identifier(variable.id):
-                    message = f"`{variable.id}` is not an identifier, so no condition can name it"
+                    message = f"`{variable.id}` is not an identifier, so conditions cannot use it"
                     self.report(ProblemKind.PORT_VARIABLE, name.span, message)
                 self.by_id.setdefault(variable.id, (port, variable))
                 initial = variable.written.initial
@@ -179,7 +180,7 @@ class _Linker:
         if initial.broken:
             self.report(ProblemKind.PORT_VARIABLE, initial.findings[0].span, initial.findings[0].message)
         elif check_initial(initial.tree, type_):
-            message = f"`expr` is the value before the first message: a constant of type `{type_}`"
+            message = f"`expr`, the value before the first event, must be a constant of type `{type_}`"
             self.report(ProblemKind.PORT_VARIABLE, initial.span, message)
 
     def _check_names(self) -> None:
@@ -191,16 +192,16 @@ class _Linker:
             if name in seen:
                 self.report(ProblemKind.REPEATED_ID, written.id.span, f"another property has the id `{name}`")
             elif name in self.taken:
-                message = f"another property of the system is called `{name}`, in {self.taken[name]}"
+                message = f"another property of the system has the id `{name}`, in {self.taken[name]}"
                 self.report(ProblemKind.REPEATED_ID, written.id.span, message)
             seen.add(name)
 
     def _check_use(self) -> None:
         if any(problem.kind in (ProblemKind.CONDITION, ProblemKind.FORM) for problem in self.problems):
-            return  # what is written wrongly may mean a variable
+            return  # an invalid condition may be intended to use the variable
         for port in self.linked_ports:
             if not port.variables:
-                message = "this port has no variables, so no property listens to it"
+                message = "this port has no variables, so no property can use it"
                 element = port.written.element
                 self.report(ProblemKind.UNUSED, element.name_span, message, (), Remedy.REMOVE_ELEMENT, element)
             for variable in port.variables:
@@ -220,9 +221,9 @@ class _Linker:
             self._check_condition(expression)
         if written.pattern is None and written.formula is None:
             if written.logic is None:
-                message = "a property has a `pattern`, or a formula in `logic` and `expr`"
+                message = "a property needs a `pattern`, or a formula in `logic` and `expr`"
             else:
-                message = "`expr` is missing: the formula"
+                message = "the formula is missing; add it in `expr`"
             self.report(ProblemKind.FORM, written.element.name_span, message)
         expressions = self._pattern(written) if written.pattern is not None else self._formula(written)
         errors = [problem for problem in self.problems[before:] if problem.kind not in _HINTS]
@@ -249,7 +250,7 @@ class _Linker:
             return
         comparison = read_comparison(expect.value)
         if written.section == ASSUMES:
-            self.report(ProblemKind.FORM, expect.span, "an assumption has no value, so nothing can be expected of it")
+            self.report(ProblemKind.FORM, expect.span, "an assumption has no probability; remove `expect`")
         elif comparison is None or not 0 <= comparison.number <= 1:
             message = "`expect` must compare the probability with a number from 0 to 1: `>= 0.9`"
             self.report(ProblemKind.FORM, expect.span, message)
@@ -271,7 +272,7 @@ class _Linker:
                 close = close_names(problem.name, self.by_id)
             self.report(ProblemKind.CONDITION, problem.span, _in_words(problem, close), close)
         if not reported and type_ != UNKNOWN and not is_kind(type_, ScalarKind.BOOL):
-            message = f"a condition is true or false, but this is of type `{type_}`"
+            message = f"a condition must be true or false, but this expression has the type `{type_}`"
             self.report(ProblemKind.CONDITION, condition.span, message)
         self._check_together(condition)
 
@@ -284,7 +285,7 @@ class _Linker:
                 left, right = self._event(part.left), self._event(part.right)
                 if left is not None and right is not None and left[0] is not right[0]:
                     message = (
-                        f"`{left[1].id}` and `{right[1].id}` are never true together: each message is a step of its own"
+                        f"`{left[1].id}` and `{right[1].id}` are never true together: each event is a separate step"
                     )
                     self.report(ProblemKind.NEVER_TOGETHER, part.span, message)
 
@@ -295,7 +296,7 @@ class _Linker:
     def _pattern(self, written: WrittenProperty) -> tuple[Property, dict[str, Expression]] | None:
         assert written.pattern is not None
         if written.logic is not None or written.formula is not None:
-            message = "a property has either a `pattern` or a formula, not both"
+            message = "a property cannot have both a `pattern` and a formula; remove one of them"
             self.report(ProblemKind.FORM, written.pattern.span, message)
             return None
         if written.pattern.value not in {pattern.value for pattern in Pattern}:
@@ -351,7 +352,7 @@ class _Linker:
             if is_needed and condition is None:
                 self.report(ProblemKind.FORM, place.span, f"the scope `{kind.value}` needs the attribute `{attribute}`")
             elif condition is not None and not is_needed:
-                message = f"the scope `{kind.value}` has no `{attribute}`"
+                message = f"the scope `{kind.value}` cannot have the attribute `{attribute}`"
                 self.report(ProblemKind.FORM, condition.span, message, (), Remedy.REMOVE_ATTRIBUTE, scope.element)
             elif condition is not None:
                 yield name, condition
@@ -362,7 +363,7 @@ class _Linker:
             return None
         elements = [scope.element for scope in written.scopes] + [interval.element for interval in written.intervals]
         for span in (*(c.span for c in written.conditions), *(element.name_span for element in elements)):
-            self.report(ProblemKind.FORM, span, "a property with a formula has no events, scope or interval")
+            self.report(ProblemKind.FORM, span, "a property with a formula cannot have events, a scope or an interval")
         for span, message in formula.notation.problems:
             self.report(ProblemKind.FORM, formula.source.span(*span), message)
         if formula.notation.formula is None:
@@ -378,7 +379,7 @@ class _Linker:
     def _window(self, written: WrittenProperty, pattern: Pattern) -> Window | None:
         if not written.intervals:
             if pattern is Pattern.RECURRENCE:
-                message = "`recurrence` needs a `<time_interval>`: the time within which the condition is true again"
+                message = "`recurrence` needs a `<time_interval>` within which the condition must be true again"
                 self.report(ProblemKind.TIME, written.element.name_span, message)
                 return None
             return Window()
@@ -388,13 +389,14 @@ class _Linker:
         if interval.unit is None or interval.unit.value not in NANOSECONDS:
             return None  # the schema reports it
         if not any(ends):
-            self.report(ProblemKind.TIME, place, "an interval has `time`, `after` or `within`")
+            self.report(ProblemKind.TIME, place, "an interval needs `time`, `after` or `within`")
             return None
         if interval.time is not None and (interval.after or interval.within):
-            self.report(ProblemKind.TIME, interval.time.span, "`time` means `within`; use only `after` and `within`")
+            message = "`time` has the same meaning as `within`; use only `after` and `within`"
+            self.report(ProblemKind.TIME, interval.time.span, message)
             return None
         if pattern is Pattern.RECURRENCE and interval.after is not None:
-            self.report(ProblemKind.TIME, interval.after.span, "`recurrence` has no `after`, only `time`")
+            self.report(ProblemKind.TIME, interval.after.span, "`recurrence` cannot have `after`; use `time`")
             return None
         if self.step is None:
             self._no_clock(place)
@@ -402,7 +404,7 @@ class _Linker:
         return self._in_steps(interval, NANOSECONDS[interval.unit.value], self.step)
 
     def _no_clock(self, span: Span) -> None:
-        self.report(ProblemKind.TIME, span, "the system has no timer, so it has no clock that could measure a time")
+        self.report(ProblemKind.TIME, span, "the system has no timer, so it has no clock that measures time")
 
     def _in_steps(self, interval: TimeInterval, unit: int, step: int) -> Window | None:
         upper_written = interval.time or interval.within
@@ -414,7 +416,8 @@ class _Linker:
         if after is not None and within is not None and after > within:
             assert interval.after is not None
             message = (
-                f"`after` is greater than `within`: no time is from {interval.after.value} to {_text(upper_written)}"
+                f"`after` is greater than `within`, so the interval from {interval.after.value} to "
+                f"{_text(upper_written)} is empty"
             )
             self.report(ProblemKind.TIME, interval.after.span, message)
             return None
@@ -426,7 +429,7 @@ class _Linker:
             return None
         if upper is not None and lower > upper:
             place = interval.after.span if interval.after else interval.element.name_span
-            message = f"no step of the clock, which has {_duration(step)}, is in this interval"
+            message = f"the interval contains no step of the clock, which has steps of {_duration(step)}"
             self.report(ProblemKind.TIME, place, message)
             return None
         return Window(lower, upper)
@@ -441,7 +444,7 @@ def _text(name: WrittenName | None) -> str:
 
 
 def _number(name: WrittenName | None) -> Fraction | None:
-    """The value of a non-negative number; `None` if it is not one."""
+    """The value of `name` as a non-negative number; `None` if it is missing or not such a number."""
     value = exact_number(name.value) if name is not None else None
     return value if value is not None and value >= 0 else None
 
@@ -461,7 +464,7 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
         case UnknownName(name=name):
             return f"no port of this file has a variable `{name}`{hint}"
         case UnknownMember(name=name):
-            return f"there is no member `{name}`; name the field at the port, in a `<state_var>`"
+            return f"there is no member `{name}`; select the field in a `<state_var>` of the port"
         case BadOperand(operator=operator, given=given, required=required):
             return f"`{operator}` takes {required}, not a value of type `{given}`"
         case BadComparison(operator=operator, left=left, right=right):

@@ -2,7 +2,8 @@
 """Links the ports of a property file to events of the translated system and to their parameters
 (docs/spec/xml-properties.md#ports).
 
-A request or an answer is sent twice in the translated system; ports listen to the event at the side of the client.
+The translated system sends each request or answer twice: between the client and the automaton of the interface, and
+between that automaton and the server. Ports listen to the event of the client.
 """
 
 from __future__ import annotations
@@ -78,14 +79,16 @@ _GIVEN_BY = {
     PortVariableKind.RESULT_CODE: (ObservedPart.RESULT,),
     PortVariableKind.ACCEPTED: (ObservedPart.GOAL_RESPONSE,),
 }
-"""Kind of variable -> the events of an action that carry its value."""
+"""Kind of variable -> the parts of an action that carry its value."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinkedVariable:
-    """Attributes:
-    type: the type of the value; `UNKNOWN` if not known.
-    parameter: the parameter of the events that it reads, "" if it reads none.
+    """A variable of a port that is linked to a parameter of the events of the port.
+
+    Attributes:
+        type: the type of the value; `UNKNOWN` if not known.
+        parameter: the parameter of the events that provides the value; "" if there is none.
     """
 
     id: str
@@ -97,7 +100,7 @@ class LinkedVariable:
 
 @dataclass(frozen=True, slots=True)
 class LinkedPort:
-    """`is_known`: whether its events are known."""
+    """A port that is linked to its events. `is_known` is false if the events cannot be determined."""
 
     written: Port
     events: tuple[PortEvent, ...]
@@ -106,7 +109,7 @@ class LinkedPort:
 
 
 class PortLinker:
-    """Links the ports of one file and collects their `problems`."""
+    """Links the ports of one file and collects the problems in `problems`."""
 
     def __init__(self, system: System, find: FindInterface, variables: Mapping[str, GlobalVariable]) -> None:
         self.system = system
@@ -276,7 +279,7 @@ class PortLinker:
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
         attribute = "origin" if event in _OF_CLIENTS else "target"
         number = len(channel.users)
-        message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to choose"
+        message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to select one"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)
 
     # ------------------------------------------------------------- the tree
@@ -286,7 +289,7 @@ class PortLinker:
         if len(matches) != 1:
             if matches:
                 paths = ", ".join(f"`{path}`" for path in dict.fromkeys(path_of(self.system, node) for node in matches))
-                message = f"{len(matches)} nodes of the tree are called `{name.value}`: {paths}; use the path of one"
+                message = f"{len(matches)} nodes of the tree have the name `{name.value}`; use the path of one: {paths}"
                 shorter = short_paths(self.system)
                 close = tuple(dict.fromkeys(shorter[node.number] for node in matches))
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
@@ -305,7 +308,7 @@ class PortLinker:
     # -------------------------------------------------------- plain events
 
     def _plain(self, port: Port, name: Name) -> LinkedPort:
-        """An event by its name in the translation."""
+        """Link a port that names an event of the translation."""
         params = self._parameters(name.value)
         if params is None and self._is_complete():
             events = [variable.event for variable in self.variables.values()]
@@ -342,7 +345,7 @@ class PortLinker:
                 case PortVariableKind.GOAL_ID | PortVariableKind.RESULT_CODE | PortVariableKind.ACCEPTED:
                     if port.kind is PortKind.ACTION and event not in _GIVEN_BY[variable.kind]:
                         carriers = _either(map(str, _GIVEN_BY[variable.kind]))
-                        message = f"`{event}` carries no `<{variable.kind}>`; it is carried by {carriers}"
+                        message = f"`{event}` carries no `<{variable.kind}>`; only {carriers} carries it"
                         self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
                     type_ = BOOL if variable.kind is PortVariableKind.ACCEPTED else INT32
                     parameter = "code" if variable.kind is PortVariableKind.RESULT_CODE else ""
@@ -352,7 +355,7 @@ class PortLinker:
 
     def _field(self, variable: PortVariable, data: Struct | None, prefix: str) -> tuple[Type, str]:
         if variable.field is None:
-            message = "`field` is missing; name the field whose value the variable gets"
+            message = "`field` is missing; add the name of the field whose value the variable gets"
             self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
             return UNKNOWN, ""
         parts = variable.field.value.split(".")
@@ -370,14 +373,13 @@ class PortLinker:
                 self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message, close)
                 return _declared(variable), parameter
         if isinstance(type_, Struct):
-            message = f"`{variable.field.value}` is a message; name one of its fields"
+            message = f"`{variable.field.value}` is a message; select one of its fields"
             self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message)
             return UNKNOWN, parameter
         assert type_ is not None
         if not prefix and (type_ == UNKNOWN or _same_kind(_declared(variable), type_)):
-            return _declared(
-                variable
-            ), parameter  # a parameter has the type of the value that is sent, which need not be declared
+            # A parameter of a plain event has the type of the sent value, which need not be the declared type.
+            return _declared(variable), parameter
         if variable.type is not None and type_ != UNKNOWN and variable.type.text != str(type_):
             message = f"the type of `{variable.field.value}` is `{type_}`, not `{variable.type.text}`"
             self.report(ProblemKind.PORT_VARIABLE, variable.type.span, message, (str(type_),))
@@ -385,8 +387,8 @@ class PortLinker:
 
 
 def observed_names(file: PropertyFile) -> Iterator[str]:
-    """The flags of the events of topics and plain events that the ports of a file listen to, in the names of global
-    variables, without a system to link them to."""
+    """The names of the flags (`EVENT.valid`) of the topics and plain events that the ports of a file listen to. They
+    can be determined without a system."""
     for port in file.ports:
         if port.name is not None and port.kind in (PortKind.TOPIC, PortKind.PLAIN):
             name = f"topic_{sanitise(port.name.value)}_msg" if port.kind is PortKind.TOPIC else port.name.value
@@ -394,15 +396,15 @@ def observed_names(file: PropertyFile) -> Iterator[str]:
 
 
 def part_of(port: Port, find: Callable[[str, str], InterfaceType | None]) -> Struct | None:
-    """The message, or the part of a service or action, that a port of a ROS interface carries; `None` if its type or
-    its event is not known, or if there is none."""
+    """The struct of the message, or of the part of a service or action, that a port of a ROS interface listens to;
+    `None` if its type or part is not known, or if the part has no fields."""
     part = _PARTS.get(port.part) if port.part is not None and port.kind in INTERFACE_KINDS else None
     type_ = find(INTERFACE_KINDS[port.kind], port.type.value) if part is not None and port.type is not None else None
     return None if type_ is None or part is None else type_.part(part)
 
 
 def _declared(variable: PortVariable) -> Type:
-    """The type in the attribute `type`, if it is a base type."""
+    """The type in the attribute `type` if it is a base type; otherwise `UNKNOWN`."""
     name = variable.type.name if variable.type else None
     return BASE_TYPES.get(name.base, UNKNOWN) if name and not name.dimensions else UNKNOWN
 
@@ -420,7 +422,7 @@ def _leaf_paths(data: Struct) -> Iterator[str]:
 
 
 def names_of(automaton: SystemAutomaton) -> tuple[str, ...]:
-    """The names by which a port may choose an automaton: that of its machine or node, and its own."""
+    """The names by which a port may select an automaton: the names of its node and its machine, and its own name."""
     names = [automaton.name]
     if automaton.instance is not None:
         names = [automaton.instance.name, automaton.outline.name, *names]

@@ -11,7 +11,7 @@ from roaml.xml_syntax import Element
 
 
 class ProblemKind(enum.Enum):
-    """The value is the code of the rule that reports it."""
+    """The kind of a problem. The value is the code of the rule that reports it."""
 
     UNKNOWN_PORT = "unknown-property-port"
     PORT_TYPE = "port-type"
@@ -28,7 +28,7 @@ class ProblemKind(enum.Enum):
 
 
 class Remedy(enum.Enum):
-    """What removes a problem."""
+    """The change that removes a problem."""
 
     REMOVE_ELEMENT = "remove the element"
     REMOVE_ATTRIBUTE = "remove the attribute with the value at the span of the problem"
@@ -37,10 +37,11 @@ class Remedy(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """
+    """A problem of a property file.
+
     Attributes:
         close: similar names that may be intended at `span`.
-        remedy: what removes the problem at `element`, if it is evident.
+        remedy: the change of `element` that removes the problem; `None` if it is not evident.
     """
 
     kind: ProblemKind

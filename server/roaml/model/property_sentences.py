@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The properties in a property file in XML as English sentences: the same everywhere that a property is shown."""
+"""The properties of a property file in XML as English sentences. Every view of a property shows the same sentence."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from roaml.observers.sentences import SentenceClause, Times, formula_sentence, p
 
 
 def sentence(file: PropertyFile, written: WrittenProperty) -> str:
-    """A sentence that states the requirement of a property, with the names in backquotes; "" if it has neither a
+    """A sentence that states the requirement of a property, with names in backquotes; "" if the property has neither a
     pattern nor a formula."""
     text = _sentence(file, written)
     if text and written.expect is not None:
@@ -87,10 +87,11 @@ def _sentence(file: PropertyFile, written: WrittenProperty) -> str:
 
 
 def clause(condition: Expression, ports: Mapping[str, Port]) -> SentenceClause:
-    """A condition as a clause: an event variable alone states that the event is sent, other conditions hold.
+    """A condition as a clause. A condition that is only an event variable gives the clause that the event is sent;
+    other conditions give the clause that they hold.
 
     Args:
-        ports: the ports of the event variables, by their ids.
+        ports: id of an event variable -> its port.
     """
     tree = condition.tree
     port = ports.get(tree.name) if isinstance(tree, NameExpr) else None
@@ -100,12 +101,12 @@ def clause(condition: Expression, ports: Mapping[str, Port]) -> SentenceClause:
 
 
 def quoted(text: str) -> str:
-    """A name or condition in backquotes, which also is Markdown that no text can leave."""
+    """A name or condition in backquotes. Backquotes in it are replaced, so that it remains code in Markdown."""
     return f"`{' '.join(text.split()).replace('`', chr(39)) or '…'}`"
 
 
 def event_clause(port: Port) -> SentenceClause:
-    """A clause for the sending of the event of a port."""
+    """The clause that the event of a port is sent."""
     name = quoted(port.name.value) if port.name is not None else "…"
     by = f" by {quoted(port.origin.value)}" if port.origin is not None else ""
     to = f" to {quoted(port.target.value)}" if port.target is not None else ""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS interface types in HL-SCXML: their parts as structs of HL types (docs/spec/ros.md#interface-types).
+"""ROS interface types in HL-SCXML: their parts as structs of HL-SCXML types (docs/spec/ros.md#interface-types).
 
-- Every kind of ROS field has an HL type here. The reference translator does not support some kinds; models written for
-  it omit these fields, so they need not be set (`InterfaceType.optional`).
-- A definition that contains itself, or a type that is not found, has members of unknown type.
+- Every kind of ROS field has an HL-SCXML type. The reference translator does not support some kinds of fields. Models
+  that were written for it omit these fields, so they need not be set (`InterfaceType.optional`).
+- A member has an unknown type if the definition of its type is not found, or contains itself.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, 
 from roaml.model.nesting import TypeExtent, extents
 
 FindMessage: TypeAlias = Callable[[str], Definition | NotFound]
-"""`package/Name` -> the message."""
+"""Finds the definition of a message by its full name, `package/Name`."""
 
 _HL_NAMES = {"byte": "uint8", "char": "uint8", "wstring": "string"}
 _REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
@@ -29,8 +29,9 @@ class RepeatedType:
     """A ROS type that two files define differently.
 
     Attributes:
-        used_by: the declared type that is repeated, or contains the repeated one, as written.
-        path: the file that is used; `other` is the one that is ignored.
+        used_by: the type in a declaration, as written; it is the repeated type or contains it.
+        path: the file whose definition is used.
+        other: the file whose definition is ignored.
     """
 
     used_by: str
@@ -42,12 +43,12 @@ class RepeatedType:
 
 @dataclass(frozen=True, slots=True)
 class InterfaceType:
-    """A ROS type as HL-SCXML sees it.
+    """A ROS interface type in terms of HL-SCXML.
 
     Attributes:
-        name: `package/Name`.
-        parts: (message,), (request, response) or (goal, result, feedback) with their structs.
-        optional: dotted leaf paths, per part, of the fields that need not be set.
+        name: the full name, `package/Name`.
+        parts: the names of the parts with their structs: message; request and response; or goal, result and feedback.
+        optional: for each part, the dotted paths of the leaf fields that need not be set.
     """
 
     name: str
@@ -59,7 +60,7 @@ class InterfaceType:
         return dict(self.parts)[name]
 
     def required(self, part: str) -> tuple[str, ...]:
-        """The dotted paths of the leaf fields that must be set, in order."""
+        """The dotted paths of the leaf fields of `part` that must be set, in the order of the definition."""
         skip = dict(self.optional)[part]
         return tuple(path for path in self.leaf_paths(part) if path not in skip)
 
@@ -68,7 +69,8 @@ class InterfaceType:
 
 
 def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
-    """`definition` in HL types; nested messages are resolved with `find`. It must not be too large (`extent_of`)."""
+    """The interface type of `definition`, which must not be too large (see `extent_of`). `find` resolves nested
+    messages."""
     parts, optional = [], []
     reader = _Reader(find)
     for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
@@ -82,13 +84,13 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
 
 
 def extent_of(definitions: Iterable[Definition]) -> TypeExtent:
-    """The size of the first definition; the others are the messages in it."""
+    """The size of the first definition. The other definitions are the messages that it contains."""
     fields = {message.full_name: [f.type.name for s in message.sections for f in s.fields] for message in definitions}
     return extents(fields)[next(iter(fields))]
 
 
 class _Reader:
-    """Creates the type of each message once; `inside` are those in progress."""
+    """Creates the type of each message once. `inside` contains the messages whose types are not finished yet."""
 
     def __init__(self, find: FindMessage) -> None:
         self.find = find

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The size of the translation of a system, and its largest contributions. `roaml.lower.size` computes it in advance."""
+"""The size of the translation of a system, and the parts of the models that contribute to it. `roaml.lower.size`
+computes the size before the translation."""
 
 from __future__ import annotations
 
@@ -22,9 +23,9 @@ class Share:
 
     Attributes:
         count: the number of cells or parts.
-        words: a phrase for the part.
-        path: the file of the part; "" if it is in no file.
-        symbol: the declaration of the part, if it has a name.
+        words: a phrase that names the part in a message.
+        path: the file of the part; "" if it is not in a file.
+        symbol: the declaration of the part; `None` if it has no name.
     """
 
     count: int
@@ -38,10 +39,10 @@ class Size:
     """The size of a translated system.
 
     Attributes:
-        cells: values that its variables hold: one for a number or Boolean, one for each element of an array or
-            character of a string, and their lengths.
-        parts: edges, destinations, participants of synchronisations and nodes of expressions, except those of initial
-            values.
+        cells: the number of values that its variables store: one for a number or Boolean, one for each element of an
+            array, one for each character of a string, and one for each length.
+        parts: the number of edges, destinations, participants of synchronisations, and nodes of expressions other than
+            initial values.
     """
 
     cells: tuple[Share, ...]
@@ -50,7 +51,7 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The maximum sizes of a system that is translated."""
+    """The maximum size of a system that is translated."""
 
     cells: int = MAX_CELLS
     parts: int = MAX_PARTS
@@ -60,19 +61,20 @@ DEFAULT_LIMITS = Limits()
 
 
 def cells_of(type_: Type, max_array_size: int, sent: bool = False) -> int:
-    """The cells of a variable of a type; see `roaml.to_jani.shapes.shape_of`.
+    """The number of cells of a variable of a type; see `roaml.to_jani.shapes.shape_of`.
 
     Args:
-        sent: whether it is a parameter of an event, in which all arrays have `max_array_size` elements.
+        sent: whether the variable is a parameter of an event: then all its arrays have `max_array_size` elements.
     """
     return _cells(type_, max_array_size, sent, 1, 0)
 
 
 def _cells(type_: Type, most: int, sent: bool, rows: int, lengths: int) -> int:
-    """
+    """The number of cells of a type inside arrays.
+
     Args:
         rows: the product of the bounds of the enclosing arrays.
-        lengths: the cells of the lengths of the enclosing arrays; each leaf has its own lengths.
+        lengths: the number of cells for the lengths of the enclosing arrays; each leaf has its own lengths.
     """
     while isinstance(type_, Array):
         lengths += rows

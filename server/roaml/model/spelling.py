@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Attributes that are misspelled."""
+"""Finds attributes whose names are misspelled."""
 
 from __future__ import annotations
 
@@ -11,7 +11,11 @@ from roaml.xml_syntax import Element
 
 
 def meant(element: Element, name: str, known: Container[str]) -> Name | None:
-    """The value of the attribute `name`, also if the attribute is misspelled."""
+    """The value of the attribute `name`, or of an attribute with a similar name; `None` if there is neither.
+
+    Args:
+        known: the valid names of attributes, which are not regarded as misspelled.
+    """
     if element.get(name) is not None:
         return name_of(element.get(name))
     strange = [a for a in element.attributes if a.name not in known and are_similar(a.name, name)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Struct declarations (docs/spec/types.md#structs): read from XML, and resolved to types."""
+"""Reads struct declarations from XML and resolves them to types (docs/spec/types.md#structs)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roaml.xml_syntax import Document, Element
 
 @dataclass(frozen=True, slots=True)
 class MemberDeclaration:
-    """`span` is the whole declaration."""
+    """The declaration of a member of a struct. `span` is the whole declaration."""
 
     name: Name | None
     type: TypeRef | None
@@ -24,7 +24,7 @@ class MemberDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class StructDeclaration:
-    """`complete` means that all of it could be read."""
+    """The declaration of a struct. `complete` means that all parts of it could be read."""
 
     name: Name | None
     members: tuple[MemberDeclaration, ...]
@@ -42,8 +42,8 @@ class StructDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class StructOutline:
-    """Name and members of a struct. `complete` means that all declarations of members could be read; the type of a
-    member is `None` if it cannot be read."""
+    """The name and the members of a struct, without positions. The type of a member is `None` if it cannot be read.
+    `complete` means that all declarations of members could be read."""
 
     name: str
     members: tuple[tuple[str, TypeName | None], ...]
@@ -51,7 +51,7 @@ class StructOutline:
 
 
 def structs_in_xml(document: Document) -> tuple[StructDeclaration, ...]:
-    """The declarations in a `<types>` file. An unknown element in place of a `<struct>` declares a struct as well."""
+    """The declarations in a `<types>` file. An unknown element is read as a misspelled `<struct>`."""
     if document.root is None:
         return ()
     return tuple(
@@ -73,8 +73,8 @@ def _struct(element: Element) -> StructDeclaration:
 def resolve_structs(outlines: Iterable[StructOutline]) -> Mapping[str, Type]:
     """All structs by name, with their members resolved. If names are equal, the last declaration is used.
 
-    A member whose type is unknown, or that would contain the struct itself, has an unknown type, and so has a struct
-    whose declaration is not complete, or that is too large.
+    The type of a member is unknown if it is not declared, or if it contains the struct itself. The type of a struct is
+    unknown if its declaration is not complete, or if it is too large.
     """
     by_name = {outline.name: outline for outline in outlines}
     resolved: dict[str, Type] = {}
@@ -102,8 +102,9 @@ def _graph(by_name: Mapping[str, StructOutline]) -> dict[str, list[str]]:
 
 
 def struct_cycles(outlines: Mapping[str, StructOutline]) -> Mapping[tuple[str, str], tuple[str, ...]]:
-    """The members by which structs contain themselves: struct and member -> the names of the cycle, beginning and
-    ending with the same name. For each cycle it is the member that leads back to the struct that was declared first."""
+    """The members by which structs contain themselves: struct and member -> the names of the structs in the cycle,
+    beginning and ending with the same name. Each cycle has one such member: the one that leads back to the struct of
+    the cycle that is declared first."""
     cycles: dict[tuple[str, str], tuple[str, ...]] = {}
     done: set[str] = set()
     for start in outlines:

@@ -25,7 +25,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """An expression and its syntax errors. `source` is its text and the mapping back to the file."""
+    """An expression and its syntax errors. `source` contains the decoded text and its mapping to the file."""
 
     source: Decoded
     span: Span
@@ -44,7 +44,7 @@ class Expression:
 
 @dataclass(frozen=True, slots=True)
 class PortRead:
-    """`<bt_get_input key="…"/>`: the value of a port."""
+    """A `<bt_get_input key="…"/>`, which reads the value of a port."""
 
     key: Name | None
     span: Span
@@ -55,7 +55,7 @@ Value: TypeAlias = Expression | PortRead
 
 @dataclass(frozen=True, slots=True)
 class TypeRef:
-    """A type as written; `name` is `None` if it does not have the form of a type."""
+    """A type as written; `name` is `None` if the text does not have the form of a type."""
 
     text: str
     span: Span
@@ -63,8 +63,10 @@ class TypeRef:
 
 
 def name_of(attribute: Attribute | None) -> Name | None:
-    """The value of an attribute, without surrounding white space of XML; `None` if it is missing or empty. Other white
-    space is part of the name, as the grammar has it: no check would report a name of it otherwise."""
+    """The value of an attribute, without surrounding white space of XML; `None` if it is missing or empty.
+
+    Other white space remains part of the name, as in the grammar, so that rules report such names.
+    """
     stripped = "" if attribute is None else attribute.value.strip(SPACE)
     if attribute is None or not stripped:
         return None
@@ -76,7 +78,7 @@ def name_of(attribute: Attribute | None) -> Name | None:
 
 
 def expression_of(document: Document, attribute: Attribute | None) -> Expression | None:
-    """The expression in an attribute; None if the attribute is missing or has no value yet."""
+    """The expression in an attribute; `None` if the attribute is missing, or has no value because it is half typed."""
     if attribute is None or not attribute.has_value:
         return None
     return expression_from(document.decoded(attribute.value_span))
@@ -93,8 +95,8 @@ def type_of(attribute: Attribute | None) -> TypeRef | None:
 
 
 def value_of(document: Document, element: Element, name: str) -> Value | None:
-    """A value that may be given as attribute or child element `name` (docs/spec/files.md#attribute-or-child); the
-    attribute takes precedence."""
+    """The value in the attribute or child element `name` (docs/spec/files.md#attribute-or-child); `None` if both are
+    missing. The attribute takes precedence."""
     attribute = element.get(name)
     if attribute is not None:
         return expression_of(document, attribute)
@@ -108,7 +110,7 @@ def value_of(document: Document, element: Element, name: str) -> Value | None:
 
 
 def text_or_port(document: Document, element: Element, name: str) -> Name | PortRead | None:
-    """Like `value_of`, for plain text."""
+    """The value in the attribute or child element `name` as plain text instead of an expression; see `value_of`."""
     attribute = element.get(name)
     if attribute is not None:
         return name_of(attribute)
@@ -122,6 +124,6 @@ def text_or_port(document: Document, element: Element, name: str) -> Name | Port
 
 
 def port_read(element: Element) -> PortRead | None:
-    """The `<bt_get_input>` in a value element."""
+    """The `<bt_get_input>` in an element that contains a value; `None` if there is none."""
     read = element.find("bt_get_input")
     return None if read is None else PortRead(name_of(read.get("key")), read.span)

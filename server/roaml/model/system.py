@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole system, linked across files: which automata publish, serve, call, send, receive, read and write what.
+"""The whole system, linked across files: the automata, the topics, services, actions and events that connect them, and
+the variables of the blackboard.
 
-- Built from outlines only, so it contains no positions; a `Symbol` leads back to the text.
-- Compared by identity: it is cached by its parts, and all results across files depend on it.
+- A system is built from outlines only, so it contains no positions. A `Symbol` refers to a declaration in the text.
+- Systems are compared by identity: a system is cached by its parts, and all results across files depend on it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import TypeAlias
 
 from roaml.diagnostics import Symbol
 from roaml.exhaustive import assert_never
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, StructKind, Type, join
+from roaml.expr.types import BASE_TYPES, Struct, StructKind, Type
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
@@ -33,6 +34,7 @@ from roaml.model.outline import (
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import Direction, NodeKind, SymbolKind
+from roaml.scxml.event_data import parameter_types
 from roaml.scxml.names import CANCEL_PREFIX
 from roaml.suggest import close_names
 
@@ -44,7 +46,8 @@ ANY_TYPE = "any"
 
 
 Fact: TypeAlias = "tuple[Act, str | None]"
-"""An act (see `Gap`) and its subject, with topics named as in events; `None` if it may be any."""
+"""An act (see `Gap`) and the name that it concerns; topics have the form of their names in events. `None` means any
+name."""
 
 
 def sanitise(name: str) -> str:
@@ -54,12 +57,12 @@ def sanitise(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class SystemAutomaton:
-    """A machine in its place in the system: a ROS node, or a plugin for one node of the tree.
+    """A machine in its place in the system: a ROS node, or the copy of a plugin for one node of the tree.
 
     Attributes:
-        path: the machine's file; "" for nodes of BehaviorTree.CPP.
-        instance: the tree node; `None` for ROS nodes.
-        index: counts the entries in the system file, so that a file that is listed twice gives two automata.
+        path: the file of the machine; "" for nodes of BehaviorTree.CPP.
+        instance: the node of the tree; `None` for ROS nodes.
+        index: the index of the entry in the system file, so that a file that is listed twice gives two automata.
     """
 
     name: str
@@ -69,7 +72,7 @@ class SystemAutomaton:
     index: int = 0
 
     def port(self, key: str) -> PortValue | None:
-        """The value of a declared port."""
+        """The value of the port `key`; `None` if the machine does not declare it or the tree does not set it."""
         if self.instance is None or self.outline.port(key) is None:
             return None
         if key == CHILDREN_COUNT:
@@ -77,7 +80,7 @@ class SystemAutomaton:
         return self.instance.port(key)
 
     def interface_name(self, use: InterfaceUse) -> str | None:
-        """The topic, service or action of a declaration; `None` if there is none, or its name is unknown."""
+        """The name of the topic, service or action of a declaration; `None` if it is missing, invalid or unknown."""
         value = self.port(use.port) if use.port else PortConstant(use.name)
         name = value.text.strip() if isinstance(value, PortConstant) else ""
         return name if is_interface_name(name) else None
@@ -100,7 +103,7 @@ class ChannelEndpoint:
 
 @dataclass(slots=True)
 class Channel:
-    """A topic, service or action with both sides: publishers or servers, subscribers or clients."""
+    """A topic, service or action. `sources` are its publishers or servers, `users` its subscribers or clients."""
 
     name: str
     sources: list[ChannelEndpoint] = field(default_factory=list)
@@ -121,12 +124,8 @@ class PlainEvent:
 
     @property
     def data(self) -> Struct:
-        """All parameters that any sender sends; if types differ, the first known one is used."""
-        params: dict[str, Type] = {}
-        for _, sent in self.senders:
-            for param in sent.params:
-                known = params.get(param.name, UNKNOWN)
-                params[param.name] = join(known, param.type) or known
+        """The parameters that the senders send. If their types are incompatible, the first known type is used."""
+        params = parameter_types((param.name, param.type) for _, sent in self.senders for param in sent.params)
         return Struct("", tuple(params.items()), f"data of event {self.name}", StructKind.EVENT, self.name)
 
 
@@ -145,7 +144,8 @@ class BoundPort:
 
 @dataclass(frozen=True, slots=True)
 class EntryOutline:
-    """A variable of the blackboard of a tree that is executed as by the library; `type` is the name of its type."""
+    """A variable of the blackboard of a tree that is executed as BehaviorTree.CPP executes it. `type` is the name of
+    its type; `read` and `written` state whether nodes or scripts read and write it."""
 
     type: str
     read: bool
@@ -153,7 +153,7 @@ class EntryOutline:
 
 
 _BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAct.PARAMETER)
-"""The acts of gaps that do not affect which events a machine handles and sends."""
+"""The acts that do not affect which events a machine handles and sends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,17 +163,17 @@ class System:
     Attributes:
         path: the path of the system file.
         older: whether the system is written in the older dialect (docs/spec/files.md#older-dialect).
-        nodes: listed nodes, in order; plugins: listed plugins, in order.
+        nodes: the path and outline of each ROS node, in the order of the system file.
+        plugins: the path and outline of each plugin, in the order of the system file.
         instances: the nodes of the executed tree, in pre-order.
-        tree_uses: the trees that they are in; `Instance.use` is an index.
-        tree_paths: the tree file and the files that it includes; empty without a tree.
+        tree_uses: the uses of trees that contain the instances; `Instance.use` is an index into it.
+        tree_paths: the tree file and the files that it includes; empty if the system has no tree.
         structs: the structs by name.
-        gaps: the facts that unreadable parts of the system file and the trees, and unreadable listed files, may
-            contain. Those of unreadable parts of a machine are in its outline.
+        gaps: the facts that unreadable parts of the system file and the trees, and unreadable files, may contain. The
+            outline of a machine contains the facts of its own unreadable parts.
         plugins_known: whether every plugin that the system lists could be read and has a name.
-        observed: the names of variables that the properties mention.
-        entries: the blackboard of a tree that is executed as by the library (`is_library_tree`), by name; empty for
-            other trees.
+        observed: the names of the variables that the properties use.
+        entries: name -> entry of the blackboard, for a tree with `is_library_tree`; empty for other trees.
     """
 
     path: str
@@ -192,8 +192,8 @@ class System:
 
     @cached_property
     def is_library_tree(self) -> bool:
-        """Whether the nodes of the tree are executed as by BehaviorTree.CPP, because a node, a condition or a script
-        needs it (docs/spec/nodes.md#library)."""
+        """Whether the tree is executed exactly as BehaviorTree.CPP executes it, because one of its nodes, conditions or
+        scripts requires this (docs/spec/nodes.md#library)."""
         if any(use.scripts for use in self.tree_uses):
             return True
         return any(i.scripts or self._needs_library(i.plugin) for i in self.instances)
@@ -206,7 +206,7 @@ class System:
 
     @cached_property
     def automata(self) -> tuple[SystemAutomaton, ...]:
-        """All automata in processing order: nodes, then the tree in pre-order
+        """All automata in processing order: the ROS nodes, then the nodes of the tree in pre-order
         (docs/spec/systems.md#processing-order)."""
         all_automata = [
             SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)
@@ -219,7 +219,7 @@ class System:
 
     @property
     def complete(self) -> bool:
-        """Whether all facts between the files are known."""
+        """Whether the system has no unreadable part that may contribute a fact."""
         return not self.possible
 
     @cached_property
@@ -229,7 +229,7 @@ class System:
         for gap in self.gaps:
             facts |= self.facts(gap)
         if self.ticked_nodes or self.idle_plugins:
-            facts.add((GapAct.ANYTHING, None))  # another file was probably meant
+            facts.add((GapAct.ANYTHING, None))  # the entry probably should name another file
         for automaton in self.automata:
             facts |= self.facts_of(automaton)
         for instance in self.instances:
@@ -238,17 +238,20 @@ class System:
         return frozenset(facts)
 
     def may(self, act: Act, name: str, automaton: SystemAutomaton | None = None) -> bool:
-        """Whether an automaton, or this automaton, may do this in an unreadable part. `name` is as for channels and
-        events."""
+        """Whether an unreadable part may do `act` with `name`, the name of a channel, event, port or variable.
+
+        Args:
+            automaton: the automaton with the unreadable part; `None` for any part of the system.
+        """
         possible = self.possible if automaton is None else self.facts_of(automaton)
         return any(answers(other, act) and about in (None, name) for other, about in possible)
 
     def may_have_variable(self, name: str) -> bool:
-        """Whether the translated system may have a variable of this name, once all of it can be read."""
+        """Whether the translated system may have a variable named `name` after the unreadable parts are corrected."""
         return any(may_give_variable(act, other, name) for act, other in self.possible)
 
     def facts(self, gap: Gap, automaton: SystemAutomaton | None = None) -> set[Fact]:
-        """The facts of a gap, in an automaton or in the files around the automata."""
+        """The facts of a gap in the machine of `automaton`; `None` for a gap in the system file or in a tree."""
         if gap.act is GapAct.NODE:
             return self._facts_of_any_node()
         if gap.act is GapAct.REMAP:
@@ -265,7 +268,7 @@ class System:
         return {_fact(gap.act, gap.name)}
 
     def facts_of(self, automaton: SystemAutomaton) -> set[Fact]:
-        """The facts of an automaton in the unreadable parts of its machine, or of its node in the tree."""
+        """The facts that the unreadable parts of the machine of an automaton, or its node in the tree, may contain."""
         facts = {fact for gap in automaton.outline.gaps for fact in self.facts(gap, automaton)}
         for use in automaton.outline.interfaces:
             if use.port and automaton.interface_name(use) is None:
@@ -274,7 +277,7 @@ class System:
 
     @cached_property
     def partly_read(self) -> frozenset[int]:
-        """The automata, by `id`, of which a part that handles or sends events cannot be read."""
+        """The automata (their `id`) that have an unreadable part that may handle or send events."""
         return frozenset(
             id(automaton)
             for automaton in self.automata
@@ -282,48 +285,49 @@ class System:
         )
 
     def facts_of_name(self, automaton: SystemAutomaton, use: InterfaceUse) -> set[Fact]:
-        """The facts of a tree node whose port does not name a topic, service or action although it should."""
+        """The facts of a tree node with a port that should contain the name of a topic, service or action, but does
+        not."""
         value = automaton.port(use.port)
         bound: set[Fact] = {(GapAct.VARIABLE, value.variable)} if isinstance(value, Reference) else set()
         return {*bound, (InterfaceAct(use.kind), None)}
 
     def facts_of_unknown(self, instance: Instance) -> set[Fact]:
-        """The facts of a tree node without a plugin: those of the plugin that was probably meant."""
-        found: set[Fact] = {(GapAct.VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
+        """The facts of a tree node whose plugin is unknown: those of the plugin with the most similar name."""
+        facts: set[Fact] = {(GapAct.VARIABLE, v.variable) for _, v in instance.ports if isinstance(v, Reference)}
         element = BEHAVIOR_TREE.elements.get(instance.plugin)
         if element is not None and element.node:
-            return {*found, (GapAct.TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
+            return {*facts, (GapAct.TREE, None)}  # a node of BehaviorTree.CPP that cannot be translated
         names = [outline.name for _, outline in (*self.plugins, *self.nodes)]
         close = close_names(instance.plugin, [*names, *builtin_plugins()], 1)
-        found |= {(GapAct.NODE, name) for name in close} or {(GapAct.NODE, None)}
+        facts |= {(GapAct.NODE, name) for name in close} or {(GapAct.NODE, None)}
         if not close or not self.plugins_known:
-            return {*found, (GapAct.ANYTHING, None)}
+            return {*facts, (GapAct.ANYTHING, None)}
         for path, outline in (*self.plugins, *self.nodes):
             if outline.name in close:
-                meant = SystemAutomaton(instance.automaton, path, outline, instance)
-                found |= set(_said(meant)) | self.facts_of(meant)
-        return {*found, (GapAct.TREE, None)}
+                intended = SystemAutomaton(instance.automaton, path, outline, instance)
+                facts |= set(_readable_facts(intended)) | self.facts_of(intended)
+        return {*facts, (GapAct.TREE, None)}
 
     def _facts_of_any_node(self) -> set[Fact]:
-        """The facts of a tree node with any plugin."""
+        """The facts of a tree node on the assumption that it may have any plugin."""
         if not self.plugins_known:
             return {(GapAct.ANYTHING, None)}
-        found: set[Fact] = {
+        facts: set[Fact] = {
             (GapAct.NODE, None),
             (GapAct.VARIABLE, None),
             (GapAct.TREE, None),
             (InterfaceAct(SymbolKind.PUBLISHER), CLOCK_TOPIC),
         }
         for path, outline in self.plugins:
-            found |= set(_said(SystemAutomaton(outline.name, path, outline)))
-            found |= {
+            facts |= set(_readable_facts(SystemAutomaton(outline.name, path, outline)))
+            facts |= {
                 _fact(gap.act, None if gap.port else gap.name) for gap in outline.gaps if gap.act is not GapAct.PORT
             }
-        return found
+        return facts
 
     @cached_property
     def ticked_nodes(self) -> frozenset[str]:
-        """The files listed as nodes that are plugins: they handle ticks."""
+        """The files that are listed as ROS nodes although they handle ticks, so they are plugins."""
         return frozenset(path for path, outline in self.nodes if outline.plugin.ticked)
 
     @cached_property
@@ -349,8 +353,8 @@ class System:
         return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
 
     def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
-        """File and outline of the plugin with this name; the nodes of BehaviorTree.CPP take precedence
-        (docs/spec/trees.md#nodes)."""
+        """The path and outline of the plugin named `name`; "" and `None` if there is none. The nodes of
+        BehaviorTree.CPP, whose path is "", take precedence (docs/spec/trees.md#nodes)."""
         builtin = (library_plugins() if self.is_library_tree else builtin_plugins()).get(name)
         if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in self._plugins):
             return "", builtin
@@ -403,7 +407,7 @@ class System:
         return channels
 
     def channel(self, automaton: SystemAutomaton, use: InterfaceUse) -> Channel | None:
-        """The topic, service or action of a declaration of an automaton."""
+        """The topic, service or action of a declaration of an automaton; `None` if its name is unknown."""
         name = automaton.interface_name(use)
         if name is None:
             return None
@@ -427,7 +431,7 @@ class System:
         return events
 
     def is_observed(self, event: str) -> bool:
-        """Whether a property observes the event: its flag or a parameter."""
+        """Whether a property uses the flag or a parameter of the event."""
         names = self._sorted_observed
         following = bisect.bisect_left(names, f"{event}__")
         is_parameter = following < len(names) and names[following].startswith(f"{event}__")
@@ -462,29 +466,29 @@ class System:
         return {name: self.variable_type(name) for name in self.blackboard}
 
     def writes_variable(self, name: str) -> bool:
-        """Whether something writes a variable of the blackboard."""
+        """Whether a node or script writes a variable of the blackboard."""
         if self.is_library_tree:
             return name in self.entries and self.entries[name].written
         return any(bound.port.written for bound in self.blackboard.get(name, ()))
 
     @property
     def reads_blackboard(self) -> bool:
-        """Whether a node reads a variable of the blackboard."""
+        """Whether a node or script reads a variable of the blackboard."""
         if any(entry.read for entry in self.entries.values()):
             return True
         return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
 
     def variable_type(self, variable: str) -> str:
-        """The name of a blackboard variable's type: that of the first port with a definite one
-        (docs/spec/trees.md#blackboard)."""
+        """The name of the type of a blackboard variable: the type of the first bound port that has a base type;
+        `string` if there is none (docs/spec/trees.md#blackboard)."""
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
         return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
 
     def any_type(self, automaton: SystemAutomaton) -> str:
-        """The name of the type of those ports of a node that accept any type, the ports of `Switch`
+        """The name of the type of the ports that accept any type, such as those of `Switch`
         (docs/spec/nodes.md#control).
 
-        It is the type of the first blackboard variable to which one of them is bound; `string` if none is.
+        It is the type of the first blackboard variable to which one of these ports is bound; `string` if none is bound.
         """
         for port in automaton.outline.ports:
             value = automaton.port(port.key)
@@ -493,7 +497,7 @@ class System:
         return "string"
 
 
-# ------------------------------------------------------------- what is not read
+# ------------------------------------------------------------ unreadable parts
 
 _OF_TOPICS = (SymbolKind.PUBLISHER, SymbolKind.SUBSCRIBER)
 
@@ -507,8 +511,8 @@ def _is_about_events(act: Act) -> bool:
     return not act.is_of_field if isinstance(act, InterfaceAct) else act not in _BESIDE_EVENTS
 
 
-def _said(automaton: SystemAutomaton) -> Iterator[Fact]:
-    """The facts of an automaton that may take part in the system."""
+def _readable_facts(automaton: SystemAutomaton) -> Iterator[Fact]:
+    """The facts that the readable parts of an automaton contain."""
     for use in automaton.outline.interfaces:
         yield _fact(InterfaceAct(use.kind), automaton.interface_name(use))
     yield from ((GapAct.SENDS, sent.event) for sent in automaton.outline.sent)
@@ -526,7 +530,8 @@ _OF_INTERFACES = re.compile(r"(?:topic|srv|action|cancel_action|bt)_")
 
 
 def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
-    """Whether a gap with `act` may add a variable of this name to the translation (see `roaml.model.globals`)."""
+    """Whether a gap with `act` and `name` may add the global variable `variable` to the translation (see
+    `roaml.model.globals`)."""
     if isinstance(act, InterfaceAct):
         prefix = _PREFIXES.get(act.kind)
         if prefix is None:
@@ -557,7 +562,8 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
 
 @functools.cache
 def builtin_plugins() -> Mapping[str, MachineOutline]:
-    """The translatable nodes of BehaviorTree.CPP, as the schema describes them."""
+    """The outlines of the nodes of BehaviorTree.CPP that can be translated as machines, by name. The schema describes
+    them."""
     return {
         element.name: _builtin(element)
         for element in BEHAVIOR_TREE.elements.values()
@@ -570,7 +576,8 @@ def builtin_plugins() -> Mapping[str, MachineOutline]:
 
 @functools.cache
 def library_plugins() -> Mapping[str, MachineOutline]:
-    """The nodes of libraries that can be executed as by BehaviorTree.CPP (docs/spec/nodes.md#library)."""
+    """The outlines of the nodes of libraries that can be executed as BehaviorTree.CPP executes them, by name
+    (docs/spec/nodes.md#library)."""
     cpp = library(BEHAVIORTREE_CPP)
     known = dict(cpp.nodes)
     known |= {renamed.name: cpp.nodes[renamed.now] for renamed in cpp.renamed.values()}
@@ -588,7 +595,7 @@ def _library_outline(name: str, node: Node) -> MachineOutline:
 
 
 def optional_ports(name: str) -> frozenset[str]:
-    """The ports of a node of a library that need not be set."""
+    """The ports of the library's node `name` that need not be set."""
     element = BEHAVIOR_TREE.elements.get(name)
     if element is not None and element.node:
         return frozenset(a.name for a in element.ports if a.port and not a.port.required)
@@ -597,7 +604,7 @@ def optional_ports(name: str) -> frozenset[str]:
 
 
 _NAMES_ENTRY = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard")
-"""The nodes with a port that names an entry, which is neither read nor written by it."""
+"""The nodes with a port that contains the name of a blackboard entry. The port itself neither reads nor writes it."""
 
 
 def _library_port(node: str, port: Port) -> PortOutline:

@@ -47,8 +47,8 @@ class ListedFile:
     """An `<input>` and the file it names.
 
     Attributes:
-        path: "" if no file is named.
-        problem: why the file cannot be read; None if it can, or if none is named.
+        path: the path of the file; "" if none is named.
+        problem: the reason why the file cannot be read; `None` if it can be read, or if none is named.
         required_kind: the kind that the section and the type of the `<input>` require; `None` if the type is unknown.
         kind: the kind of the file itself.
     """
@@ -61,7 +61,7 @@ class ListedFile:
 
     @property
     def span(self) -> Span:
-        """The position of the file name, or where it is missing."""
+        """The position of the file name; the position of the element name if the file name is missing."""
         return self.input.src.span if self.input.src else self.input.element.name_span
 
     @property
@@ -79,7 +79,8 @@ _REQUIRED_KINDS = {
 
 
 def required_kind(entry: SystemInput) -> FileKind | None:
-    """The kind of file that a system expects; if its type is misspelled, that of the intended type."""
+    """The kind of file that the section and the type of an `<input>` require; `None` if the type is missing or unknown.
+    A misspelled type is read as the most similar one."""
     if entry.type is None:
         return None
     if entry.type.value == "xml" and entry.section == "properties":
@@ -97,10 +98,9 @@ class SystemFile:
     """One system file.
 
     Attributes:
-        older: whether it has the older root (docs/spec/files.md#older-dialect).
-        inputs: the inputs of all sections, in order; misspelled inputs are included in the intended form.
-        unread: the sections that may list files that `inputs` does not contain, because they contain a misplaced
-            element.
+        older: whether it has the root element of the older dialect (docs/spec/files.md#older-dialect).
+        inputs: the inputs of all sections, in order, including inputs with misspelled names.
+        unread: the sections that contain a misplaced element, so that they may list files that are not in `inputs`.
     """
 
     element: Element
@@ -110,7 +110,8 @@ class SystemFile:
     unread: frozenset[str]
 
     def parameter(self, name: str) -> Element | None:
-        """The element that sets a parameter; if there are several, the last one (docs/spec/systems.md#parameters)."""
+        """The element that sets the parameter `name`; `None` if there is none. If there are several, it is the last one
+        (docs/spec/systems.md#parameters)."""
         section = _parameter_section(self.element)
         return (
             next((element for element in reversed(section.elements) if element.name == name), None) if section else None
@@ -141,7 +142,7 @@ _INPUT = ("type", "src")
 
 
 def _section(element: Element) -> str:
-    """The section that an element is, or probably is if its name is misspelled; "" for other elements."""
+    """The name of the section that an element contains; "" if it is not a section. A misspelled name is corrected."""
     if element.name in SECTIONS or element.prefix:
         return element.name if element.name in SECTIONS else ""
     if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):
@@ -150,7 +151,7 @@ def _section(element: Element) -> str:
 
 
 def _is_input(element: Element) -> bool:
-    """Whether an element of a section is an `<input>`, or a misspelled one: it has a source."""
+    """Whether an element of a section is an `<input>`, or an unknown element with the attribute `src`."""
     if element.name == "input":
         return True
     return not element.prefix and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None
@@ -162,7 +163,7 @@ def _unread(root: Element) -> frozenset[str]:
         section = _section(child)
         hidden = [element for part in child.elements if not (section and _is_input(part)) for element in part.walk()]
         if any(element.get("src") for element in (hidden if section else (child, *hidden))):
-            sections |= {section} if section else set(SECTIONS)  # whatever element or parent was meant
+            sections |= {section} if section else set(SECTIONS)  # the intended parent may be any section
     return frozenset(sections)
 
 

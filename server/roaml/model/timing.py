@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Periods of timers, and the unit in which the clock of a system counts (docs/spec/plain-scxml.md#time)."""
+"""Periods of timers, and the unit of the clock of a system (docs/spec/plain-scxml.md#time)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NANOSECONDS_PER_SECOND = 10**9
 
 @dataclass(frozen=True, slots=True)
 class Period:
-    """`count` times `unit`, which is in ns."""
+    """A period of `count` units of `unit` ns."""
 
     count: int
     unit: int
@@ -29,7 +29,8 @@ class Period:
 
 
 def period(rate: Fraction) -> Period:
-    """The period of a rate in Hz, rounded down in the largest unit that is exact or keeps three digits."""
+    """The period of a rate in Hz, rounded down. Its unit is the largest one in which the period is exact or has at
+    least three digits."""
     exact = NANOSECONDS_PER_SECOND / rate
     for unit in NANOSECONDS.values():
         count = exact / unit
@@ -50,7 +51,8 @@ def periods(system: System, parameters: Parameters) -> Iterator[Period]:
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:
-    """A rate in Hz, as written or as the value of `port` of the automaton; `None` if it is invalid."""
+    """The rate of a timer in Hz: the value of the port `port` of the automaton; without a port, the number in `text`.
+    `None` if the rate is invalid."""
     value = automaton.port(port) if port else PortConstant(text)
     if not isinstance(value, PortConstant):
         return None

@@ -25,7 +25,8 @@ _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortSetting:
-    """An attribute of a node that sets a port. `key` is the port's own name, also if another name is written."""
+    """An attribute of a node that sets a port. `key` is the main name of the port, even if an alias of it is
+    written."""
 
     attribute: Attribute
     key: Name
@@ -33,7 +34,7 @@ class PortSetting:
 
     @property
     def variable(self) -> str | None:
-        """The blackboard variable to which the value refers; `None` if it is a constant."""
+        """The name of the blackboard variable to which the value refers; `None` if the value is a constant."""
         return blackboard_variable(self.value.value)
 
 
@@ -45,8 +46,8 @@ class TreeNode:
         plugin: the name of its plugin, from `ID` or, in the compact form, from the tag.
         is_subtree: whether it represents the tree named `plugin`.
         type: the grammar of the node if it is a node of BehaviorTree.CPP.
-        scripts: pre- and post-conditions.
-        compact: whether it is written as `<X/>`, not as `<Action ID="X"/>`.
+        scripts: the attributes with pre- and post-conditions.
+        compact: whether it is written as `<X/>` instead of `<Action ID="X"/>`.
     """
 
     element: Element
@@ -71,7 +72,13 @@ class Tree:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PortModel:
-    """A port as `<TreeNodesModel>` describes it; `default` is None if it has none, `type` is the C++ type or ""."""
+    """A port in `<TreeNodesModel>`.
+
+    Attributes:
+        default: the default value; `None` if there is none.
+        type: the C++ type; "" if it is not given.
+        text: the description; "" if there is none.
+    """
 
     element: Element
     name: Name | None
@@ -99,7 +106,13 @@ class Include:
 
 @dataclass(frozen=True, eq=False)
 class TreeFile:
-    """A file of trees. `format` is "" if it is not given."""
+    """A file of trees.
+
+    Attributes:
+        format: the value of `BTCPP_format`; "" if it is not given.
+        main: the value of `main_tree_to_execute`.
+        models: the nodes in `<TreeNodesModel>`.
+    """
 
     element: Element
     format: str
@@ -110,7 +123,7 @@ class TreeFile:
 
     @cached_property
     def nodes_by_tree(self) -> Mapping[str, tuple[TreeNode, ...]]:
-        """The nodes of each tree, parents before children, by its name; if names are equal, the first tree is used."""
+        """ID of a tree -> its nodes, parents before children. If IDs are equal, the first tree is used."""
         return {tree.id.value if tree.id else "": tuple(nodes(tree)) for tree in reversed(self.trees)}
 
 
@@ -139,7 +152,7 @@ def build_tree_file(document: Document) -> TreeFile | None:
 
 
 def _is_list_of_models(element: Element) -> bool:
-    """Whether an element is a `<TreeNodesModel>`, or one whose name is misspelled."""
+    """Whether an element is a `<TreeNodesModel>`, including misspelled names."""
     if element.name == "TreeNodesModel":
         return True
     return element.name not in BEHAVIOR_TREE.elements and are_similar(element.name, "TreeNodesModel")
@@ -178,18 +191,20 @@ def _node(element: Element) -> TreeNode:
 
 
 def _is_port(name: str, has_id: bool) -> bool:
-    """Whether an attribute can be a port: neither an attribute of every node nor one with a namespace."""
+    """Whether an attribute can set a port. Attributes that every node may have, and attributes with a namespace,
+    cannot."""
     return name != "name" and not (has_id and name == "ID") and name != "xmlns" and ":" not in name
 
 
 def port_key(plugin: str, name: str) -> str:
-    """The name of the port of a plugin that `name` refers to; ports of nodes of BehaviorTree.CPP may have two names."""
+    """The main name of the port of a plugin that `name` refers to. Ports of nodes of BehaviorTree.CPP may have an
+    alias."""
     type_ = BEHAVIOR_TREE.elements.get(plugin)
     return type_.port_key(name) if type_ else name
 
 
 _DIRECTIONS = {"input": Direction.IN, "output": Direction.OUT}
-"""The beginnings of names of elements; other ones are misspelled or `<inout_port>`."""
+"""Beginning of the name of a port element -> its direction. Other names are misspelled, or `<inout_port>`."""
 
 
 def _model(element: Element) -> NodeModel:
@@ -226,22 +241,24 @@ def nodes(tree: Tree) -> Iterator[TreeNode]:
 
 
 def blackboard_variable(value: str) -> str | None:
-    """The name in a value `{name}`; `None` if the value is a constant. The name may be invalid."""
+    """The name of the variable in a value of the form `{name}`; `None` if the value is a constant. The name may be
+    invalid."""
     match = _REFERENCE.match(value)
     return match[1].strip() if match else None
 
 
 def is_variable_name(name: str) -> bool:
-    """Whether `name` can be a blackboard variable; a leading `@` refers to the main tree's blackboard."""
+    """Whether `name` is a valid name of a blackboard variable. A leading `@` refers to the blackboard of the executed
+    tree."""
     return bool(_VARIABLE.match(name)) and not is_reserved_variable(name)
 
 
 def is_reserved_variable(name: str) -> bool:
-    """Whether ECMAScript reserves the name of a blackboard variable."""
+    """Whether the name of a blackboard variable is a reserved word of ECMAScript."""
     return name.removeprefix("@") in RESERVED
 
 
 def looks_like_reference(value: str) -> bool:
-    """Whether a value begins with `{…}` (the reference translator reads it as a reference,
-    docs/spec/trees.md#port-values)."""
+    """Whether a value begins with `{…}`. The reference translator reads such a value as a reference
+    (docs/spec/trees.md#port-values)."""
     return bool(_BEGINS_LIKE_REFERENCE.match(value))

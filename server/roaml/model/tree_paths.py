@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names by which people know a node of the executed tree: its path through nodes and subtrees
+"""The names of the nodes of the executed tree for users: paths through nodes and subtrees
 (docs/spec/xml-properties.md#ports)."""
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from roaml.model.system import System
 
 
 class Part(NamedTuple):
-    """A part of a path: a node, or the use of a tree. The first of its names is preferred."""
+    """A part of a path: a node, or the use of a tree. The first of its names is the preferred one."""
 
     names: tuple[str, ...]
     is_tree: bool
 
 
 def parts_above(system: System, instance: Instance) -> tuple[Part, ...]:
-    """The nodes and the uses of trees around a node, outermost first."""
+    """The nodes and the uses of trees that contain a node, the outermost first."""
     parts: list[Part] = []
     node, use = instance, instance.use
     while True:
@@ -39,29 +39,29 @@ def parts_above(system: System, instance: Instance) -> tuple[Part, ...]:
 
 
 def path_of(system: System, instance: Instance) -> str:
-    """The whole path of a node. Only siblings of one name have the same path."""
+    """The whole path of a node. Only siblings with equal names have the same path."""
     return "/".join((*(part.names[0] for part in parts_above(system, instance)), instance.name))
 
 
 def instance_of(system: System, number: int) -> Instance:
-    """The node with a number of `short_paths`."""
+    """The node with the number `number`, a key of `short_paths`."""
     instance = system.by_instance[number].instance
     assert instance is not None
     return instance
 
 
 def label_of(system: System, instance: Instance) -> str:
-    """A node in a few words: its tree, its plugin, and its name in quotes if it has one."""
+    """A short label of a node: its tree, its plugin, and its name in quotes if it has one."""
     tree = system.tree_uses[instance.use].name if system.tree_uses else ""
     named = "" if instance.name == instance.plugin else f' "{instance.name}"'
     return f"{tree}/{instance.plugin}{named}" if tree else f"{instance.plugin}{named}"
 
 
 def short_paths(system: System) -> Mapping[int, str]:
-    """The number of each node -> the shortest text that names it in a `<bt_node>`: its name, or as much of its path as
-    it takes, the uses of trees before the nodes.
+    """Number of a node -> the shortest text that identifies it in a `<bt_node>`: its name, or its name after as few
+    parts of its path as necessary. Uses of trees are preferred to nodes.
 
-    It is the whole path if even that names several nodes.
+    If even the whole path is ambiguous, the text is the whole path.
     """
     by_name: dict[str, list[Instance]] = {}
     for instance in _instances(system):
@@ -83,8 +83,11 @@ def _short_path(own: tuple[Part, ...], all_: Iterable[tuple[Part, ...]]) -> tupl
 
 
 def nodes_called(system: System, text: str) -> tuple[Instance, ...]:
-    """The nodes that `text` names: a name; an ID that is not the name of a node; one of these after names of nodes and
-    trees around it, joined by `/`. A whole path names only the node at its end."""
+    """The nodes that `text` refers to; empty if there are none.
+
+    The text is the name of a node, or an ID that is not the name of a node. The names of enclosing nodes and trees may
+    precede it, separated by `/`. A whole path refers only to the node at its end.
+    """
     *path, last = text.split("/")
     instances = _instances(system)
     called = [instance for instance in instances if instance.name == last]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every value in a machine with its type, its required type, and its errors.
 
-One walk over the machine; the rules, hover and completion read its result. An `Environment` provides what other files
-contribute; the walk itself reads only one machine.
+The result is computed in one pass over the machine; rules, hover and completion read it. An `Environment` provides the
+types that other files determine; the pass itself reads only one machine.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from roaml.expr.types import (
     StructKind,
     Type,
     leaves,
+    member_type,
     resolve_type,
     same_kind,
     unwrap,
-    wrap,
 )
 from roaml.interfaces.types import Kind
 from roaml.language.grammar import Binding
@@ -57,13 +57,13 @@ class Environment(Protocol):
     """The part of a system that determines the types in a machine."""
 
     def struct(self, name: str) -> Type | None:
-        """The struct with this name."""
+        """The struct named `name`; `None` if there is none."""
 
     def interface(self, kind: str, name: str) -> InterfaceType | None:
-        """The ROS type `name` (as written in the model) of kind msg, srv or action."""
+        """The ROS type `name`, as written in the model, of the kind msg, srv or action; `None` if it is not found."""
 
     def published(self, topic: str) -> tuple[InterfaceType, ...]:
-        """The types with which other machines publish on the topic, as written, if they are known."""
+        """The known types with which other machines publish on the topic `topic`, which is named as written."""
 
     def event_data(self, event: str) -> Struct | None:
         """The parameters that the senders of a plain event send; `None` if they are unknown."""
@@ -86,15 +86,17 @@ class ValueUse(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchConditions:
-    """Conditions of the enclosing `<if>` parts, with whether they hold; earlier conditions are shared in memory,
-    because each part of an `<if>` contains the conditions of all parts before it."""
+    """A condition of an enclosing `<if>`, `holds`, and the earlier conditions as a linked list.
+
+    Each branch of an `<if>` has the conditions of all branches before it, so earlier conditions are shared in memory.
+    """
 
     condition: Expression
     holds: bool
     before: BranchConditions | None
 
     def __iter__(self) -> Iterator[tuple[Expression, bool]]:
-        """The conditions, the innermost and latest first."""
+        """The conditions and whether they hold, the innermost and latest first."""
         node: BranchConditions | None = self
         while node is not None:
             yield node.condition, node.holds
@@ -103,13 +105,14 @@ class BranchConditions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ValuePlace:
-    """The place of a value.
+    """The place of a value in a machine.
 
     Attributes:
         part: "data", "cond", "body", "onentry" or "onexit".
-        late: whether something was sent, or a condition evaluated, between the arrival of the event and this value, so
-            that the event data may be newer (docs/spec/machines.md#event-data-lifetime).
-        branch_conditions: the conditions of the enclosing `<if>` parts that are known to hold, or not to hold; `None`
+        late: whether an event is sent, or a condition of an `<if>` is evaluated, between the arrival of the event and
+            the evaluation of this value, so that the event data may be newer
+            (docs/spec/machines.md#event-data-lifetime).
+        branch_conditions: the conditions of enclosing `<if>` elements, which are known to hold or not to hold; `None`
             if there are none.
     """
 
@@ -123,11 +126,13 @@ class ValuePlace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TypedValue:
-    """A value with its type and problems. `required` is the required type; `None` if any type is allowed.
+    """A value with its type and problems.
 
-    `target` is a phrase for the field, parameter, location or variable that receives the value ("" if there is none).
-    `sent` is the type that the value has in the translation if it is sent: there `2.0` is an int
-    (docs/spec/expressions.md#whole-reals).
+    Attributes:
+        required: the required type; `None` if any type is allowed.
+        target: a phrase for the field, parameter, location or variable that receives the value; "" if there is none.
+        sent: the type of the value in the translation, if it is sent. In the translation, `2.0` is an int
+            (docs/spec/expressions.md#whole-reals).
     """
 
     use: ValueUse
@@ -143,10 +148,12 @@ class TypedValue:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TypedMachine:
-    """Attributes:
-    values: all values, in document order within each chart.
-    variables: per chart scope, the types of its data; if ids are equal, the first declaration is used.
-    unset: for each sending element, the fields that it should set and does not; see `unset_fields`.
+    """A machine with the types of its values.
+
+    Attributes:
+        values: all values, in document order within each chart.
+        variables: scope of a chart -> the types of its data; if ids are equal, the first declaration is used.
+        unset: sending element -> the fields that it should set but does not set; see `unset_fields`.
     """
 
     values: tuple[TypedValue, ...]
@@ -157,10 +164,11 @@ class TypedMachine:
 def type_machine(
     machine: Machine, environment: Environment, without_events: TypedMachine | None = None
 ) -> TypedMachine:
-    """
+    """Determine the types and problems of all values of a machine.
+
     Args:
-        without_events: the machine typed in the same environment without event data: parts that cannot read event data
-            are copied from it.
+        without_events: the result for the same machine in the same environment without event data. Values that cannot
+            depend on event data are copied from it.
     """
     typer = _Typer(machine, environment)
     for value in without_events.values if without_events else ():
@@ -188,8 +196,8 @@ def bindings(handler: Handler, part: str, machine: Machine, environment: Environ
 
 
 def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
-    """The event variables available in a part of a handler (docs/spec/machines.md#event-variables): a transition
-    without event has none."""
+    """The event variables available in a part of a handler (docs/spec/machines.md#event-variables). A transition
+    without an event has none."""
     if handler.trigger is None:
         return ()
     return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
@@ -224,7 +232,7 @@ def _event_data(handler: Handler, environment: Environment) -> Type:
 
 
 def section_of(part: ProtocolPart) -> str:
-    """The section of the ROS definition whose fields a part carries."""
+    """The name of the section of a ROS definition that contains the fields of `part`."""
     return "goal" if part is ProtocolPart.THREAD_START else part.value
 
 
@@ -245,12 +253,12 @@ CHANNEL_KINDS: Mapping[SymbolKind, SymbolKind] = {
     SymbolKind.ACTION_CLIENT: SymbolKind.ACTION,
     SymbolKind.ACTION_SERVER: SymbolKind.ACTION,
 }
-"""The kind of symbol that a declaration of each kind names."""
+"""Kind of declaration -> the kind of channel that it uses."""
 
 
 def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None:
-    """The declaration to which a handler or sending element refers: one of the required kind, otherwise the first with
-    the name."""
+    """The declaration to which a handler or sending element refers; `None` if there is none. A declaration of the
+    required kind takes precedence over other declarations with the same handle."""
     if user.handle is None:
         return None
     kinds = user.type.attributes["name"].refers
@@ -260,7 +268,7 @@ def find_handle(machine: Machine, user: Handler | RosSend) -> Declaration | None
 
 
 def interface_part(part: ProtocolPart, declaration: Declaration | None, environment: Environment) -> Type:
-    """The struct of fields of `part` of the declared interface; unknown if it cannot be determined."""
+    """The struct of the fields of `part` of the declared interface; `UNKNOWN` if it cannot be determined."""
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
         return UNKNOWN
     interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
@@ -276,9 +284,12 @@ def interface_part(part: ProtocolPart, declaration: Declaration | None, environm
 
 
 def _with_published(own: Struct, published: tuple[InterfaceType, ...]) -> Struct:
-    """A message with the fields of its own type and those of the types that are published (docs/spec/ros.md#topics): a
-    rule warns that they differ, but each field exists. A field that both have, but with different types, has the type
-    that is published, because such a value is stored."""
+    """The message of a subscriber with the fields of its own type and of the types that are published
+    (docs/spec/ros.md#topics).
+
+    If the types differ, a rule warns, but the fields of all types exist in the translation. If both types have a field
+    with different types of values, it has the type that is published, because a published value is stored in it.
+    """
     members = dict(own.members)
     sent = [part for other in published if isinstance(part := dict(other.parts).get("message", UNKNOWN), Struct)]
     for message in sent:
@@ -295,9 +306,11 @@ def _same_leaves(left: Type, right: Type) -> bool:
 
 
 def unset_fields(statement: RosSend, machine: Machine, environment: Environment) -> tuple[tuple[str, Type], ...]:
-    """The dotted paths and types of the fields that a sending element should set and does not. They are sent as well,
-    with the defaults of ROS: 0, false, empty (docs/spec/files.md#dialects); in the current dialect a rule forbids
-    that."""
+    """The dotted paths and types of the fields that a sending element should set but does not set.
+
+    The translation sends these fields with the default values of ROS: 0, false or empty (docs/spec/files.md#dialects).
+    In the current dialect, a rule reports them as errors.
+    """
     declaration = find_handle(machine, statement)
     if declaration is None or declaration.type is None or "field" not in statement.type.children:
         return ()
@@ -312,7 +325,7 @@ def unset_fields(statement: RosSend, machine: Machine, environment: Environment)
     return tuple((path, types[path]) for path in interface.required(part) if path not in given)
 
 
-# -------------------------------------------------------------------- the walk
+# -------------------------------------------------------------------- the pass
 
 
 @dataclass(eq=False)
@@ -380,7 +393,7 @@ class _Typer:
 
 
 GOAL_STATUSES = {4: "STATUS_SUCCEEDED", 5: "STATUS_CANCELED", 6: "STATUS_ABORTED"}
-"""`action_msgs/GoalStatus` of ROS 2: the codes that results can have."""
+"""Code of a result -> its name in `action_msgs/GoalStatus` of ROS 2."""
 
 
 def port_type(machine: Machine, read: PortRead) -> Type:
@@ -430,7 +443,7 @@ class _Body:
         self.later()
 
     def draws(self, value: Value | None) -> bool:
-        """Whether a random number is drawn for the last value that was typed."""
+        """Whether the last value, which was typed just before, calls `Math.random()`."""
         problems = self.typer.values[-1].problems if isinstance(value, Expression) else ()
         return any(isinstance(problem, RandomUsed) for problem in problems)
 
@@ -468,7 +481,8 @@ class _Body:
     def late_value(
         self, use: ValueUse, value: Value | None, required: Type | None, element: Element, target: str
     ) -> None:
-        """A value that is sent: it is evaluated in the step of the sending, after the event arrived."""
+        """Determine the type of a value that is sent. It is evaluated in the step that sends it, after the step in
+        which the event arrived."""
         self.later()
         self.value(use, value, required, element, target)
 
@@ -487,7 +501,7 @@ class _Body:
         self.late_value(ValueUse.OUTPUT, statement.value, required, statement.element, target)
 
     def choice(self, statement: If) -> None:
-        """The first condition is evaluated in a separate step, so it is late as well."""
+        """Determine the types in an `<if>`. Even its first condition is evaluated in a separate step, so it is late."""
         before = self.place
         self.later()
         outer = known = self.place.branch_conditions
@@ -505,14 +519,12 @@ class _Body:
 
 
 def _leaf(part: Type, path: str) -> Type | None:
-    """The type of the leaf field at a dotted path; `None` if it does not exist, unknown if the part is unknown."""
+    """The type of the leaf field at a dotted path; `None` if the field does not exist, `UNKNOWN` if `part` is
+    unknown."""
     type_ = part
-    bounds: tuple[int | None, ...] = ()
     for name in path.split("."):
-        inner, more = unwrap(type_)
-        bounds = (*bounds, *more)
-        member = inner.member(name) if isinstance(inner, Struct) else None
+        member = member_type(type_, name)
         if member is None:
-            return UNKNOWN if inner == UNKNOWN else None
+            return UNKNOWN if unwrap(type_)[0] == UNKNOWN else None
         type_ = member
-    return wrap(type_, bounds)
+    return type_

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in the languages that several parts of the tool use, by their meaning."""
+"""Names of elements, variables and types that several parts of the tool use, grouped by their meaning."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ DECLARING_ELEMENTS = {
     SymbolKind.ACTION_SERVER: "ros_action_server",
     SymbolKind.TIMER: "ros_time_rate",
 }
-"""The element that declares a handle, by the kind of the handle."""
+"""Kind of handle -> the element that declares it."""
 
 EVENT_VARIABLES = {
     binding.name: element.name for element in HL_SCXML.elements.values() for binding in reversed(element.binds)
 }
-"""The variables with the data of an event, with an element that has each."""
+"""Variable with the data of an event -> the name of an element in which it is available."""
 
 BRANCH_MARKERS = ("else", "elseif")
 """The elements that begin the next branch of an `<if>`."""
 
 INSIDE_THREADS = ("ros_action_handle_thread_start", "ros_action_thread_free")
-"""The elements that are allowed in an action thread only."""
+"""The elements that are allowed only in an action thread."""
 OUTSIDE_THREADS = ("ros_action_start_thread", "ros_action_handle_thread_free")
 """The elements that are not allowed in an action thread."""
 UNUSUAL_IN_THREADS = ("ros_action_handle_goal",)
@@ -40,10 +40,10 @@ DEFAULT_TYPES = {
     ScalarKind.BOOL: "bool",
     ScalarKind.STRING: "string",
 }
-"""The type of a declaration for a value, by the kind of the value."""
+"""Kind of value -> the type with which a variable for it is declared."""
 
 FOREIGN_TYPES = {
     **interfaces.FOREIGN_TYPES, "byte": "uint8", "char": "uint8", "String": "string",
     "integer8": "int8", "integer16": "int16", "integer32": "int32", "integer64": "int64",
 }  # fmt: skip
-"""Names of types in other languages, with the corresponding names of HL-SCXML."""
+"""Name of a type in another language -> the corresponding name in HL-SCXML."""

@@ -12,12 +12,12 @@ from roaml.observers.properties import PatternProperty, Property
 
 
 def observer_of(property_: Property) -> Observer:
-    """The observer of a property, in its state before the first letter."""
+    """The observer of a property; its registers have their values before the first letter."""
     if isinstance(property_, PatternProperty):
         return observe_pattern(property_)
     return observe_formula(property_)
 
 
 def begin(observer: Observer, inputs: Mapping[str, bool]) -> State:
-    """The state after the first letter, which is the start of the trace."""
+    """The state of an observer after the first letter, which is the start of the trace."""
     return step(observer, observer.initial(), inputs, tick=False)

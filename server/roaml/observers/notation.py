@@ -26,10 +26,10 @@ MAX_OPERATORS = 200
 
 @dataclass(frozen=True, slots=True)
 class Notation:
-    """The result of parsing.
+    """The result of parsing a formula.
 
     Attributes:
-        formula: `None` if there are problems.
+        formula: the formula; `None` if there are problems.
         atoms: the spans of the texts in braces, without the braces.
         problems: spans and messages.
     """
@@ -208,7 +208,7 @@ class _Parser:
             case _TokenKind.OPEN:
                 formula = self.implication()
                 if not self.accept(_TokenKind.CLOSE):
-                    raise _ProblemError(self.next.span, "`)` is expected")
+                    raise _ProblemError(self.next.span, "expected `)`")
                 return formula
             case _TokenKind.BOUNDS:
                 raise _ProblemError(token.span, "bounds are only allowed after `S`, `H` or `O`: `O[:5] { alarm }`")

@@ -45,7 +45,7 @@ class Builder:
         return self._add(Register(self._unique(name), initial, limit))
 
     def temporary(self, name: str, value: Expression) -> Expression:
-        """A register for a value that only later assignments at the same letter read."""
+        """A register for a value that only later assignments at the same letter read; `finish` resets it."""
         if isinstance(value, (Literal, Register, Tick)):
             return value
         register = self.flag(name)
@@ -58,11 +58,11 @@ class Builder:
             self.assignments.append(Assign(register, value))
 
     def raise_if(self, register: Register, condition: Expression) -> None:
-        """Set a flag if the condition is true; it stays set."""
+        """Set a flag if the condition is true; the flag is never reset."""
         self.set(register, disjunction(register, condition))
 
     def finish(self) -> None:
-        """Reset the registers that no later letter reads."""
+        """Add assignments that reset the temporary registers, because no later letter reads them."""
         for register in self._temporary:
             self.set(register, FALSE)
 
@@ -76,8 +76,8 @@ class Builder:
 
 
 class Age:
-    """The number of clock steps since an event, at most `limit`. The first value is `initial` if it is given, otherwise
-    `limit`."""
+    """The number of clock steps since the last occurrence of an event, at most `limit`. Before the first occurrence it
+    is `initial` if that is given, otherwise `limit`."""
 
     def __init__(self, builder: Builder, name: str, limit: int, initial: int | None = None) -> None:
         self.builder = builder
@@ -92,7 +92,7 @@ class Age:
         self.builder.set(self.register, choice(condition, Literal(value), self.register))
 
     def forget(self, condition: Expression) -> None:
-        """Return to the state before the first event."""
+        """Set the number to `limit`, as if the event had never occurred, if `condition` is true."""
         self.reset(condition, self.limit)
 
 
@@ -111,7 +111,7 @@ class Delay:
             self.rows.append((builder.counter(name, 2**width - 1), width))
 
     def advance(self, name: str) -> Expression:
-        """Advance by one clock step if this letter is one.
+        """Advance by one clock step if this letter is a clock step.
 
         Returns:
             Whether the event occurred `length` steps ago, in a register with the name `name`.
@@ -127,7 +127,7 @@ class Delay:
         return leaving
 
     def _top(self, i: int) -> Expression:
-        """Whether the first `i` integers carry a bit over into the next one."""
+        """Whether the first `i` integers carry a bit over into the next integer."""
         if i == 0:
             return self.now
         row, width = self.rows[i - 1]
@@ -149,7 +149,7 @@ class Delay:
 
 
 class Recent:
-    """Whether an event occurred at a distance in a window; only its last occurrence is stored."""
+    """Whether the last occurrence of an event is at a distance in a window. Earlier occurrences are not stored."""
 
     def __init__(self, builder: Builder, name: str, window: Window) -> None:
         self.builder = builder
@@ -159,7 +159,7 @@ class Recent:
         self.age = None if window.upper is None else Age(builder, name, window.upper + 1)
 
     def advance(self) -> None:
-        """Advance by one clock step, if this letter is one."""
+        """Advance by one clock step, if this letter is a clock step."""
         if self.age is not None:
             self.age.advance()
         if self.delay is not None:

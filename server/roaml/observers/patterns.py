@@ -34,7 +34,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     exercised = builder.flag("exercised") if _can_be_vacuous(property_) else None
     opened = builder.flag("opened") if _can_be_closed(property_) else None
     scope = _Scope(builder, property_.scope)
-    judge = _judge(builder, property_, scope.is_open_at_first)
+    pattern = _pattern_state(builder, property_, scope.is_open_at_first)
     is_deferred = property_.scope.is_judged_at_close
     bad = builder.flag("bad") if is_deferred else violated
     asked = builder.flag("asked") if is_deferred and exercised is not None else None
@@ -42,16 +42,16 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     # Evaluate a stretch that ends before this letter.
     closes = builder.temporary("closes", scope.closes)
     if closes != FALSE:
-        builder.raise_if(violated, conjunction(closes, disjunction(bad if is_deferred else FALSE, judge.owes)))
+        builder.raise_if(violated, conjunction(closes, disjunction(bad if is_deferred else FALSE, pattern.owes)))
         if satisfied is not None:
             builder.raise_if(satisfied, conjunction(closes, negation(violated)))
         if asked is not None and exercised is not None:
             builder.raise_if(exercised, conjunction(closes, asked))
         if opened is not None and is_deferred:
             builder.raise_if(opened, closes)
-    judge.advance()
+    pattern.advance()
     if closes != FALSE:
-        judge.clear(closes)
+        pattern.clear(closes)
         for flag in dict.fromkeys((bad, asked)) if is_deferred else ():
             if flag is not None:
                 builder.set(flag, conjunction(flag, negation(closes)))
@@ -60,17 +60,17 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     opens = builder.temporary("opens", scope.opens)
     scope.update(opens, closes)
     if opens != FALSE:
-        judge.open(opens)
-    builder.raise_if(bad, conjunction(scope.inside, judge.read(scope.inside)))
+        pattern.open(opens)
+    builder.raise_if(bad, conjunction(scope.inside, pattern.read(scope.inside)))
     if satisfied is not None:
-        safe = conjunction(scope.inside, judge.is_safe, negation(bad), negation(violated))
+        safe = conjunction(scope.inside, pattern.is_safe, negation(bad), negation(violated))
         builder.raise_if(satisfied, safe)
     if exercised is not None:
-        builder.raise_if(exercised if asked is None else asked, conjunction(scope.inside, judge.asks))
+        builder.raise_if(exercised if asked is None else asked, conjunction(scope.inside, pattern.asks))
     if opened is not None and not is_deferred:
         builder.raise_if(opened, scope.inside)
     builder.finish()
-    pending, due = FALSE if is_deferred else judge.owes, FALSE if is_deferred else judge.is_due
+    pending, due = FALSE if is_deferred else pattern.owes, FALSE if is_deferred else pattern.is_due
     outputs = Outputs(
         violated, satisfied, conjunction(scope.inside, pending), conjunction(scope.inside, due), exercised, opened
     )
@@ -82,7 +82,7 @@ def _can_be_vacuous(property_: PatternProperty) -> bool:
 
 
 def _can_be_closed(property_: PatternProperty) -> bool:
-    """Whether a pattern with requests has a scope that may never be judged."""
+    """Whether a pattern with requests has a scope of which no stretch may be judged."""
     return property_.pattern.is_binary and property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.UNTIL)
 
 
@@ -132,9 +132,9 @@ class _Scope:
 # --------------------------------------------------------------------- patterns
 
 
-class _Judge(Protocol):
-    """A pattern in a stretch (docs/spec/xml-properties.md#patterns). Its registers have fixed values while no stretch
-    is open.
+class _PatternState(Protocol):
+    """The state of a pattern in the open stretch (docs/spec/xml-properties.md#patterns). Its registers have fixed
+    values while no stretch is open.
 
     Attributes:
         owes: whether an obligation is open: the stretch violates the pattern if it ends here.
@@ -153,7 +153,7 @@ class _Judge(Protocol):
     def asks(self) -> Expression: ...
 
     def advance(self) -> None:
-        """Advance by one clock step, if this letter is one."""
+        """Advance by one clock step, if this letter is a clock step."""
 
     def clear(self, closes: Expression) -> None:
         """Reset all registers, if `closes`."""
@@ -169,7 +169,7 @@ class _Judge(Protocol):
         """
 
 
-def _judge(builder: Builder, property_: PatternProperty, is_open: bool) -> _Judge:
+def _pattern_state(builder: Builder, property_: PatternProperty, is_open: bool) -> _PatternState:
     match property_.pattern:
         case Pattern.UNIVERSALITY:
             return _Always(builder, property_.window, is_open, Input(LEFT))
@@ -187,7 +187,7 @@ def _judge(builder: Builder, property_: PatternProperty, is_open: bool) -> _Judg
 
 
 class _Stretch:
-    """The number of clock steps since the stretch opened, as far as the window needs it."""
+    """The number of clock steps since the stretch opened, counted up to the bounds of the window."""
 
     def __init__(self, builder: Builder, window: Window, is_open: bool) -> None:
         self.window = window
@@ -221,7 +221,7 @@ class _Stretch:
 
     @property
     def is_last(self) -> Expression:
-        """Whether the window has no upper bound, or its last clock step is reached."""
+        """Whether the window has no upper bound, or this letter is at its upper bound."""
         if self.age is None or self.window.upper is None:
             return TRUE
         return at_least(self.age.register, self.window.upper)
@@ -296,7 +296,7 @@ class _Existence:
 
 
 class _Response:
-    """The pattern that requires an answer to each request, at a distance in the window.
+    """The pattern that requires an answer to each request, at a distance from the request that is in the window.
 
     Only the oldest open request matters: its answer also answers all others whose window has begun, and its
     deadline is the first one.
@@ -375,8 +375,8 @@ class _Response:
 
 
 class _Precedence:
-    """The precedence pattern: for each letter at which the second condition holds, the first condition must have held
-    at a distance within the window."""
+    """The precedence pattern: at each letter at which the second condition holds, the first condition must have held at
+    a distance in the window."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE
@@ -407,8 +407,8 @@ class _Precedence:
 
 
 class _Recurrence:
-    """The pattern that requires the condition repeatedly, each time within the bound; the first time, since the stretch
-    opened."""
+    """The pattern that requires the condition repeatedly: within the bound after the stretch opened, and within the
+    bound after each time at which it held."""
 
     owes: Expression = FALSE
     is_due: Expression = FALSE

@@ -33,7 +33,8 @@ class Tick:
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """
+    """A variable of an observer.
+
     Attributes:
         limit: the maximum value of an integer; `None` for a boolean.
     """
@@ -96,7 +97,7 @@ class Outputs:
         due: whether an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline
             is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
-        opened: whether the scope was judged, if `exercised` says more than that.
+        opened: whether a stretch of the scope was judged; `None` if `exercised` says the same.
     """
 
     violated: Register
@@ -125,7 +126,12 @@ State: TypeAlias = Mapping[str, bool | int]
 
 
 def step(observer: Observer, state: State, inputs: Mapping[str, bool], tick: bool) -> State:
-    """The state after one more letter."""
+    """The state of an observer after one more letter.
+
+    Args:
+        inputs: the values of the conditions at the letter, by name.
+        tick: whether the letter is a clock step.
+    """
     values = dict(state)
     for assignment in observer.assignments:
         values[assignment.register.name] = evaluate(assignment.value, values, inputs, tick)
@@ -167,7 +173,7 @@ def evaluate(expression: Expression, state: State, inputs: Mapping[str, bool], t
 
 
 def simplified(expression: Expression, known: Mapping[Expression, Expression]) -> Expression:
-    """`expression` with known values substituted, and simplified accordingly."""
+    """`expression` after its parts in `known` are replaced by their values and the result is simplified."""
     if expression in known:
         return known[expression]
     match expression:

@@ -2,8 +2,8 @@
 """Properties of traces: a pattern in a scope, or a formula of past-time metric temporal logic
 (docs/spec/xml-properties.md#meaning).
 
-Conditions have names: those of `Atom`s in formulas; `LEFT`, `RIGHT`, `OPEN` and `CLOSE` in patterns. Bounds on time are
-in clock steps, both ends included; `None` means no upper bound.
+Conditions are identified by names: the names of `Atom`s in formulas, and `LEFT`, `RIGHT`, `OPEN` and `CLOSE` in
+patterns. Bounds on time are in clock steps, both ends included. `None` means that there is no upper bound.
 """
 
 from __future__ import annotations
@@ -57,16 +57,16 @@ class ScopeKind(enum.Enum):
 
     @property
     def is_judged_at_close(self) -> bool:
-        """Whether a stretch is evaluated only when it closes."""
+        """Whether a stretch is judged only when it closes, and not at the end of the trace."""
         return self in (ScopeKind.BEFORE, ScopeKind.BETWEEN)
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The distances in time that a bound allows.
+    """The distances in time that a property allows, in clock steps.
 
     Raises:
-        ValueError: no distance is allowed.
+        ValueError: `lower` is negative, or `upper` is less than `lower`.
     """
 
     lower: int = 0
@@ -74,7 +74,7 @@ class Window:
 
     def __post_init__(self) -> None:
         if self.lower < 0 or (self.upper is not None and self.upper < self.lower):
-            raise ValueError(f"no time is from {self.lower} to {self.upper}")
+            raise ValueError(f"there is no time from {self.lower} to {self.upper}")
 
     @property
     def is_unbounded(self) -> bool:
@@ -86,7 +86,7 @@ class PatternProperty:
     """A pattern that holds in every stretch of a scope.
 
     Raises:
-        ValueError: a recurrence without an upper bound, or with a lower one.
+        ValueError: a recurrence has no upper bound, or has a lower bound.
     """
 
     pattern: Pattern
@@ -142,7 +142,8 @@ class Or:
 
 @dataclass(frozen=True, slots=True)
 class Since:
-    """`right` was true at some letter up to now whose distance is in `window`, and `left` at all letters after it."""
+    """`right` was true at some letter up to the current one whose distance is in `window`, and `left` at all letters
+    after it."""
 
     left: Formula
     right: Formula
@@ -157,12 +158,12 @@ def implies(left: Formula, right: Formula) -> Formula:
 
 
 def once(operand: Formula, window: Window = Window()) -> Formula:
-    """`operand` was true at some letter up to now whose distance is in `window`."""
+    """The formula: `operand` was true at some letter up to the current one whose distance is in `window`."""
     return Since(Constant(True), operand, window)
 
 
 def historically(operand: Formula, window: Window = Window()) -> Formula:
-    """`operand` was true at all letters up to now whose distance is in `window`."""
+    """The formula: `operand` was true at all letters up to the current one whose distance is in `window`."""
     return Not(once(Not(operand), window))
 
 
@@ -187,7 +188,7 @@ def walk(formula: Formula) -> Iterator[Formula]:
 
 @dataclass(frozen=True, slots=True)
 class FormulaProperty:
-    """A formula that is true at every letter."""
+    """The property that a formula is true at every letter."""
 
     formula: Formula
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of traces as English sentences (docs/spec/xml-properties.md#patterns).
+"""Writes properties of traces as English sentences (docs/spec/xml-properties.md#patterns).
 
-Conditions and durations are given as text, so that this works for incomplete properties as well.
+Conditions and durations are given as text, so that incomplete properties can be written as well.
 """
 
 from __future__ import annotations
@@ -51,17 +51,17 @@ UNKNOWN = SentenceClause("…", "")
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Bounds on a time, as text with units such as "5 s"; "" if there is none."""
+    """Bounds on a time, as text with units such as "5 s"; an empty string means that there is no bound."""
 
     after: str = ""
     within: str = ""
 
 
 def pattern_sentence(pattern: Pattern, scope: ScopeKind, clauses: Mapping[str, SentenceClause], times: Times) -> str:
-    """A pattern in a scope.
+    """The sentence that states a pattern in a scope.
 
     Args:
-        clauses: the conditions by the names of inputs; missing ones are written as dots.
+        clauses: the conditions, by the names of inputs; a missing condition is written as dots.
     """
     opened = _Clauses(clauses)
     text = f"{_scope(scope, opened)}{_pattern(pattern, opened, times)}"
@@ -69,15 +69,15 @@ def pattern_sentence(pattern: Pattern, scope: ScopeKind, clauses: Mapping[str, S
 
 
 def formula_sentence(formula: Formula, clauses: Mapping[str, SentenceClause]) -> str:
-    """A formula of past-time metric temporal logic that must hold at every step."""
+    """The sentence that states that a formula of past-time metric temporal logic holds at every step."""
     return _sentence(f"at every step, {_formula(formula, clauses, _MAX_DEPTH)}")
 
 
 def pattern_formula(pattern: Pattern, scope: ScopeKind, conditions: Mapping[str, str], times: Times) -> str:
-    """A pattern in a scope as a formula of temporal logic with past operators, the scope in words.
+    """A pattern as a formula of temporal logic with past operators; its scope is written in words.
 
     Args:
-        conditions: the conditions by the names of inputs.
+        conditions: the conditions, by the names of inputs.
     """
     left, right, opened, closed = (conditions.get(name, "…") for name in (LEFT, RIGHT, OPEN, CLOSE))
     bounds = f"[{times.after or '0'}, {times.within or '∞'}]" if times.after or times.within else ""
@@ -130,7 +130,7 @@ def _scope(scope: ScopeKind, clauses: _Clauses) -> str:
 
 
 def _condition_of_scope(scope: ScopeKind) -> str:
-    """The additional requirement of a scope that is evaluated at its end."""
+    """The end of the sentence for a scope that is judged only at its end; an empty string for other scopes."""
     return "; nothing is required if that end never comes" if scope.is_judged_at_close else ""
 
 

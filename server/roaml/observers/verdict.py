@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict of an observer on a trace at its end (docs/spec/xml-properties.md#end)."""
+"""The verdict of an observer at the end of a trace (docs/spec/xml-properties.md#end)."""
 
 from __future__ import annotations
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The user's files as a whole: discovered, read, cached by content, linked into systems and checked."""
+"""Finds and reads the user's files, links them into systems, and checks them. Results are cached by content."""

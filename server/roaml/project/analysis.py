@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models and systems in the files of one moment.
+"""The models and systems in the user's files at one moment.
 
-- An `Analysis` is one moment: it never changes, and every answer is a function of the files' content.
-- Results are memoised by content (`Memo`), so the next moment recomputes only what differs: parsed files and models by
-  the file's digest, types and outlines by digest and declarations, a system by the outlines of its files.
-- Nothing is reported here; `roaml.project.checking` runs the rules.
+- An `Analysis` never changes: all its results are functions of the content of the files at one moment.
+- Results are cached by content (`Memo`), so a later analysis recomputes only what differs. Parsed files and models are
+  cached by the digest of the file, types and outlines by the digest and the declarations, a system by the outlines of
+  its files.
+- An analysis reports no findings; `roaml.project.checking` runs the rules.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from roaml.diagnostics import Finding
 from roaml.disk import UnreadableReason
-from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.expr.types import Struct, Type
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import NotFound, Reason, Registry
@@ -55,6 +56,7 @@ from roaml.project.memo import Memo
 from roaml.project.paths import resolve
 from roaml.project.settings import folders_above
 from roaml.roles import SymbolKind
+from roaml.scxml.event_data import Round, infer_in_rounds
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
@@ -71,7 +73,7 @@ class Structs:
     """The structs of a system.
 
     Attributes:
-        outlines: their outlines: equal outlines mean equal structs.
+        outlines: the declarations without positions. Equal outlines mean equal structs.
         complete: whether the names of all structs are known.
     """
 
@@ -81,7 +83,7 @@ class Structs:
 
 
 BROKEN = ("xml-syntax", "json-syntax", "nesting-too-deep")
-"""Findings after which a tree may not contain the whole text."""
+"""The codes of findings that mean that a parsed tree may not contain the whole text."""
 
 NO_STRUCTS = Structs((), {}, complete=True)
 
@@ -110,16 +112,16 @@ class _MachineEnvironment:
 
 
 class Analysis:
-    """Everything that is known about the files of one moment.
+    """The models and systems in the files of one moment.
 
     Args:
-        files: the files.
+        files: the files at this moment.
         registry: resolves ROS types.
-        memo: results of earlier moments.
+        memo: the results of earlier analyses.
         systems: the paths of the system files that are analysed.
         overrides: parameters that replace those in system files.
-        trees: the settings for trees that belong to no system.
-        listed: the files of the workspace.
+        trees: the settings for trees that are not in a system.
+        listed: the paths of the files in the workspace.
     """
 
     def __init__(
@@ -154,14 +156,15 @@ class Analysis:
         return self.files.text(path)
 
     def kind(self, path: str) -> FileKind:
-        """The kind of the file by its content."""
+        """The kind of the file, from its content."""
         source = self.source(path)
         if source is None:
             return FileKind.UNKNOWN
         return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
 
     def kind_in(self, path: str, system: str | None) -> FileKind:
-        """The kind of a file: by its content, otherwise as a system lists it."""
+        """The kind of a file, from its content. If the content does not identify the kind, it is the kind with which
+        `system` lists the file."""
         kind = self.kind(path)
         if kind is not FileKind.UNKNOWN or system is None:
             return kind
@@ -178,7 +181,7 @@ class Analysis:
         return self._of("configuration", path, read_configuration)
 
     def properties(self, path: str) -> tuple[tuple[Property, ...], tuple[Finding, ...]]:
-        """The properties in a file, and their syntax errors."""
+        """The properties in a JANI property file, and their syntax errors."""
         value = self.json(path)
         if value is None:
             return (), ()
@@ -192,7 +195,7 @@ class Analysis:
         return violations or ()
 
     def misfits(self, path: str, grammar: Grammar) -> tuple[Misfit, ...]:
-        """The elements of a file that the grammar does not know or does not allow where they are."""
+        """The elements of a file that the grammar does not define, or does not allow in their place."""
 
         def find(document: Document) -> tuple[Misfit, ...]:
             return tuple(misfits(document.root, document.namespaces, grammar))
@@ -209,7 +212,7 @@ class Analysis:
         return self._of_document("property file", path, build_property_file)
 
     def linked_properties(self, path: str, system: str) -> LinkedFile | None:
-        """The properties in an XML file, as a part of a system."""
+        """The properties in an XML file, linked to a system that lists the file; `None` if either cannot be read."""
         file, linked = self.property_file(path), self.system(system)
         if file is None or linked is None:
             return None
@@ -219,7 +222,8 @@ class Analysis:
         return self.memo.get("linked properties", (path, system), (file, linked, taken), compute)
 
     def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
-        """The names of the properties in the files that a system lists before a file, each with the file's name."""
+        """The names of the properties in the files that `system` lists before the file `path`, each with the name of
+        its file for messages."""
         for listed in self.listed(system):
             if listed.path == path:
                 return
@@ -247,7 +251,7 @@ class Analysis:
         return self._of("structs", path, lambda _: structs_in_json(value[0])[0]) or ()
 
     def _of(self, computation: str, path: str, compute: Callable[[SourceFile], T]) -> T | None:
-        """The result for a file's text; `None` if it cannot be read or is too large."""
+        """The cached result of `compute` for a file; `None` if the file cannot be read or is too large."""
         source = self.source(path)
         if source is None or len(source.text) > MAX_CHARACTERS:
             return None
@@ -262,7 +266,7 @@ class Analysis:
     # ------------------------------------------------------------- ROS types
 
     def interface(self, kind: str, name: str) -> InterfaceType | NotFound:
-        """The ROS type `name` (as written) of kind msg, srv or action, in HL types."""
+        """The ROS type `name`, as written, of the kind msg, srv or action, with HL-SCXML types."""
         key = (kind, name)
         if key not in self._interfaces:
             self._interfaces[key] = self._find_interface(kind, name)
@@ -289,7 +293,7 @@ class Analysis:
         )
 
     def repeated_types(self, machine: Machine) -> tuple[RepeatedType, ...]:
-        """The ROS types of a machine, including those of their fields, that other files define differently."""
+        """The ROS types that a machine uses, directly or in fields, and that another file defines differently."""
         repeated_types: dict[tuple[str, str], RepeatedType] = {}
         for declaration in machine.declarations:
             if declaration.type is None or declaration.kind not in INTERFACE_KINDS:
@@ -304,7 +308,7 @@ class Analysis:
         return tuple(repeated_types.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
-        """The definition and all nested messages."""
+        """The definition and those of all nested messages."""
         definitions = [definition]
         names = {definition.full_name}
         for outer in definitions:
@@ -320,14 +324,14 @@ class Analysis:
     # --------------------------------------------------------------- systems
 
     def listed(self, path: str) -> tuple[ListedFile, ...]:
-        """The files that a system file names."""
+        """The files that a system file lists, in order; empty if it cannot be read."""
         if path not in self._listed:
             file = self.system_file(path)
             self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
         return self._listed[path]
 
     def lists_all(self, system: str, section: str) -> bool:
-        """Whether all files that a system lists in a section are known and can be used."""
+        """Whether all files that a system lists in the section `section` are known and can be used."""
         file = self.system_file(system)
         if file is None or section in file.unread:
             return False
@@ -351,13 +355,16 @@ class Analysis:
         return ListedFile(entry, path, None, kind_required, kind)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
-        """The tree files of a system: the listed one, then the included ones, without duplicates."""
+        """The tree files of a system without duplicates: the first listed one, then those of `trees_from`."""
         first = next((f.path for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable), None)
         return self.trees_from(first) if first else ()
 
     def trees_from(self, path: str) -> tuple[str, ...]:
-        """A tree file and the files that it includes, directly or indirectly, then the projects beside it that list it,
-        and the files of these projects that it needs, without duplicates."""
+        """The files that define the trees of a tree file, without duplicates.
+
+        They are the file itself, the files that it includes directly or indirectly, the Groot2 projects in its
+        directory that list it, and the files of these projects that define missing subtrees.
+        """
         if path not in self._trees:
             own = self._with_included([path])
             self._trees[path] = (own, self._from_projects(path, own))
@@ -365,7 +372,8 @@ class Analysis:
         return (*own, *more)
 
     def outlines_from(self, path: str) -> tuple[TreeFileOutline, ...]:
-        """The outlines of `trees_from`. If names in projects are equal, the first is used."""
+        """The outlines of the files of `trees_from`. If a file of a Groot2 project defines a tree with a name that is
+        already used, that tree is left out."""
         paths = self.trees_from(path)
         own = len(self._trees[path][0])
         outlines = [self.tree_outline(tree_path) for tree_path in paths[:own]]
@@ -391,7 +399,11 @@ class Analysis:
         return tuple(trees)
 
     def _from_projects(self, path: str, own: tuple[str, ...]) -> tuple[str, ...]:
-        """The projects of Groot2 that list a tree file, and those of their files that contain missing subtrees."""
+        """The Groot2 projects that list a tree file, and the files of these projects that define missing subtrees.
+
+        Args:
+            own: the tree file and the files that it includes.
+        """
         if not own or path.endswith(PROJECT_EXTENSION):
             return ()
         projects = [p for p in self.files.beside(path, PROJECT_EXTENSION) if path in self.includes(p)]
@@ -406,7 +418,7 @@ class Analysis:
             more += [p for p in self._with_included([new]) if p not in (*own, *more)]
 
     def _names_in_folder(self, path: str) -> frozenset[str]:
-        """The names of the trees in the folder of a file."""
+        """The names of the trees in all files in the folder of a file."""
         folder = os.path.dirname(path)
         if folder not in self._folder_names:
             files = (p for p in (path, *self.files.beside(path, ".xml")) if self.kind(p) is FileKind.TREE)
@@ -424,13 +436,16 @@ class Analysis:
         return {node.plugin.value for node in used if node.is_subtree and node.plugin}
 
     def includes(self, path: str) -> tuple[str, ...]:
-        """The paths that a tree file includes."""
+        """The paths of the files that a tree file includes directly."""
         tree = self.tree(path)
         return tuple(filter(None, map(functools.partial(self.include_path, path), tree.includes))) if tree else ()
 
     def include_path(self, base: str, include: Include) -> str | None:
-        """The file to which an `<include>` refers; `None` if it has no path, or if its ROS package is not in a folder
-        around the file."""
+        """The path to which an `<include>` refers; `None` if it has no path, or if its ROS package is not found.
+
+        Args:
+            base: the path of the file that contains the `<include>`.
+        """
         if include.path is None:
             return None
         package = include.package.value.strip() if include.package else ""
@@ -440,8 +455,11 @@ class Analysis:
         return None if folder is None else os.path.normpath(os.path.join(folder, include.path.value))
 
     def _package_folder(self, base: str, package: str) -> str | None:
-        """The source folder of a ROS package: the nearest folder of its name, around the file or beside one around
-        it, that has a `package.xml`."""
+        """The source folder of a ROS package; `None` if it is not found.
+
+        It is the nearest folder with the name of the package that contains a `package.xml`. Folders that enclose the
+        file `base`, and their direct subfolders, are searched.
+        """
         if os.path.basename(package) != package:
             return None
         for folder in folders_above(os.path.dirname(base)):
@@ -454,12 +472,12 @@ class Analysis:
         return None
 
     def family(self, path: str) -> tuple[str, ...]:
-        """The tree files that belong to no system and are connected with one by includes, in whichever direction;
-        those that no other includes come first."""
+        """The tree files that are connected with the tree file `path` by includes, in either direction. The files are
+        not in a system. Files that no other file includes come first."""
         return tuple(file.path for file in self.family_outlines(path))
 
     def family_outlines(self, path: str) -> tuple[TreeFileOutline, ...]:
-        """The outlines of the family of a tree file."""
+        """The outlines of the files of `family`."""
         outlines: dict[str, TreeFileOutline] = {}
         for top in self._tops.get(path, (path,)):
             for file in self.outlines_from(top):
@@ -473,14 +491,14 @@ class Analysis:
         return (path,) if path in tops else (*(top for top in tops if path in self.trees_from(top)), path)
 
     def outlines_around(self, path: str) -> tuple[TreeFileOutline, ...]:
-        """The outlines of a tree file that belongs to no system, and of the files that include it or that it
+        """The outlines of a tree file that is not in a system, of the files that include it, and of the files that it
         includes."""
         outlines = (outline for top in self._including(path) for outline in self.outlines_from(top))
         return tuple({outline.path: outline for outline in outlines}.values())
 
     @cached_property
     def _tops(self) -> Mapping[str, tuple[str, ...]]:
-        """Tree file -> those of its family that no other includes."""
+        """Tree file -> the files of its family that no other file includes; all of them if they include each other."""
         files = [p for p in self._listed_files if self.kind(p) is FileKind.TREE and p not in self.memberships]
         linked: dict[str, set[str]] = {}
         included: set[str] = set()
@@ -501,8 +519,8 @@ class Analysis:
         return families
 
     def forest(self, path: str) -> Forest | None:
-        """A tree file that belongs to no system, with the files that are analysed together with it: those that include
-        it come first."""
+        """A tree file that is not in a system, with the files that are analysed together with it; `None` if it cannot
+        be read. Files that include it come first."""
         if self.tree(path) is None:
             return None
         models = self._with_included([p for p in self.tree_settings.models if self.tree(p) is not None])
@@ -518,8 +536,7 @@ class Analysis:
     def files_of(self, system: str) -> tuple[str, ...]:
         """The system file and all files of the system, without duplicates.
 
-        A file that neither its name nor its content identifies as a supported file is not included, whatever `src`
-        refers to.
+        A listed file is left out if neither its name nor its content is that of a supported file.
         """
         listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
         return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
@@ -538,7 +555,7 @@ class Analysis:
         return {path: tuple(systems) for path, systems in systems_by_file.items()}
 
     def structs(self, system: str | None) -> Structs:
-        """The structs that a system declares. A struct file in no system declares structs only for itself."""
+        """The structs that a system declares; without a system, none."""
         if system is None:
             return NO_STRUCTS
         if system not in self._structs:
@@ -558,7 +575,7 @@ class Analysis:
         return Structs(outlines, resolve_structs(outlines), complete)
 
     def system(self, path: str) -> System | None:
-        """The linked system of a system file; `None` if the file cannot be read or is not one."""
+        """The linked system of a system file; `None` if the file cannot be read, or is not a system file."""
         if path not in self._systems:
             self._systems[path] = self._link(path)
         return self._systems[path]
@@ -574,8 +591,8 @@ class Analysis:
         gaps = frozenset(placed.gap for _, placed in self.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
         observed = self._observed(listed)
-        events: Mapping[str, Struct] = {}
-        for _ in range(_ROUNDS):
+
+        def link_with(events: Mapping[str, Struct]) -> Round[System, Struct]:
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
@@ -583,10 +600,10 @@ class Analysis:
             key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
             make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
             system = self.memo.get("system", path, key, make)
-            if not _waits_for_events(o for _, o in outlines) or system.event_data == events:
-                break
-            events = system.event_data
-        return system
+            received = (received for _, o in outlines for received in o.received)
+            return Round(system, system.event_data, frozenset(r.event for r in received if r.forwarded))
+
+        return infer_in_rounds(link_with)
 
     def _make(
         self,
@@ -606,22 +623,29 @@ class Analysis:
         )
         if not system.is_library_tree:
             return system
-        from roaml.lower.library_tree import entry_outlines  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
-        return replace(system, entries=entry_outlines(system, self._tree_files(system)))
+        files = self._tree_files(system)
+        builder = LibraryTreeBuilder(system, files)
+        completed = replace(system, entries=builder.entries())
+        self.memo.get("library tree builder", path, (completed, tuple(files.values())), lambda: builder)
+        return completed
 
     def _tree_files(self, system: System) -> dict[str, TreeFile]:
         return {path: file for path in system.tree_paths if (file := self.tree(path)) is not None}
 
     def library_tree(self, path: str) -> LibraryTree | None:
-        """The translated tree of a system if it is executed as by the library; `None` for other trees."""
+        """The translated tree of a system if it is executed as BehaviorTree.CPP executes it (`System.is_library_tree`);
+        `None` for other trees."""
         system = self.system(path)
         if system is None or not system.is_library_tree:
             return None
-        from roaml.lower.library_tree import library_tree  # noqa: PLC0415 - most trees do not need it
+        from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
         files = self._tree_files(system)
-        return self.memo.get("library tree", path, (system, tuple(files.values())), lambda: library_tree(system, files))
+        key = (system, tuple(files.values()))
+        builder = self.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
+        return self.memo.get("library tree", path, key, builder.tree)
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""
@@ -633,7 +657,8 @@ class Analysis:
         return frozenset(names.union(*(observed_names(file) for file in files)))
 
     def gaps(self, path: str) -> tuple[tuple[str, PlacedGap], ...]:
-        """The facts that a system file, its trees and the unreadable files may contain: file, gap and place."""
+        """The facts that a system file, its trees and the unreadable files may contain. Each one has the path of its
+        cause."""
         if path not in self._gaps:
             file = self.system_file(path)
             self._gaps[path] = tuple(self._find_gaps(path, file, self.listed(path))) if file else ()
@@ -665,23 +690,24 @@ class Analysis:
                     yield stray.source.path, PlacedGap(Gap(GapAct.REMAP, name), key)
 
     def _of_missing_node(self, system: str, missing: ListedFile, listed: tuple[ListedFile, ...]) -> Iterator[Gap]:
-        """The facts of a node whose file cannot be used: those of the file in its folder that is probably meant."""
+        """The facts of a ROS node whose file cannot be used: those of the file with the most similar name in the same
+        folder; any fact if there is no such file."""
         taken = {file.path for file in listed}
         beside = [p for end in MACHINE_EXTENSIONS for p in self.files.beside(missing.path, end) if p not in taken]
         by_name = {_stem(p): p for p in beside}
         close = close_names(_stem(missing.path), by_name, 1) if missing.path else ()
-        meant = by_name[close[0]] if close else ""
-        if not meant or self.machine(meant) is None:
+        similar = by_name[close[0]] if close else ""
+        if not similar or self.machine(similar) is None:
             yield Gap(GapAct.ANYTHING)
             return
-        outline = self.outline(meant, system, self.structs(system), {})
+        outline = self.outline(similar, system, self.structs(system), {})
         yield from outline.gaps
         yield from (Gap(InterfaceAct(use.kind), use.name or None) for use in outline.interfaces)
         yield from (Gap(GapAct.SENDS, sent.event) for sent in outline.sent)
         yield from (Gap(GapAct.RECEIVES, received.event) for received in outline.received)
 
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
-        """The places of errors because of which nodes of the executed tree are unknown: file and span."""
+        """The positions (path and span) of the errors because of which some nodes of the executed tree are unknown."""
         listed_trees = [f for f in listed if f.required_kind is FileKind.TREE]
         section = file.element.find("behavior_tree")
         if not listed_trees:
@@ -711,7 +737,7 @@ class Analysis:
                 yield paths[0], first.element.name_span
 
     def _broken(self, path: str) -> Span | None:
-        """The position where a file stops being well-formed; `None` if it is well-formed."""
+        """The position of the first error because of which a file is not well-formed; `None` if there is none."""
         document = self.document(path)
         findings = document.findings if document else ()
         return next((finding.span for finding in findings if finding.code in BROKEN), None)
@@ -726,7 +752,7 @@ class Analysis:
         return findings is not None and not any(f.code in BROKEN for f in findings)
 
     def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
-        """Whether all plugins are known that the system lists, or would list without an error."""
+        """Whether the names of all plugins of the system are known: no error hides a plugin or its name."""
         file = self.system_file(path)
         if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
             return False
@@ -745,7 +771,7 @@ class Analysis:
     # ----------------------------------------------- machines in their system
 
     def outline(self, path: str, system: str, structs: Structs, events: Mapping[str, Struct]) -> MachineOutline:
-        """The outline of a machine in its system."""
+        """The outline of the machine in the file `path`, as a part of `system`; see `typed`."""
         machine = self.machine(path)
         assert machine is not None
         typed = self.typed(path, system, structs, events)
@@ -756,7 +782,7 @@ class Analysis:
         return outline(machine, typed, self.machine_gaps(path, machine, typed))
 
     def machine_gaps(self, path: str, machine: Machine, typed: TypedMachine) -> tuple[PlacedGap, ...]:
-        """The facts in the unreadable parts of a machine, with the places."""
+        """The facts that the unreadable parts of a machine may contain, with their positions."""
         document = self.document(path)
         assert document is not None
         gaps = machine_gaps(machine, typed, document.namespaces, self._has_type)
@@ -767,23 +793,23 @@ class Analysis:
         return isinstance(self.interface(kind, name), InterfaceType)
 
     def typed(self, path: str, system: str | None, structs: Structs, events: Mapping[str, Struct]) -> TypedMachine:
-        """A machine with its types. `events` are the known data of plain events."""
+        """The machine in the file `path` with its types. `events` contains the known data of plain events."""
         machine = self.machine(path)
         assert machine is not None
         known = {name: events[name] for name in _received(machine) if name in events}
-        # The machine itself, not its text: the result refers to its parts.
+        # The key contains the machine instead of its text, because the result refers to parts of the machine.
         published = self._published_for(machine, system)
         key = (machine, structs.outlines, self.interfaces_of(machine), published, known)
         environment = _MachineEnvironment(self, structs, known, published)
         if not known:
             return self.memo.get("typed", (path, system), key, lambda: type_machine(machine, environment))
-        # The result without the events is needed to link the system, and must outlive the result with them.
+        # The result without events is needed to link the system, so it has its own slot in the cache.
         before = self.typed(path, system, structs, {})
         compute = functools.partial(type_machine, machine, environment, before)
         return self.memo.get("typed with events", (path, system), key, compute)
 
     def _published(self, system: str) -> Mapping[str, tuple[str, ...]]:
-        """The types, as written, with which the machines of a system publish on each topic."""
+        """Topic -> the types, as written, with which the machines of a system publish on it."""
         if system not in self._published_types:
             types_by_topic: dict[str, dict[str, None]] = {}
             for listed in self.listed(system):
@@ -798,7 +824,8 @@ class Analysis:
         return self._published_types[system]
 
     def _published_for(self, machine: Machine, system: str | None) -> dict[str, tuple[InterfaceType, ...]]:
-        """The topics that a machine subscribes to and that are published with other types, with these types."""
+        """Topic to which a machine subscribes -> the other types with which machines of the system publish on it.
+        Topics without such types are left out."""
         if system is None:
             return {}
         types_by_topic: dict[str, tuple[InterfaceType, ...]] = {}
@@ -815,12 +842,12 @@ class Analysis:
         return types_by_topic
 
     def _messages(self, names: Iterable[str]) -> tuple[InterfaceType, ...]:
-        """The message types that exist."""
+        """The message types with these names, without those that are not found."""
         definitions = (self.interface("msg", name) for name in names)
         return tuple(type_ for type_ in definitions if isinstance(type_, InterfaceType))
 
     def interfaces_of(self, machine: Machine) -> tuple[InterfaceType | NotFound, ...]:
-        """The ROS types that a machine declares, in order."""
+        """The ROS types in the declarations of a machine, in order."""
         return tuple(
             self.interface(INTERFACE_KINDS[d.kind], d.type.value)
             for d in machine.declarations
@@ -828,12 +855,13 @@ class Analysis:
         )
 
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
-        """A machine with its types in a system, or alone."""
+        """The machine in the file `path` with its types, as a part of `system`; `None` for a machine without a
+        system."""
         linked = self.system(system) if system else None
         return self.typed(path, system, self.structs(system), linked.event_data if linked else {})
 
     def environment(self, system: str | None) -> Environment:
-        """The names that the machines of a system can use; a machine alone can use ROS types."""
+        """The types that the machines of a system can use. A machine without a system can use only ROS types."""
         linked = self.system(system) if system else None
         published = {topic: self._messages(types) for topic, types in self._published(system).items()} if system else {}
         return _MachineEnvironment(self, self.structs(system), linked.event_data if linked else {}, published)
@@ -853,21 +881,12 @@ class Analysis:
         return {} if linked is None else event_parameters(linked, environment.interface)
 
 
-_ROUNDS = 4
-"""The maximum number of rounds in which event data are passed from event to event before their types are final."""
-
-
 def _stem(path: str) -> str:
     """The name of a file without its extension."""
     return path.replace("\\", "/").rpartition("/")[2].rpartition(".")[0]
 
 
 def _received(machine: Machine) -> set[str]:
-    """The plain events for which a machine has transitions."""
+    """The names of the plain events for which a machine has transitions."""
     handlers = (h for chart in machine.charts for state in chart.states for h in state.handlers)
     return {handler.event.value for handler in handlers if handler.event}
-
-
-def _waits_for_events(outlines: Iterable[MachineOutline]) -> bool:
-    """Whether the type of a sent value is unknown."""
-    return any(param.type == UNKNOWN for o in outlines for sent in o.sent for param in sent.params)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the rules: from models and systems to diagnostics.
+"""Runs the rules on models and systems and returns the diagnostics.
 
-- A file that is part of several systems is checked in each, and equal findings are merged; a file that is part of none
-  is checked alone.
-- Findings are memoised by their dependencies: the file's content, its types, its system.
-- A rule that crashes is reported as `internal-error`, once for each file, and does not stop the others. No setting and
-  no comment suppresses that: an unchecked file must not look like a correct one.
+- A file in several systems is checked in each of them, and equal findings are merged. A file that is not in a system is
+  checked alone.
+- Findings are cached by their dependencies: the content of the file, its types and its system.
+- A rule that raises an exception is reported as `internal-error`, once for each file, and the other rules continue. No
+  setting or comment suppresses this finding, because an unchecked file must not look like a correct one.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ from roaml.text import Location, SourceFile, Span
 log = logging.getLogger(__name__)
 
 MAX_FINDINGS = 1000
-"""The maximum number of findings of one rule in one file; each takes time, for similar names and fixes."""
+"""The maximum number of findings of one rule in one file. It limits the time that is spent on similar names and
+fixes."""
 
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
@@ -65,14 +66,14 @@ _XML_KINDS = (*GRAMMARS, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
 
 class RuleRunner:
-    """Checks the files of one moment."""
+    """Checks the files of one analysis."""
 
     def __init__(self, analysis: Analysis, settings: Settings) -> None:
         self.analysis = analysis
         self.settings = settings
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
-        """The diagnostics of a file, sorted by position. Empty if the file cannot be read."""
+        """The diagnostics of a file, sorted by position; empty if the file cannot be read."""
         source = self.analysis.source(path)
         if source is None:
             return ()
@@ -81,12 +82,14 @@ class RuleRunner:
             finding
             for system in (systems or (None,))
             for finding in self.findings(path, system)
-            if self._wanted(finding)
+            if self._is_selected(finding)
         )
         hidden = suppressions(self.analysis.document(path)) if _is_xml(self.analysis.kind(path)) else ()
         if hidden:
             findings.update(
-                dict.fromkeys(finding for finding in self._unused(source, systems, hidden) if self._wanted(finding))
+                dict.fromkeys(
+                    finding for finding in self._unused(source, systems, hidden) if self._is_selected(finding)
+                )
             )
         around = covering(hidden)
         diagnostics = [
@@ -97,7 +100,8 @@ class RuleRunner:
         return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
 
     def _unused(self, source: SourceFile, systems: tuple[str, ...], hidden: Iterable[Suppression]) -> Iterator[Finding]:
-        """The unused suppressions. A file alone, or one with syntax errors, is not checked for them."""
+        """The findings about unused suppression comments. There are none for a file that is not in a system, that is in
+        an incomplete system, or that has syntax errors, because other findings may be missing."""
         linked = [self.analysis.system(system) for system in systems]
         findings = [finding for system in systems for finding in self.findings(source.path, system)]
         known = linked and all(system is not None and system.complete for system in linked)
@@ -118,8 +122,8 @@ class RuleRunner:
                 )
 
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
-        """The errors that prevent the translation of a system, by the rules' own severities. No setting and no comment
-        makes a model translatable."""
+        """The errors that prevent the translation of a system. The default severities of the rules are used: settings
+        and comments cannot make a system translatable."""
         return tuple(
             self._diagnostic(path, finding, _own_severity(finding))
             for path in self.analysis.files_of(system)
@@ -128,7 +132,7 @@ class RuleRunner:
         )
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
-        """The findings of the rules in a file, as a part of one system or alone."""
+        """The findings of the rules in the file `path` as a part of `system`; `None` for a file without a system."""
         source = self.analysis.source(path)
         if source is None:
             return ()
@@ -137,11 +141,11 @@ class RuleRunner:
         try:
             run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
-        except Exception as error:  # a crash in one file must not prevent the check of the others
+        except Exception as error:  # an internal error in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
             return (internal_error("model", error),)
 
-    def _wanted(self, finding: Finding) -> bool:
+    def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
         if code == _CRASH:
             return True
@@ -168,8 +172,8 @@ class RuleRunner:
         return RelatedPlace(Location(path, related.place), related.message)
 
 
-def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
-    """The findings of one rule in one file, limited to the first ones."""
+def _limited(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
+    """The findings of one rule in one file. If there are more than `MAX_FINDINGS`, the last one says so."""
     kept = list(itertools.islice(findings, MAX_FINDINGS + 1))
     if len(kept) > MAX_FINDINGS:
         message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
@@ -178,8 +182,8 @@ def _some(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _hides(comment: Suppression, finding: Finding) -> bool:
-    """Whether a comment suppresses a finding. A comment without codes does not suppress the finding that it is
-    unused."""
+    """Whether a comment suppresses a finding. A comment without codes does not suppress the finding that the comment
+    itself is unused."""
     is_about_comments = finding.code == unused_suppression.RULE.code
     return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 
@@ -195,7 +199,8 @@ def _is_xml(kind: FileKind) -> bool:
 
 
 def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
-    """Findings that differ only in fixes or related places, because several systems cause them, are merged."""
+    """The findings without duplicates. Findings of several systems that differ only in fixes or related positions are
+    duplicates."""
     seen = set()
     for finding in findings:
         key = (finding.code, finding.span, finding.message)
@@ -225,7 +230,7 @@ class _Run:
         self.system: System | None = analysis.system(system) if system else None
 
     def key(self) -> object:
-        """All dependencies of the findings."""
+        """All values on which the findings depend, as a key for the cache."""
         parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
@@ -255,7 +260,7 @@ class _Run:
     def findings(self) -> tuple[Finding, ...]:
         findings = without_misnamed_ends(tuple(self._all()))
         if any(finding.code in _FORM for finding in findings):
-            # Something that seems unused may be used in the unreadable part.
+            # A declaration that seems unused may be used in an unreadable part.
             return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
         return findings
 
@@ -269,8 +274,8 @@ class _Run:
         for rule, check in checks:
             self.analysis.memo.checkpoint()
             try:
-                yield from _some(rule, check())
-            except Exception as error:  # a crash must not stop the other rules
+                yield from _limited(rule, check())
+            except Exception as error:  # an internal error must not stop the other rules
                 log.exception("rule %s failed on %s", rule.code, self.path)
                 yield internal_error(rule.code, error)
 
@@ -298,7 +303,7 @@ class _Run:
                     return [
                         (r, functools.partial(r.properties, properties)) for r in RULES if r.properties and properties
                     ]
-        except Exception as error:  # as above: the findings of the parsers are still useful
+        except Exception as error:  # after an internal error, the findings of the parsers are still useful
             log.exception("the model of %s cannot be built", self.path)
             failure = internal_error("model", error)
             return [(internal_error_rule.RULE, lambda: [failure])]
@@ -416,21 +421,21 @@ class _Run:
         )
 
     def _refusals(self) -> tuple[tuple[Span, str], ...]:
-        """Why nodes of this file cannot be translated, if the tree is executed as by the library; without the reasons
-        that other rules report."""
+        """The nodes of this file that cannot be translated, with the reasons, if the tree is executed as
+        BehaviorTree.CPP executes it. Reasons that other rules report are left out."""
         tree = self.analysis.library_tree(self.system_path) if self.system_path else None
         refusals = () if tree is None else tree.refusals
         return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path and not r.is_reported)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
-        """The trees with which this file is checked: those of its system, or those that it includes and that include
-        it."""
+        """The outlines of the tree files with which this file is checked: those of its system; without a system, those
+        that it includes or that include it."""
         if self.system_path:
             return self.analysis.tree_outlines(self.system_path)
         return self.analysis.outlines_around(self.path)
 
     def _unknown_packages(self) -> frozenset[str]:
-        """The ROS packages of includes that no folder around the file has."""
+        """The names of the ROS packages in `<include>` elements that are not found."""
         file = self.analysis.tree(self.path)
         return frozenset(
             include.package.value
@@ -439,7 +444,7 @@ class _Run:
         )
 
     def _missing_includes(self) -> dict[str, str]:
-        """The includes that cannot be used, with the reasons."""
+        """Path in an `<include>` that cannot be used -> the reason."""
         file = self.analysis.tree(self.path)
         problems: dict[str, str] = {}
         for include in file.includes if file else ():

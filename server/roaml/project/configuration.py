@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configuration files: their content, and the errors in them with positions.
+"""Reads configuration files, and finds the errors in them with their positions.
 
-- `as2fm.toml` takes precedence over `[tool.as2fm]` of a `pyproject.toml` in the same folder. A `pyproject.toml` that is
+- `as2fm.toml` takes precedence over `[tool.as2fm]` in a `pyproject.toml` in the same folder. A `pyproject.toml` that is
   not valid TOML, or has no table for this tool, is ignored.
-- Files are read like models: only regular files of a limited size (`roaml.project.files`).
+- Only regular files of a limited size are read, as for models (`roaml.project.files`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from roaml.diagnostics import Finding, Fix
 from roaml.disk import UnreadableReason
 from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
-from roaml.project.settings import Folder, SettingMistake, Settings, folders_above, folders_in, settings_from
+from roaml.project.settings import Folder, SettingProblem, Settings, folders_above, folders_in, settings_from
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
@@ -27,9 +27,9 @@ class Configuration:
     """The content of a configuration file.
 
     Attributes:
-        table: its values; `None` if they cannot be read.
-        findings: the errors, independent of the disk.
-        folders: the folders that it names, with their positions.
+        table: the values; `None` if they cannot be read.
+        findings: the errors that do not depend on the disk.
+        folders: the folders that the file names, with their positions.
     """
 
     table: Mapping[str, Any] | None
@@ -38,7 +38,7 @@ class Configuration:
 
 
 def read_configuration(source: SourceFile) -> Configuration:
-    """The configuration in a text; a pure function of the text and its path."""
+    """The configuration in a file. It depends only on the text and path of the file, not on the disk."""
     is_ours = os.path.basename(source.path) == CONFIG_FILE
     prefix: Path = () if is_ours else ("tool", "as2fm")
     if len(source.text) > MAX_CHARACTERS:
@@ -60,40 +60,40 @@ def read_configuration(source: SourceFile) -> Configuration:
     if not isinstance(table, dict):
         message = "`tool.as2fm` must be a table of settings"
         return Configuration(None, (Finding("invalid-setting", _span(source, known, prefix), message),))
-    _, mistakes = settings_from(table, os.path.dirname(source.path), Settings())
-    findings = tuple(_finding(source, known, prefix, mistake) for mistake in mistakes)
+    _, problems = settings_from(table, os.path.dirname(source.path), Settings())
+    findings = tuple(_finding(source, known, prefix, problem) for problem in problems)
     folders = folders_in(table, os.path.dirname(source.path))
     return Configuration(table, findings, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
 
 
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
-    """The folders that do not exist at this moment."""
+    """A finding for each folder in the configuration that does not exist."""
     return tuple(
         Finding(
             "missing-folder",
             span,
-            f"there is no folder `{folder.written}`; relative paths begin at the folder of this file",
+            f"there is no folder `{folder.written}`; paths are relative to the folder of this file",
         )
         for span, folder in configuration.folders
         if not os.path.isdir(folder.full)
     )
 
 
-def _finding(source: SourceFile, known: Places, prefix: Path, mistake: SettingMistake) -> Finding:
-    path = (*prefix, *mistake.path)
-    span = known.keys.get(path) if mistake.is_key else None
+def _finding(source: SourceFile, known: Places, prefix: Path, problem: SettingProblem) -> Finding:
+    path = (*prefix, *problem.path)
+    span = known.keys.get(path) if problem.is_key else None
     span = span or _span(source, known, path)
     quotes = source.text[span.start : span.start + 1]
     quotes = quotes if quotes in ("'", '"') else ""
     fixes = tuple(
         Fix(f"Change to `{name}`", (TextEdit(span, f"{quotes}{name}{quotes}"),), preferred=number == 0)
-        for number, name in enumerate(mistake.instead)
+        for number, name in enumerate(problem.instead)
     )
-    return Finding("invalid-setting", span, mistake.message, fixes=fixes)
+    return Finding("invalid-setting", span, problem.message, fixes=fixes)
 
 
 def _span(source: SourceFile, known: Places, path: Path) -> Span:
-    """The position of a value, or of the nearest enclosing one that has a position."""
+    """The position of the value at `path`, or of the nearest enclosing value that has a position."""
     while path:
         for spans in (known.values, known.keys):
             if path in spans:
@@ -103,11 +103,11 @@ def _span(source: SourceFile, known: Places, path: Path) -> Span:
 
 
 def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
-    """The configuration in the nearest folder around `path` that has one.
+    """The settings in the nearest configuration file, in the folder of `path` or an enclosing folder.
 
     Returns:
-        The settings, and sentences about errors in the configuration. If `Settings.origin` is set, the same errors are
-            among the diagnostics of that file.
+        The settings, and sentences about errors in the configuration. If `Settings.origin` is set, the diagnostics of
+            that file also contain these errors.
     """
     disk = DiskFiles()
     for folder in folders_above(path):

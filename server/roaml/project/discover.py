@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a folder that may be supported, and the system files among them.
+"""Finds the files in a folder that may be supported, and the system files among them.
 
-Folders without sources are skipped; links are followed once. Unreadable folders are treated as empty.
+Folders that contain no sources, such as build folders, are skipped. A folder that several links lead to is searched
+once. An unreadable folder is treated as empty.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from roaml.text import decode
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
 MAX_FILES = 50_000
 _HEAD = 65_536
-"""The number of bytes to read: more than `root_name` needs, in any encoding except UTF-32."""
+"""The number of bytes to read at the beginning of a file: more than `root_name` needs in any encoding but UTF-32."""
 
 
 def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots | None = None) -> Iterator[str]:
-    """All files below the roots that may be supported according to their names, sorted within each folder, without
-    duplicates.
+    """The paths of all files below `roots` whose names are those of supported files, without duplicates; sorted within
+    each folder.
 
     Args:
-        within: links out of these folders are not followed; by default all links are followed.
+        within: links that lead out of these folders are not followed; if `None`, all links are followed.
     """
     seen: set[str] = set()
     count = 0
@@ -50,7 +51,7 @@ def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots |
 
 
 def is_candidate(path: str, roots: Iterable[str], exclude: Exclude = NOTHING) -> bool:
-    """Whether `candidates` would return a path if the file exists."""
+    """Whether `candidates` returns `path` if the file exists."""
     for root in roots:
         if is_below(path, root):
             *folders, name = relative(path, root).split("/")
@@ -68,7 +69,8 @@ def _is_skipped(folder_name: str) -> bool:
 
 
 class SystemIndex:
-    """A cache of which files are system files, by size and modification time."""
+    """A cache that stores which files are system files. A file is read again if its size or modification time
+    changes."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[tuple[int, int], bool]] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The edits of rules, adapted to a file: a rule writes `\\n` and ignores the rest of a line."""
+"""Adapts the edits of rules to the layout of a file. Rules write `\\n` as line end, and do not remove empty lines."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 def line_end_of(source: SourceFile) -> str:
-    """The line end of a text."""
+    """The line end of the first line of a text; `\\n` if it has only one line."""
     end = source.lines.line_end(0)
     last = source.text[max(0, end - 2) : end]
     return "\r\n" if last == "\r\n" else last[-1:] if last[-1:] in ("\n", "\r") else "\n"
 
 
 def in_layout(source: SourceFile, edits: Iterable[Edit]) -> Iterator[TextEdit]:
-    """Edits in which new lines have the file's line end; an edit that removes everything on a line removes the line as
-    well.
+    """The edits with the line end of the file. An edit that removes the whole content of a line also removes the line.
 
     The content of a line is determined after all edits.
     """
@@ -44,9 +43,9 @@ _BLANK = re.compile(r"\s*")
 
 
 def _blank_around(source: SourceFile, span: Span) -> Span | None:
-    """The lines of a span if nothing else is on them.
+    """The whole lines that contain a span; `None` if they contain other text.
 
-    Only the white space around the span is read: a line may be long, and have many edits.
+    Only the white space around the span is read, because a line may be long and have many edits.
     """
     start = source.lines.line_start(source.lines.position(span.start).line)
     end = source.lines.line_end(source.lines.position(span.end).line)

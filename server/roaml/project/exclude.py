@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files that the setting `exclude` excludes. Its patterns have the syntax of `.gitignore` files
-(https://git-scm.com/docs/gitignore).
-"""
+(https://git-scm.com/docs/gitignore)."""
 
 from __future__ import annotations
 
@@ -17,29 +16,31 @@ if TYPE_CHECKING:
     from pathspec import GitIgnoreSpec, PathSpec, Pattern
 
 MAX_WILDCARDS = 3
-"""`*` in one part of a pattern, and `**` in a pattern. The time to compare a path grows with its length to this power,
-and the configuration may come from an untrusted source."""
+"""The maximum number of `*` in one part of a pattern, and of `**` in a pattern. It is limited because a pattern may
+come from an untrusted source, and the time to compare a path grows with its length to the power of this number."""
 MAX_DEPTH = 30
-"""The maximum number of parts of a path that are compared: a deeper file is excluded if one of its folders is."""
+"""The maximum number of parts of a path that are compared. A file that is deeper is excluded if one of its folders is
+excluded."""
 
 
 @dataclass(frozen=True, slots=True)
 class Exclude:
-    """Patterns; the last one that matches decides.
+    """The patterns of excluded files. If several patterns match, the last one decides.
 
     Attributes:
-        folder: the folder to which the patterns are relative; in a root outside of it, they are relative to that root.
+        folder: the folder to which the patterns are relative. For files in a root outside of this folder, the patterns
+            are relative to that root.
     """
 
     patterns: tuple[str, ...] = ()
     folder: str = ""
 
     def covers(self, path: str, root: str) -> bool:
-        """Whether the file `path`, which is below the folder `root`, is excluded."""
+        """Whether the file `path` is excluded. It is below the folder `root`."""
         return self._covers(path, root, "")
 
     def covers_folder(self, path: str, root: str) -> bool:
-        """Whether everything in the folder `path` is excluded; it is `root` or below it."""
+        """Whether everything in the folder `path` is excluded. The folder is `root` itself or below `root`."""
         return self._covers(path, root, "/")
 
     def _covers(self, path: str, root: str, end: str) -> bool:
@@ -57,7 +58,7 @@ NOTHING = Exclude()
 
 
 def problem(pattern: str) -> str:
-    """Why `pattern` is not a valid pattern; "" if it is."""
+    """A message that says why `pattern` is not a valid pattern; "" if it is valid."""
     parts = pattern.split("/")
     if parts.count("**") > MAX_WILDCARDS:
         return f"`{pattern}` contains more than {MAX_WILDCARDS} `**`"
@@ -66,25 +67,25 @@ def problem(pattern: str) -> str:
     try:
         _compiled((pattern,))
     except (ValueError, re.error):
-        return f"`{pattern}` is not a pattern as in `.gitignore` files"
+        return f"`{pattern}` is not a valid pattern; use the syntax of `.gitignore` files"
     return ""
 
 
 @functools.lru_cache(maxsize=10_000)
 def _matches(patterns: tuple[str, ...], path: str) -> bool:
-    """Whether the patterns exclude one path, independently of the folders around it; folders end with `/`."""
+    """Whether the patterns exclude `path`, regardless of its enclosing folders. The path of a folder ends with `/`."""
     folders, files = _compiled(patterns)
     return folders.match_file(path) if path.endswith("/") else files.match_file(path)
 
 
 @functools.lru_cache(maxsize=16)
 def _compiled(patterns: tuple[str, ...]) -> tuple[PathSpec[Pattern], GitIgnoreSpec]:
-    """The matchers for folders, where the last pattern that matches decides, and for files, where a pattern of a
-    folder does not include files that others exclude."""
+    """The matchers for folders and for files. For a folder, the last pattern that matches decides. For a file, a
+    pattern that includes a folder again does not include files that other patterns exclude."""
     from pathspec import GitIgnoreSpec, PathSpec  # noqa: PLC0415 - most projects exclude nothing
 
-    # pathspec takes `a/**` for the folder `a/` itself, too, which Git does not.
+    # In pathspec, `a/**` also matches the folder `a/` itself; in Git it does not.
     contents = [pattern[:-1] if pattern.endswith("/**") else pattern for pattern in patterns]
-    with warnings.catch_warnings():  # of `re`, about `[[`
+    with warnings.catch_warnings():  # `re` warns about `[[`
         warnings.simplefilter("ignore")
         return PathSpec.from_lines("gitignore", contents), GitIgnoreSpec.from_lines(patterns)

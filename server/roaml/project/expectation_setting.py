@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the expectation of a property into a configuration file: `[verify.expect]`."""
+"""Writes the expectation of a property into the table `[verify.expect]` of a configuration file."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def expectation_edit(path: str, text: str, name: str, expected: str) -> TextEdit | None:
-    """The edit that sets the expectation of a property; `None` if the file is not valid TOML or has another form.
+    """The edit that sets the expectation of a property; `None` if the file is not valid TOML, or if no supported edit
+    gives the expected result.
 
     Args:
         path: the configuration file, which need not exist.
-        text: its text.
-        name: the property.
-        expected: such as `>= 0.9`.
+        text: the text of the file.
+        name: the name of the property.
+        expected: the expectation, such as `>= 0.9`.
     """
     prefix: Path = () if os.path.basename(path) == CONFIG_FILE else ("tool", "as2fm")
     try:
@@ -42,14 +43,15 @@ def expectation_edit(path: str, text: str, name: str, expected: str) -> TextEdit
 
 
 def _candidates(text: str, known: Places, keys: Path, expected: str) -> Iterator[TextEdit]:
-    """Edits for the forms in which a table can be written; only some are right."""
+    """Edits for the different forms in which TOML can express the table. The caller uses the first one with the correct
+    result."""
     *_, name = keys
     assert isinstance(name, str)
     pair = f"{_key(name)} = {_string(expected)}"
     if keys in known.values:
         yield TextEdit(known.values[keys], _string(expected))
     line_end = "\r\n" if "\r\n" in text else "\n"
-    for depth in (1, 2):  # the table `verify.expect`, or the table around it
+    for depth in (1, 2):  # the table `verify.expect`, or its enclosing table
         table, dotted = keys[:-depth], "".join(f"{_key(str(key))}." for key in keys[-depth:-1])
         span = known.values.get(table)
         if span is None:
@@ -59,7 +61,7 @@ def _candidates(text: str, known: Places, keys: Path, expected: str) -> Iterator
             at = span.start + 1
             yield TextEdit(Span(at, at), f" {dotted}{pair}{',' if inside else ' '}")
         else:
-            at = _line_end(text, span.end)  # behind a comment
+            at = _line_end(text, span.end)  # after a comment on the same line
             yield TextEdit(Span(at, at), f"{line_end}{dotted}{pair}")
     header = ".".join(_key(str(key)) for key in keys[:-1])
     gap = "" if not text.strip() else line_end if text.endswith("\n") else line_end * 2
@@ -69,14 +71,14 @@ def _candidates(text: str, known: Places, keys: Path, expected: str) -> Iterator
 
 
 def _line_end(text: str, offset: int) -> int:
-    """The end of a line, before its line break."""
+    """The offset of the end of the line that contains `offset`, before its line break."""
     end = text.find("\n", offset)
     end = len(text) if end < 0 else end
     return end - 1 if text[end - 1 : end] == "\r" else end
 
 
 def _with_value(table: Any, keys: Path, value: str) -> Any:
-    """A table with a changed value; the table itself if it is no table."""
+    """A copy of `table` with `value` at `keys`. If `table` is not a table, it is returned unchanged."""
     if not keys:
         return value
     if not isinstance(table, dict):

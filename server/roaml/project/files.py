@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading of the user's files: open buffers of an editor take precedence over the disk.
+"""Reads the user's files. Open buffers of an editor take precedence over the disk.
 
-- Never raises because of the content of the disk: the result for an unusable file is an `UnreadableReason`.
-- Opens only regular files (`roaml.disk`), and no file outside of the roots through a link.
-- A file is read again only when its size or modification time has changed.
+- The content of the disk never causes an exception: the result for an unusable file is an `UnreadableReason`.
+- Only regular files are opened (`roaml.disk`). A link to a file outside of the roots is not followed.
+- A file is read again only if its size or modification time has changed.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from roaml.disk import MAX_BYTES, Roots, UnreadableReason, read, status_of
 from roaml.text import SourceFile, decode
 
 MAX_CHARACTERS = 2_000_000
-"""The maximum number of characters of an analysed text; hand-written files are much smaller."""
+"""The maximum number of characters of a file that is analysed. Hand-written files are much smaller."""
 
 
 class DiskFiles:
-    """The disk, cached by size and modification time. A file to which a link out of `roots` leads is not read."""
+    """The files on the disk, cached by size and modification time. A link that leads out of `roots` is not followed."""
 
     def __init__(self, roots: Roots | None = None) -> None:
         self.roots = roots or Roots()
@@ -52,7 +52,7 @@ class DiskFiles:
 
 
 class Files:
-    """The view of one moment: `open_files` take precedence over the disk. Each path is looked up once."""
+    """The files at one moment. `open_files` take precedence over the disk. Each path is read at most once."""
 
     def __init__(self, disk: DiskFiles, open_files: Mapping[str, SourceFile]) -> None:
         self._disk = disk
@@ -72,7 +72,7 @@ class Files:
         return self._seen[path]
 
     def beside(self, path: str, extension: str) -> tuple[str, ...]:
-        """The other files with this extension in the folder of a file, sorted."""
+        """The sorted paths of the other files with the extension `extension` in the folder of the file `path`."""
         folder = os.path.dirname(path)
         if folder not in self._folders:
             self._folders[folder] = self._disk.listing(folder)

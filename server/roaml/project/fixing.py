@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Applies fixes: to one file, or repeatedly until none is left.
+"""Applies fixes to files, once or repeatedly until there are none left.
 
-- Overlapping fixes are not applied together: the later one waits for the next pass, which sees the result of the first.
-- Fixes that are applied without a review are not applied if they would cause an error, alone or together.
+- Overlapping fixes are not applied together: the later one is applied in the next pass, to the result of the first.
+- If fixes are applied without a review, fixes that would cause an error, alone or together, are left out.
 """
 
 from __future__ import annotations
@@ -17,45 +17,50 @@ from roaml.text import TextEdit, apply_edits
 MAX_PASSES = 100
 
 Choice = Callable[[Diagnostic], "Fix | None"]
-"""Selects the fix of a diagnostic to apply, if any."""
+"""Selects the fix of a diagnostic that is applied; `None` if none is."""
 
 
 def safe_fix(diagnostic: Diagnostic) -> Fix | None:
-    """The fix that may be applied without a review."""
+    """The fix that may be applied without a review; `None` if there is none."""
     return next((fix for fix in diagnostic.fixes if fix.safe), None)
 
 
 def preferred_fix(diagnostic: Diagnostic) -> Fix | None:
-    """The one obvious fix."""
+    """The fix that is marked as preferred; `None` if there is none."""
     return next((fix for fix in diagnostic.fixes if fix.preferred), None)
 
 
 def fix_edits(snapshot: Snapshot, path: str, choose: Choice) -> tuple[TextEdit, ...]:
-    """The edits of all chosen fixes of a file that do not touch each other."""
+    """The edits of the fixes of a file that `choose` selects. A fix that touches or overlaps an earlier one is left
+    out."""
     return tuple(edit for fix in _fixes(snapshot, path, choose) for edit in fix.edits)
 
 
 def fix_all(snapshot: Snapshot, paths: Iterable[str], choose: Choice, *, careful: bool) -> dict[str, str]:
-    """The texts of files after all selected fixes, applied until none is left. Unchanged files are left out.
+    """Path -> its text after the selected fixes have been applied until there are none left. Unchanged files are left
+    out.
 
     Args:
         snapshot: the state of the workspace.
-        paths: the files.
-        choose: selects the fix of a diagnostic to apply, if any.
-        careful: apply no fix that causes an error in its file or in another file of its systems.
+        paths: the files to fix.
+        choose: selects the fix of a diagnostic.
+        careful: whether fixes that cause an error in their file, or in another file of its systems, are left out.
     """
     texts: dict[str, str] = {}
     for path in dict.fromkeys(paths):
         for _ in range(MAX_PASSES):
-            mended = _pass(snapshot, path, choose, careful=careful)
-            if mended is None:
+            fixed = _pass(snapshot, path, choose, careful=careful)
+            if fixed is None:
                 break
-            texts[path], snapshot = mended
+            texts[path], snapshot = fixed
     return texts
 
 
 def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tuple[str, Snapshot] | None:
-    """The text after as many compatible fixes as possible, and the new snapshot. `None` if there is no fix."""
+    """The text of a file after one pass of fixes, and the new snapshot; `None` if no fix can be applied.
+
+    If all fixes together cause an error and `careful` is true, one fix that causes none is applied.
+    """
     source, fixes = snapshot.analysis.source(path), _fixes(snapshot, path, choose)
     if source is None:
         return None
@@ -71,7 +76,7 @@ def _pass(snapshot: Snapshot, path: str, choose: Choice, *, careful: bool) -> tu
 
 def _fixes(snapshot: Snapshot, path: str, choose: Choice) -> list[Fix]:
     fixes: list[Fix] = []
-    made: list[TextEdit] = []  # sorted; none overlaps another one's fix
+    made: list[TextEdit] = []  # sorted edits, which do not overlap
     for diagnostic in snapshot.checker.diagnostics(path):
         fix = choose(diagnostic)
         if fix is not None and not any(_touches_one_of(made, edit) for edit in fix.edits):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The current position of a symbol."""
+"""Finds the current position of a symbol."""
 
 from __future__ import annotations
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A cache for results that are computed from content.
 
-- A slot holds the last result of one computation for one subject (a path, or a path in a system) with its key; for
-  another key the result is recomputed and replaced. So memory grows with the files, not with the edits.
-- Keys are compared by value. A key that is compared by identity, such as a linked system, is kept alive.
-- Work may be abandoned between two computations (`Interrupted`); earlier results are kept.
+- A slot stores the last result of one computation for one subject (a path, or a path in a system), together with its
+  key. A different key replaces the result. So the memory grows with the number of files, not with the number of edits.
+- Keys are compared by value. The cache keeps a reference to a key that is compared by identity, such as a linked
+  system.
+- Work may be abandoned between two computations (`Interrupted`). Earlier results stay in the cache.
 """
 
 from __future__ import annotations
@@ -16,23 +17,24 @@ T = TypeVar("T")
 
 
 class Interrupted(BaseException):
-    """Raised to abandon work whose result is not needed. Like `KeyboardInterrupt` it is not an `Exception`, so that
-    nothing handles it as a failure."""
+    """Raised to abandon work whose result is not needed. Like `KeyboardInterrupt`, it is not an `Exception`, so
+    handlers of failures do not catch it."""
 
 
 def go_on() -> None:
-    """The checkpoint of work that is never abandoned."""
+    """A checkpoint that never abandons the work."""
 
 
 class Memo:
-    """`checkpoint` is called before each computation and may raise `Interrupted`."""
+    """A cache of results. `checkpoint` is called before each computation and may raise `Interrupted`."""
 
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
         self.checkpoint = checkpoint
         self._slots: dict[tuple[str, Hashable], tuple[Hashable, Any]] = {}
 
     def get(self, computation: str, subject: Hashable, key: Hashable, compute: Callable[[], T]) -> T:
-        """The result of `computation` for `subject` at `key`."""
+        """The result of `computation` for `subject`. If `key` differs from the key of the stored result, `compute` is
+        called."""
         slot = (computation, subject)
         known = self._slots.get(slot)
         if known is not None and known[0] == key:
@@ -44,7 +46,7 @@ class Memo:
         return result
 
     def copy(self) -> Memo:
-        """A copy of the cache, so that new results are added only to the copy."""
+        """A copy of the cache. New results of the copy are not added to this cache."""
         other = Memo()
         other._slots = dict(self._slots)
         return other

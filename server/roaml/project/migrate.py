@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Migrates a system from an older dialect to the current one (docs/spec/files.md#dialects).
 
-- Applies the fixes of the rules until none is left, so a migration changes only what the rules report: comments and
-  layout are kept.
-- Machine files get the extension and root of the current dialect, and the system files use the new names.
+- The fixes of the rules are applied until there are none left. So a migration changes only what the rules report, and
+  keeps comments and layout.
+- Machine files get the extension and the root element of the current dialect, and system files use the new names.
 - A file keeps its encoding.
 """
 
@@ -37,7 +37,8 @@ _OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
 
 @dataclass(frozen=True, slots=True)
 class Migration:
-    """The migration of a file. `new_path` differs from `path` if it is renamed; `data` is `after` in its encoding."""
+    """The migration of a file. `new_path` differs from `path` if the file is renamed; `data` is the text `after` in the
+    encoding of the file."""
 
     path: str
     new_path: str
@@ -47,9 +48,11 @@ class Migration:
 
 
 def migrate(systems: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], Snapshot]) -> tuple[Migration, ...]:
-    """The migrations of the files of some systems, without unchanged files.
+    """The migrations of the files of `systems`. Unchanged files are left out.
 
-    `snapshot_of` returns the systems with some texts instead of the content of the files.
+    Args:
+        systems: the paths of the system files.
+        snapshot_of: returns a snapshot of the systems in which some files have other texts: path -> text.
     """
     systems = tuple(systems)
     first = snapshot_of({}).analysis
@@ -95,7 +98,7 @@ def _with_current_root(analysis: Analysis, path: str) -> str:
 
 
 def _fixed(snapshot: Snapshot, path: str) -> str:
-    """The text with the first fix of each finding of the migration; overlapping fixes wait for the next pass."""
+    """The text after the first fix of each finding of the migration. Overlapping fixes are applied in the next pass."""
     return apply_edits(_text(snapshot.analysis, path), fix_edits(snapshot, path, _step))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths as text: their parts, and relative paths. Nothing here accesses the disk."""
+"""Computations with paths as text. No function accesses the disk."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def split_name(path: str) -> tuple[str, str]:
 
 
 def full(folder: str, written: str) -> str:
-    """The path that `written` means in a folder. `file://` URLs and `~` are taken as plain names."""
+    """The path to which `written` refers, relative to a folder. `file://` URLs and `~` are treated as plain names."""
     return os.path.normpath(os.path.join(folder, written.replace("\0", "\ufffd")))
 
 
 def resolve(base: str, src: str) -> str:
-    """The path that `src`, as written in the file `base`, means."""
+    """The path to which `src`, written in the file `base`, refers."""
     return full(os.path.dirname(base), src)
 
 
@@ -35,7 +35,7 @@ def is_below(path: str, folder: str) -> bool:
 
 
 def is_on_disk(path: str) -> bool:
-    """Whether a path could be that of a file; documents that were never saved have a URI."""
+    """Whether `path` can be the path of a file on the disk. Documents that were never saved have a URI instead."""
     return os.path.isabs(path)
 
 
@@ -45,7 +45,7 @@ def slashed(path: str) -> str:
 
 
 def relative(path: str, folder: str) -> str:
-    """A path relative to a folder, with `/`; the absolute path if it is on another drive."""
+    """The path relative to a folder, with `/`; the absolute path if the folder is on another drive."""
     try:
         return slashed(os.path.relpath(path, folder))
     except ValueError:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The user's settings, which are the same for editor and CI.
+"""The user's settings, which are the same in the editor and in CI.
 
-They are read from `as2fm.toml` or `[tool.as2fm]` of a `pyproject.toml` in the root folder. Errors are reported in that
-file (`roaml.project.configuration`); the valid settings are still used.
+The settings are read from `as2fm.toml`, or from `[tool.as2fm]` in a `pyproject.toml`, in the root folder. Errors are
+reported in that file (`roaml.project.configuration`), and the valid settings are still used.
 """
 
 from __future__ import annotations
@@ -32,19 +32,25 @@ SEVERITIES = {severity.label: severity for severity in Severity}
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Attributes:
-    roots: the folders that are searched for systems; if empty, the open or named folders.
-    ros_paths: folders with ROS interface packages.
-    exclude: the files that are ignored.
-    select: codes to report; empty means all. ignore: codes not to report.
-    severities: code -> the severity that replaces the default of the rule.
-    scheduler: "uniform" if `verify` assumes uniform choices even where a property requests the minimum
-        or maximum over all schedulers; otherwise empty.
-    expectations: property -> what `verify` expects of it.
-    limits: the maximum sizes of a system that is translated.
-    overrides: parameters that replace those in system files; not read from a configuration.
-    trees: the settings for trees that belong to no system.
-    origin: the path of the configuration file; "" if there is none.
+    """The user's settings.
+
+    Attributes:
+        roots: the folders that are searched for systems; if empty, the folders that are open in the editor or named on
+            the command line.
+        ros_paths: folders with ROS interface packages.
+        ament_prefixes: folders in which ROS packages are installed.
+        exclude: the files that are ignored.
+        select: the codes of the rules that are reported; empty for all rules.
+        ignore: the codes of the rules that are not reported.
+        severities: code -> the severity that replaces the default of the rule.
+        warnings_as_errors: whether warnings are reported as errors.
+        scheduler: "uniform" if `verify` assumes uniform choices even if a property requests the minimum or maximum over
+            all schedulers; otherwise "".
+        expectations: name of a property -> the result that `verify` expects.
+        limits: the maximum size of a system that is translated.
+        overrides: parameters that replace those in system files; they are not read from a configuration.
+        trees: the settings for trees that are not in a system.
+        origin: the path of the configuration file; "" if there is none.
     """
 
     roots: tuple[str, ...] = ()
@@ -69,14 +75,14 @@ def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ..
 
 
 @dataclass(frozen=True, slots=True)
-class SettingMistake:
+class SettingProblem:
     """An error in a configuration table.
 
     Attributes:
-        path: its place in the table: keys of tables and indices of lists.
-        message: the error and the correction.
-        is_key: whether the error is in the key, not in its value.
-        instead: names that are probably meant.
+        path: the place of the error in the table: keys of tables and indices of lists.
+        message: a message that states the error and the correction.
+        is_key: whether the key is wrong, not its value.
+        instead: similar valid names.
     """
 
     path: Path
@@ -87,28 +93,28 @@ class SettingMistake:
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """A folder in a configuration: as written at `path` of the table, and as an absolute path."""
+    """A folder in a configuration. `path` is its place in the table, `written` its text, `full` the absolute path."""
 
     path: Path
     written: str
     full: str
 
 
-def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[SettingMistake, ...]]:
-    """`base` with the values of a configuration table, and the errors in it.
+def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tuple[Settings, tuple[SettingProblem, ...]]:
+    """A copy of `base` with the valid values of a configuration table, and the errors in the table.
 
     Args:
         folder: the base of relative paths in the table.
     """
-    mistakes: list[SettingMistake] = []
+    problems: list[SettingProblem] = []
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in _KEYS:
             close = close_names(key, _KEYS)
-            known = did_you_mean(close) if close else f"; there are {', '.join(sorted(_KEYS))}"
-            mistakes.append(SettingMistake((key,), f"there is no setting `{key}`{known}", is_key=True, instead=close))
+            known = did_you_mean(close) if close else f"; valid settings are {', '.join(sorted(_KEYS))}"
+            problems.append(SettingProblem((key,), f"there is no setting `{key}`{known}", is_key=True, instead=close))
             continue
-        read = _KEYS[key]((key,), value, mistakes)
+        read = _KEYS[key]((key,), value, problems)
         if read is None:
             continue
         if key == "verify":
@@ -129,7 +135,7 @@ def settings_from(table: Mapping[str, Any], folder: str, base: Settings) -> tupl
             continue
         before = getattr(base, name)
         changes[name] = (*before, *read) if key == "ros-path" else type(before)(read) if key in _SETS else read
-    return replace(base, **changes), tuple(mistakes)
+    return replace(base, **changes), tuple(problems)
 
 
 def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
@@ -144,32 +150,32 @@ def folders_in(table: Mapping[str, Any], folder: str) -> Iterator[Folder]:
                     yield Folder((key, index), entry, full(folder, entry))
 
 
-_Reader = Callable[[Path, Any, list[SettingMistake]], Any]
-"""Reads the value at a path; records errors, and returns `None` for an unusable value."""
+_Reader = Callable[[Path, Any, list[SettingProblem]], Any]
+"""Reads the value at a path of the table, and adds errors to a list. The result is `None` for an unusable value."""
 
 
-def _strings(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
+def _strings(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[str, ...] | None:
     if isinstance(value, str):
         return (value,)
     if isinstance(value, list) and all(isinstance(entry, str) for entry in value):
         return tuple(value)
-    mistakes.append(SettingMistake(path, f"`{path[0]}` must be a list of strings"))
+    problems.append(SettingProblem(path, f"`{path[0]}` must be a list of strings"))
     return None
 
 
-def _patterns(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
-    read = _strings(path, value, mistakes)
+def _patterns(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[str, ...] | None:
+    read = _strings(path, value, problems)
     if read is None:
         return None
     wrong = [exclude.problem(pattern) for pattern in read]
     for place, problem in zip(_places(path, value), wrong, strict=True):
         if problem:
-            mistakes.append(SettingMistake(place, problem))
+            problems.append(SettingProblem(place, problem))
     return tuple(pattern for pattern, problem in zip(read, wrong, strict=True) if not problem)
 
 
 def _places(path: Path, value: str | list[str]) -> list[Path]:
-    """The places of strings that `_strings` reads."""
+    """The paths of the strings that `_strings` reads from `value`."""
     return [path] if isinstance(value, str) else [(*path, index) for index in range(len(value))]
 
 
@@ -179,107 +185,107 @@ def _rule_codes() -> Collection[str]:
     return BY_CODE
 
 
-def _codes(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
-    read = _strings(path, value, mistakes)
+def _codes(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[str, ...] | None:
+    read = _strings(path, value, problems)
     if read is None:
         return None
     for place, code in zip(_places(path, value), read, strict=True):
         if code not in _rule_codes():
-            mistakes.append(_no_rule(place, code))
+            problems.append(_no_rule(place, code))
     return tuple(code for code in read if code in _rule_codes())
 
 
-def _no_rule(place: Path, code: str, is_key: bool = False) -> SettingMistake:
+def _no_rule(place: Path, code: str, is_key: bool = False) -> SettingProblem:
     close = close_names(code, _rule_codes())
-    return SettingMistake(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
+    return SettingProblem(place, f"there is no rule `{code}`{did_you_mean(close)}", is_key, close)
 
 
-def _severities(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Severity] | None:
+def _severities(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Severity] | None:
     if not isinstance(value, dict):
-        mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table of rule codes and severities"))
+        problems.append(SettingProblem(path, f"`{path[0]}` must be a table of rule codes and severities"))
         return None
     severities = {}
     for code, label in value.items():
         if code not in _rule_codes():
-            mistakes.append(_no_rule((*path, code), code, is_key=True))
+            problems.append(_no_rule((*path, code), code, is_key=True))
         elif not isinstance(label, str) or label not in SEVERITIES:
             known = ", ".join(f"`{severity}`" for severity in SEVERITIES)
             close = close_names(label, SEVERITIES) if isinstance(label, str) else ()
             text = f"the severity of `{code}` must be one of {known}{did_you_mean(close)}"
-            mistakes.append(SettingMistake((*path, code), text, instead=close))
+            problems.append(SettingProblem((*path, code), text, instead=close))
         else:
             severities[code] = SEVERITIES[label]
     return severities
 
 
-def _boolean(path: Path, value: Any, mistakes: list[SettingMistake]) -> bool | None:
+def _boolean(path: Path, value: Any, problems: list[SettingProblem]) -> bool | None:
     if isinstance(value, bool):
         return value
-    mistakes.append(SettingMistake(path, f"`{path[0]}` must be true or false"))
+    problems.append(SettingProblem(path, f"`{path[0]}` must be true or false"))
     return None
 
 
-def _count(path: Path, value: Any, mistakes: list[SettingMistake]) -> int | None:
+def _count(path: Path, value: Any, problems: list[SettingProblem]) -> int | None:
     if isinstance(value, int) and not isinstance(value, bool) and value > 0:
         return value
-    mistakes.append(SettingMistake(path, f"`{path[0]}` must be a whole number above 0"))
+    problems.append(SettingProblem(path, f"`{path[0]}` must be a whole number above 0"))
     return None
 
 
-def _verify(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Any] | None:
-    """The table `verify`: fields of the settings."""
+def _verify(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Any] | None:
+    """The fields of `Settings` that the table `verify` sets, by name."""
     if not isinstance(value, dict):
-        mistakes.append(SettingMistake(path, f"`{path[0]}` must be a table"))
+        problems.append(SettingProblem(path, f"`{path[0]}` must be a table"))
         return None
     fields: dict[str, Any] = {}
-    for key, said in value.items():
+    for key, setting in value.items():
         if key == "expect":
-            fields["expectations"] = _expectations((*path, key), said, mistakes)
+            fields["expectations"] = _expectations((*path, key), setting, problems)
         elif key != "scheduler":
             close = close_names(key, ("scheduler", "expect"))
-            message = f"there is no setting `verify.{key}`; there are `expect` and `scheduler`"
-            mistakes.append(SettingMistake((*path, key), message, is_key=True, instead=close))
-        elif said not in SCHEDULERS:
+            message = f"there is no setting `verify.{key}`; valid settings are `expect` and `scheduler`"
+            problems.append(SettingProblem((*path, key), message, is_key=True, instead=close))
+        elif setting not in SCHEDULERS:
             message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"
-            mistakes.append(SettingMistake((*path, key), message))
+            problems.append(SettingProblem((*path, key), message))
         else:
-            fields["scheduler"] = said
+            fields["scheduler"] = setting
     return fields
 
 
-def _expectations(path: Path, value: Any, mistakes: list[SettingMistake]) -> dict[str, Comparison]:
-    """Property -> its expectation, in the table `verify.expect`."""
+def _expectations(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Comparison]:
+    """Name of a property -> its expectation in the table `verify.expect`."""
     if not isinstance(value, dict):
-        mistakes.append(SettingMistake(path, '`verify.expect` must be a table, such as `alarm = ">= 0.95"`'))
+        problems.append(SettingProblem(path, '`verify.expect` must be a table, such as `alarm = ">= 0.95"`'))
         return {}
     comparisons = {}
-    for name, said in value.items():
-        comparison = read_comparison(said) if isinstance(said, str) else None
+    for name, written in value.items():
+        comparison = read_comparison(written) if isinstance(written, str) else None
         if comparison is None:
             message = f'the expectation of `{name}` must compare with a number, such as ">= 0.95"'
-            mistakes.append(SettingMistake((*path, name), message))
+            problems.append(SettingProblem((*path, name), message))
         else:
             comparisons[name] = comparison
     return comparisons
 
 
-def _libraries(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[str, ...] | None:
-    read = _strings(path, value, mistakes)
+def _libraries(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[str, ...] | None:
+    read = _strings(path, value, problems)
     if read is None:
         return None
     places = [path] if isinstance(value, str) else [(*path, index) for index in range(len(read))]
     for place, name in zip(places, read, strict=True):
         if name not in LIBRARIES:
             close = close_names(name, LIBRARIES)
-            known = did_you_mean(close) or f"; there is {', '.join(f'`{library}`' for library in LIBRARIES)}"
-            mistakes.append(SettingMistake(place, f"there is no tree library `{name}`{known}", instead=close))
+            known = did_you_mean(close) or f"; valid names are {', '.join(f'`{library}`' for library in LIBRARIES)}"
+            problems.append(SettingProblem(place, f"there is no tree library `{name}`{known}", instead=close))
     return tuple(name for name in read if name in LIBRARIES)
 
 
-def _version(path: Path, value: Any, mistakes: list[SettingMistake]) -> tuple[int, int] | None:
+def _version(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[int, int] | None:
     match = _VERSION.match(value) if isinstance(value, str) else None
     if match is None:
-        mistakes.append(SettingMistake(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
+        problems.append(SettingProblem(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
         return None
     return 4, int(match[1])
 
@@ -309,7 +315,8 @@ _KEYS: dict[str, _Reader] = {
 
 
 def enclosing_root(path: str) -> str | None:
-    """The nearest folder around `path` that is a repository or contains a configuration of this tool."""
+    """The folder of `path`, or its nearest enclosing folder, that is a repository or contains an `as2fm.toml`; `None`
+    if there is none."""
     for folder in folders_above(path):
         if any(os.path.exists(os.path.join(folder, mark)) for mark in (".git", ".hg", CONFIG_FILE)):
             return folder
@@ -317,7 +324,7 @@ def enclosing_root(path: str) -> str | None:
 
 
 def folders_above(path: str) -> Iterator[str]:
-    """A folder, or the folder of a file, and all folders around it."""
+    """A folder, or the folder of a file, followed by all enclosing folders, the nearest first."""
     folder = path if os.path.isdir(path) else os.path.dirname(path)
     while True:
         yield folder

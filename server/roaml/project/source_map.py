@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The places in the models from which the parts of a JANI model come."""
+"""A map from the parts of a JANI model to the places in the models from which they are translated."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from roaml.text import Location
 
 
 class MappedPlace(TypedDict):
-    """A place in a file: `file` relative to the system file's folder with `/`, line and column from 1, the column in
-    code points."""
+    """A place in a file. `file` is relative to the folder of the system file, with `/`. Lines and columns begin at 1;
+    columns are code points."""
 
     file: str
     line: int
@@ -26,7 +26,7 @@ class VariablePlace(MappedPlace):
 
 
 class EdgePlace(MappedPlace):
-    """An edge; `action` is null if JANI has none."""
+    """An edge with its source location; `action` is null if the edge has no action."""
 
     location: str
     action: str | None
@@ -50,10 +50,10 @@ class SourceMap(TypedDict):
 
 
 def source_map(model: Model, analysis: Analysis, system: str) -> SourceMap:
-    """The sources of everything in a translated model.
+    """The places in the models from which the variables, automata and edges of a JANI model come.
 
     Args:
-        model: translated from the system, with an origin for every part.
+        model: a translation of the system, in which every part has an origin.
         analysis: the analysis from which it was translated.
         system: the path of the system file.
     """

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Suppression comments: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` for all codes.
+"""Finds suppression comments: `<!-- as2fm: ignore[code, other-code] -->`, or `ignore` without brackets for all codes.
 
-A comment applies to its line. A comment alone on a line applies to the element that follows it, including all its
-content.
+A comment applies to its line. A comment on a line without other content applies to the whole element that follows it.
 """
 
 from __future__ import annotations
@@ -21,7 +20,13 @@ _COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
 
 @dataclass(frozen=True, slots=True)
 class Suppression:
-    """`codes` is `None` for all. `comment` is the comment itself."""
+    """A suppression comment.
+
+    Attributes:
+        span: the text to which the comment applies.
+        codes: the codes that are suppressed; `None` for all codes.
+        comment: the position of the comment.
+    """
 
     span: Span
     codes: frozenset[str] | None
@@ -47,8 +52,11 @@ def suppressions(document: Document | None) -> tuple[Suppression, ...]:
 
 
 def covering(comments: Iterable[Suppression]) -> Callable[[int], tuple[Suppression, ...]]:
-    """Offset -> the comments that apply to findings that begin there; if several have the same range, the first. They
-    are indexed in a table, as there may be many."""
+    """A function from an offset to the comments that apply to findings that begin there.
+
+    If several comments have the same range and codes, only the first is returned. The function searches a sorted index,
+    because there may be many comments.
+    """
     opening: dict[int, list[Suppression]] = {}
     closing: dict[int, list[Suppression]] = {}
     for comment in {
@@ -86,7 +94,7 @@ def _collect(document: Document, nodes: Iterable[Node], suppressions: list[Suppr
 
 
 def _line(text: str, span: Span) -> Span:
-    """The line or lines of a span."""
+    """The span of the whole line or lines that contain `span`, without the last line break."""
     start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     ends = [i for i in (text.find("\n", span.end), text.find("\r", span.end)) if i >= 0]
     return Span(start, min(ends, default=len(text)))

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The translation of a checked system to plain SCXML and JANI: collects the input of the lowering from the files of one
-moment."""
+"""Collects the input of the translation of a checked system from an analysis."""
 
 from __future__ import annotations
 
@@ -26,13 +25,13 @@ from roaml.text import Location
 
 
 def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
-    """The properties in the files that a system lists, in their order."""
+    """The properties in the JANI property files that a system lists, in order."""
     files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.PROPERTIES and f.usable)
     return tuple(declared for file in files for declared in analysis.properties(file)[0])
 
 
 def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedProperty, ...]:
-    """The guarantees in XML in the files that a system lists, in their order, each with the assumptions of its file."""
+    """The guarantees in the XML property files that a system lists, in order, each with the assumptions of its file."""
     files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.XML_PROPERTIES and f.usable)
     linked = (analysis.linked_properties(file, path) for file in files)
     return tuple(guarantee for file in linked if file is not None for guarantee in _guarantees(file))
@@ -68,7 +67,8 @@ def _observed_variable(variable: LinkedVariable) -> ObservedVariable:
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
-    """The system file at `path`, which must have no errors, with all its files."""
+    """The input of the translation: the system in the file `path`, with all its files. The system must have no
+    errors."""
     system, file = analysis.system(path), analysis.system_file(path)
     assert system is not None
     assert file is not None
@@ -90,7 +90,7 @@ def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
 
 
 def size_of_translation(analysis: Analysis, path: str) -> Size | None:
-    """The size of the translation of a system, with or without errors; `None` if there is no system."""
+    """The size of the translation of a system, even if it has errors; `None` if there is no system in the file."""
     system, file = analysis.system(path), analysis.system_file(path)
     if system is None or file is None:
         return None

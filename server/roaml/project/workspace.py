@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a session over time: folders, open buffers, settings. `snapshot` freezes one moment.
+"""The folders, open buffers and settings of a session, which change over time. `snapshot` returns the state of one
+moment.
 
-- An open buffer takes precedence over the disk until it is closed, wherever the file is.
-- Folders are listed once and again after `refresh`; the content of files is checked again in every snapshot.
+- An open buffer takes precedence over the disk until it is closed, even for a file outside of the folders.
+- The folders are listed once, and again after `refresh`. Every snapshot checks whether the content of files has
+  changed.
 """
 
 from __future__ import annotations
@@ -13,68 +15,84 @@ from collections.abc import Callable, Iterable, Mapping
 from roaml.disk import Roots
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import CONFIG_FILE, FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
 from roaml.project.memo import Memo, go_on
+from roaml.project.paths import folder_of, full, is_below
 from roaml.project.settings import Settings
 from roaml.text import SourceFile, decode
 
 _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MODEL)
-"""Kinds of files that are checked only if a system lists them or the user names them."""
+"""The kinds of files that are checked only if a system lists them or the user names them."""
 
 
 class Snapshot:
-    """One moment: the models (`analysis`) and the diagnostics (`checker`). `listed` are the files in the folders, and
-    the documents of the editor that were never saved."""
+    """The state of a workspace at one moment: the models (`analysis`) and the diagnostics (`checker`).
+
+    Args:
+        roots: the open folders.
+        listed: the files in the folders, and the documents of the editor that were never saved.
+        opened: the open buffers.
+        again: returns a snapshot in which some files have other texts.
+    """
 
     def __init__(
         self,
         analysis: Analysis,
         checker: RuleRunner,
+        roots: tuple[str, ...],
         listed: tuple[str, ...],
         opened: Iterable[str],
         again: Callable[[Mapping[str, SourceFile]], Snapshot],
     ) -> None:
         self.analysis = analysis
         self.checker = checker
+        self.roots = roots
         self.listed = tuple(dict.fromkeys((*listed, *opened)))
         self._listed = listed
         self._again = again
 
     def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
-        """This snapshot with some texts instead of the content of the files."""
+        """A copy of this snapshot in which some files have other texts: path -> text."""
         return self._again({path: SourceFile(path, text) for path, text in texts.items()}) if texts else self
 
     def files(self) -> tuple[str, ...]:
-        """All files of the workspace that are checked: those of systems, and other supported ones, without
-        duplicates."""
+        """All files of the workspace that are checked, without duplicates: those of systems, and other supported
+        files."""
         analysis = self.analysis
         files = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
         for path in self._listed:
             if path not in files and analysis.kind(path) not in _NOT_BY_THEMSELVES:
                 files[path] = None
-        if origin := self.checker.settings.origin:  # wherever it lies
+        if origin := self.checker.settings.origin:  # the configuration may be outside of the folders
             files[origin] = None
         return tuple(path for path in files if analysis.source(path) is not None)
 
+    def configuration_of(self, system: str) -> str:
+        """The configuration file that applies to a system; it need not exist."""
+        around = [root for root in self.roots if is_below(system, root)]
+        return self.checker.settings.origin or full(max(around, key=len, default=folder_of(system)), CONFIG_FILE)
+
     def candidates(self) -> tuple[str, ...]:
-        """The files of the workspace that may be supported according to their names, and those of systems, without
-        duplicates."""
+        """The files of the workspace whose names are those of supported files, the files of systems, and the open
+        files, without duplicates."""
         analysis = self.analysis
         of_systems = (path for system in analysis.system_paths for path in analysis.files_of(system))
         return tuple(dict.fromkeys((*self._listed, *of_systems, *analysis.files.open_files)))
 
 
 class Workspace:
-    """Args:
-    roots: the open folders, which are searched for systems and other files.
-    settings: the user's settings.
-    systems: further system files to analyse.
-    packages: the folders that are searched for ROS packages; the roots if not given.
-    checkpoint: called repeatedly during all work; it may raise `Interrupted` to abandon the work.
+    """The files of a session.
+
+    Args:
+        roots: the open folders, which are searched for systems and other files.
+        settings: the user's settings.
+        systems: the paths of further system files to analyse.
+        packages: the folders that are searched for ROS packages; by default `roots`.
+        checkpoint: is called before each computation; it may raise `Interrupted` to abandon the work.
     """
 
     def __init__(
@@ -97,8 +115,8 @@ class Workspace:
         self._registry = self._new_registry()
 
     def open(self, path: str, text: str | bytes) -> None:
-        """Use the text of an editor's buffer, or the bytes of a file, instead of the content of the disk from now
-        on."""
+        """Use the text of an editor's buffer, or the bytes of a file, instead of the file on the disk until it is
+        closed."""
         source = decode(path, text) if isinstance(text, bytes) else SourceFile(path, text)
         self._open = {**self._open, path: source}
 
@@ -121,7 +139,7 @@ class Workspace:
         self._registry = self._new_registry()
 
     def look_for_packages_in(self, folders: Iterable[str]) -> None:
-        """Other folders that are searched for ROS packages."""
+        """Replace the folders that are searched for ROS packages."""
         self._packages = tuple(os.path.abspath(folder) for folder in folders)
         self._disk = self._new_disk()
         self._registry = self._new_registry()
@@ -131,7 +149,7 @@ class Workspace:
 
     def _snapshot(self, opened: Mapping[str, SourceFile], memo: Memo) -> Snapshot:
         def again(texts: Mapping[str, SourceFile]) -> Snapshot:
-            """A copy for hypothetical texts, with a separate cache, so that no current result is discarded."""
+            """A snapshot with other texts. It has a separate cache, so that it does not replace current results."""
             return self._snapshot({**opened, **texts}, memo.copy())
 
         files = Files(self._disk, opened)
@@ -142,10 +160,10 @@ class Workspace:
         registry = self._registry.reading(files.text)
         listed, settings = (*self._listed, *new), self.settings
         analysis = Analysis(files, registry, memo, systems, settings.overrides, settings.trees, listed)
-        return Snapshot(analysis, RuleRunner(analysis, self.settings), self._listed, new, again)
+        return Snapshot(analysis, RuleRunner(analysis, self.settings), self.roots, self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
-        """A new view of the disk. A named system is part of the workspace, with the folder that contains it after links
+        """A new view of the disk. The folder of each named system is part of the workspace, also its folder after links
         are resolved."""
         settings = self.settings
         named = (folder for path in self._named for folder in (os.path.dirname(path), _real_folder(path)))

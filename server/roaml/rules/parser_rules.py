@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules whose findings come from parsers: a code, a severity and a sentence for each."""
+"""The rules whose findings come from parsers; each is a code, a severity and a sentence."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roaml.rules.rule import FileContext, Rule
 
 
 def parser_findings(code: str, context: FileContext) -> Iterator[Finding]:
-    """The findings of the parsers in a file under `code`."""
+    """The findings of the parsers in a file that have the code `code`."""
     return (finding for finding in context.findings if finding.code == code)
 
 

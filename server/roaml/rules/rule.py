@@ -42,8 +42,15 @@ from roaml.xml_syntax import Document
 
 @dataclass(frozen=True, slots=True)
 class FileContext:
-    """Any file: its text, its tree if it is XML, and the findings of the parsers. `grammar` is `None` for other
-    files."""
+    """The context of rules about any kind of file.
+
+    Attributes:
+        findings: the findings of the parsers.
+        document: the XML tree; `None` if the file is not XML.
+        grammar: the grammar of a supported kind of XML file, otherwise `None`.
+        violations: where the file violates `grammar`.
+        older: whether the file is checked in the older dialect.
+    """
 
     source: SourceFile
     findings: tuple[Finding, ...]
@@ -55,11 +62,19 @@ class FileContext:
 
 @dataclass(frozen=True, slots=True)
 class MachineContext:
-    """A machine. `automata` are its automata in `system`; both are empty if the machine is not part of a system.
+    """The context of rules about a machine.
 
-    `all_structs` means that the system has no other structs than those in `struct_names`; `interface` finds ROS types
-    by kind and name as written; `gaps` are the facts that unreadable parts of the machine may contain; `repeated_types`
-    are ROS types that it uses and that are defined twice; `older` means that the older dialect is checked.
+    Attributes:
+        system: `None` if the machine is not part of a system.
+        automata: the automata of the machine in `system`.
+        listed_as: the sections of the system file that list the machine.
+        struct: returns the type of a struct by its name.
+        struct_names: the names of the known structs.
+        all_structs: whether the system has no other structs than those in `struct_names`.
+        interface: returns a ROS type by its kind and its name as written.
+        event_data: returns the type of the data of an event by its name.
+        gaps: the facts that unreadable parts of the machine may contain.
+        repeated_types: the ROS types that the machine uses and that are defined twice.
     """
 
     source: SourceFile
@@ -85,10 +100,18 @@ class MachineContext:
 
 @dataclass(frozen=True, slots=True)
 class TreeContext:
-    """A file of trees. `files` are the outlines of all tree files of the system, the executed one first; `gaps` are the
-    facts that unreadable parts of this file may contain. `forest` is given if the file belongs to no system.
-    `unknown_packages` are the ROS packages of includes that no folder around the file has. `refusals` are places and
-    reasons why nodes of a tree that is executed as by the library cannot be translated."""
+    """The context of rules about a file of trees.
+
+    Attributes:
+        files: the outlines of all tree files of the system, the executed file first.
+        missing_includes: included files that cannot be read, with the reasons.
+        interface: returns a ROS type by its kind and its name as written.
+        gaps: the facts that unreadable parts of this file may contain.
+        forest: the trees that are checked together with this file; `None` if the file belongs to a system.
+        unknown_packages: the ROS packages of includes that no folder around the file contains.
+        refusals: the places and reasons why nodes cannot be translated, for a tree that is executed as by
+            BehaviorTree.CPP.
+    """
 
     source: SourceFile
     document: Document
@@ -106,7 +129,15 @@ class TreeContext:
 
 @dataclass(frozen=True, slots=True)
 class SystemContext:
-    """A system file. `size` is the size of its translation, `limits` are the maximum sizes."""
+    """The context of rules about a system file.
+
+    Attributes:
+        files: the files that the system lists.
+        interface: returns a ROS type by its kind and its name as written.
+        gaps: the facts that unreadable parts of this file may contain.
+        size: the size of the translation.
+        limits: the maximum sizes.
+    """
 
     source: SourceFile
     document: Document
@@ -121,8 +152,13 @@ class SystemContext:
 
 @dataclass(frozen=True, slots=True)
 class StructsContext:
-    """A file of struct declarations, XML or JSON. `outlines` are the structs of the system; `complete` means that the
-    names of all structs are known."""
+    """The context of rules about a file of struct declarations, in XML or JSON.
+
+    Attributes:
+        declarations: the declarations in this file.
+        outlines: the structs of the system.
+        complete: whether the names of all structs are known.
+    """
 
     source: SourceFile
     declarations: tuple[StructDeclaration, ...]
@@ -132,8 +168,14 @@ class StructsContext:
 
 @dataclass(frozen=True, slots=True)
 class PropertiesContext:
-    """A property file in JANI. `variables` is None if it belongs to no system; `taken` are the names of properties in
-    the files that the system lists before it, with these files."""
+    """The context of rules about a property file in JANI.
+
+    Attributes:
+        value: the content of the file.
+        system: `None` if the file belongs to no system, as `variables`.
+        variables: the global variables of the translated system, by name.
+        taken: the names of properties in the files that the system lists before this file, with these files.
+    """
 
     source: SourceFile
     value: JsonValue
@@ -145,12 +187,14 @@ class PropertiesContext:
 
 @dataclass(frozen=True)
 class Rule:
-    """Attributes:
-    code: in kebab-case; a phrase for the problem.
-    summary: one sentence that states the problem.
-    file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
-    plain: whether the machine check also applies to plain SCXML.
-    facts: the type of the facts of its findings, for rules whose fixes read facts.
+    """A rule: its code, its default severity, and a check for each kind of file that it supports.
+
+    Attributes:
+        code: a phrase for the problem, in kebab-case.
+        summary: one sentence that states the problem.
+        file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
+        plain: whether the machine check also applies to plain SCXML.
+        facts: the type of the facts of the findings, for rules whose fixes read facts.
     """
 
     code: str
@@ -176,17 +220,18 @@ class Rule:
         tags: tuple[Tag, ...] = (),
         facts: Facts | None = None,
     ) -> Finding:
+        """A finding of this rule at `span`; the severity is the default of the rule unless `severity` is given."""
         assert facts is None or type(facts) is self.facts
         return Finding(self.code, span, message, severity, fixes, tuple(related), tags, facts)
 
 
 def replacements(span: Span, close: Iterable[str]) -> Iterator[Fix]:
-    """A fix for each name that is probably meant; the first is preferred."""
+    """A fix for each name in `close` that replaces the text at `span` by the name; the first fix is preferred."""
     for number, name in enumerate(close):
         yield Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=number == 0)
 
 
 def unused(name: str, names: Iterable[str]) -> str:
-    """`name` with the smallest number appended for which it is not in `names`."""
+    """`name` with a number appended: the smallest number from 2 on for which the result is not in `names`."""
     taken = set(names)
     return next(new for number in itertools.count(2) if (new := f"{name}_{number}") not in taken)

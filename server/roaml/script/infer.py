@@ -96,13 +96,13 @@ def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Script
 
 
 def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Why the value of a script cannot be a condition; `None` if it can."""
+    """The reason why the value of a script cannot be a condition; empty if it can."""
     if script.statements:
         yield from _truth(script.statements[-1], entry)
 
 
 def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
-    """The assignment that is the value of a condition: probably a comparison was intended."""
+    """Report an assignment that is the value of a condition, because a comparison was probably intended."""
     last = script.statements[-1] if script.statements else None
     if isinstance(last, Assignment) and not isinstance(last.value, Comparison):
         compared = "==" if last.operator in ("=", ":=") else ""
@@ -110,8 +110,8 @@ def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
 
 
 def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
-    """The statements before the last one that assign nothing: either an operator is missing, or they are
-    superfluous."""
+    """Report statements that assign nothing and are not the last one. Either an operator is missing after them, or they
+    are superfluous."""
     for statement in script.statements[:-1]:
         if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
             yield ScriptProblem(statement.span, "this statement has no effect; is an operator missing after it?")
@@ -144,8 +144,8 @@ def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProbl
 
 
 def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Why a value is not a truth value: reals are true unless 0, integers are true (1) or false (0), strings are
-    neither."""
+    """Why a value is neither true nor false. A real is false if it is 0 and otherwise true; an integer must be 1 or 0;
+    a string is neither true nor false."""
     if type_of(expr, entry) is Type.TEXT:
         yield ScriptProblem(expr.span, "a string is neither true nor false; compare it")
     elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):
@@ -160,7 +160,7 @@ def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[Scri
         yield ScriptProblem(span, f"`{expr.operator}` needs numbers, not a string")
     elif target in NUMBERS and value is Type.TEXT:
         if not (isinstance(expr.value, String) and _is_number(expr.value.value)):
-            yield ScriptProblem(expr.value.span, f"`{name}` is a number and keeps its type; this is a string")
+            yield ScriptProblem(expr.value.span, f"`{name}` is a number and keeps its type; it cannot become a string")
     elif target is Type.TEXT and value in NUMBERS and expr.operator == "+=":
         yield ScriptProblem(expr.value.span, f"`{name}` is a string, to which `+=` can add only strings")
     elif target is Type.INTEGER and expr.operator in (":=", "=") and _is_fraction(expr.value):

@@ -13,8 +13,8 @@ from roaml.text import Decoded
 
 @functools.lru_cache(maxsize=2048)
 def names_in(text: str) -> tuple[tuple[str, str], ...]:
-    """The names in a script, each with `read` or with the operator that assigns to it. A statement with a syntax error
-    creates its entry as well."""
+    """The names in a script, each with `read` or with the operator that assigns to it. The result includes the entries
+    that statements with syntax errors create."""
     script, problems = parse(Decoded(text, 0))
     names: list[tuple[str, str]] = []
     targets: set[int] = set()

@@ -70,7 +70,8 @@ _WORDS = {"and": "&&", "or": "||", "not": "!"}
 
 @dataclass(frozen=True, slots=True)
 class ScriptProblem:
-    """A syntax error in a script; `replacement` is the text that was probably intended at the place, or ""."""
+    """A syntax error in a script. `replacement` is the text that was probably intended instead of the text in `span`,
+    or ""."""
 
     span: Span
     message: str
@@ -78,7 +79,7 @@ class ScriptProblem:
 
 
 class _TokenKind(Vocabulary):
-    """The values are names of groups in `_TOKEN`, but for `END`."""
+    """The kind of a token. The values, except that of `END`, are names of groups in `_TOKEN`."""
 
     NUMBER = "number"
     NAME = "name"
@@ -100,7 +101,7 @@ class _Token(NamedTuple):
     end: int
 
 
-class _MistakeError(Exception):
+class _ScriptError(Exception):
     """Raised inside a statement and caught at its end."""
 
     def __init__(self, token: _Token, message: str, replacement: str = "") -> None:
@@ -131,7 +132,7 @@ class _Parser:
         self.at = 0
         self.depth = 0
         self.height = 0
-        """The height of the last expression."""
+        """The height of the tree of the expression that was read last."""
         self.problems: list[ScriptProblem] = []
 
     @property
@@ -178,9 +179,9 @@ class _Parser:
             expr = self.expression(_ASSIGNMENT)
             if self.token.text in (")", ":") or self.token.kind is _TokenKind.JUNK or self._begins_nothing():
                 raise self.unexpected()
-        except _MistakeError as mistake:
-            place = mistake.token
-            self.problems.append(ScriptProblem(self.span(place), mistake.message, mistake.replacement))
+        except _ScriptError as error:
+            place = error.token
+            self.problems.append(ScriptProblem(self.span(place), error.message, error.replacement))
             while self.token.kind is not _TokenKind.END and self.token.text != ";":
                 self.at += 1
             return ErrorExpr(self.since(start))
@@ -191,34 +192,34 @@ class _Parser:
         token = self.token
         return token.kind is _TokenKind.OPERATOR and token.text not in (";", "(", *UNARY)
 
-    def unexpected(self) -> _MistakeError:
+    def unexpected(self) -> _ScriptError:
         token = self.token
         text = token.text
         if token.kind is _TokenKind.END:
-            return _MistakeError(token, "the script ends where a value is expected")
+            return _ScriptError(token, "the script ends where a value is expected")
         if token.kind is _TokenKind.JUNK:
             return self._junk(token)
         if text in ASSIGNMENTS:
-            return _MistakeError(token, f"`{text}` needs the name of an entry on its left")
+            return _ScriptError(token, f"`{text}` needs the name of an entry on its left")
         if text == ")":
-            return _MistakeError(
+            return _ScriptError(
                 token, "this `)` closes nothing" if self.depth <= 1 else "a value is missing before `)`"
             )
         if text == ":":
-            return _MistakeError(token, "this `:` has no `?`")
-        return _MistakeError(token, f"a value is missing before `{text}`")
+            return _ScriptError(token, "this `:` has no `?`")
+        return _ScriptError(token, f"a value is missing before `{text}`")
 
-    def _junk(self, token: _Token) -> _MistakeError:
+    def _junk(self, token: _Token) -> _ScriptError:
         text = token.text
         if text.startswith('"'):
             plain = text.strip('"')
-            return _MistakeError(token, "a string needs single quotes", "" if "'" in plain else f"'{plain}'")
+            return _ScriptError(token, "a string needs single quotes", "" if "'" in plain else f"'{plain}'")
         if text.startswith("'"):
-            return _MistakeError(token, "the string has no closing `'`")
+            return _ScriptError(token, "the string has no closing `'`")
         if text[0] in "0123456789.":
-            return _MistakeError(token, f"`{text}` is not a number: a point needs digits on both sides")
+            return _ScriptError(token, f"`{text}` is not a number: a point needs digits on both sides")
         why = _INSTEAD.get(text)
-        return _MistakeError(
+        return _ScriptError(
             token,
             f"the script language does not support `{text}`" if why is None else f"unknown operator `{text}`: {why}",
         )
@@ -240,13 +241,13 @@ class _Parser:
         return left
 
     def _grow(self, height: int) -> None:
-        """Set the height of the expression that was read last: one more than that of its highest part."""
+        """Set the height of the expression that was read last. `height` is that of its highest part."""
         self.height = height + 1
         if self.height > MAX_DEPTH:
             raise self._too_deep()
 
-    def _too_deep(self) -> _MistakeError:
-        return _MistakeError(self.token, f"the script is nested more than {MAX_DEPTH} levels deep")
+    def _too_deep(self) -> _ScriptError:
+        return _ScriptError(self.token, f"the script is nested more than {MAX_DEPTH} levels deep")
 
     def _strength(self) -> int | None:
         token = self.token
@@ -273,7 +274,7 @@ class _Parser:
             yes = self.expression(_CONDITIONAL)
             height = self.height
             if not self.takes(":"):
-                raise _MistakeError(self.token, "`?` needs a `:` with the other value")
+                raise _ScriptError(self.token, "`?` needs a `:` with the other value")
             no = self.expression(_CONDITIONAL)
             self.height = max(height, self.height)
             return Conditional(self.since(start), left, yes, no)
@@ -296,7 +297,7 @@ class _Parser:
             self.at += 1
             inner = self.expression(_ASSIGNMENT)
             if not self.takes(")"):
-                raise _MistakeError(token, "this `(` is never closed")
+                raise _ScriptError(token, "this `(` is never closed")
             return inner
         self.height = 1
         match token.kind:
@@ -324,14 +325,14 @@ class _Parser:
 
     def _name(self, token: _Token) -> Expr:
         if token.text == "@":
-            raise _MistakeError(token, "`@` must be followed by the name of an entry of the root blackboard")
+            raise _ScriptError(token, "`@` must be followed by the name of an entry of the root blackboard")
         follows = self.token
         if token.text in _WORDS and follows.kind in (_TokenKind.NAME, _TokenKind.NUMBER, _TokenKind.STRING):
-            raise _MistakeError(
+            raise _ScriptError(
                 token, f"`{token.text}` is not an operator; write `{_WORDS[token.text]}`", _WORDS[token.text]
             )
         if follows.text == "(" and follows.start == token.end and token.text not in _WORDS:
-            raise _MistakeError(token, f"the script language has no functions, so `{token.text}(` is not a call")
+            raise _ScriptError(token, f"the script language has no functions, so `{token.text}(` is not a call")
         return Name(self.span(token), token.text)
 
     def _number(self) -> Expr:
@@ -344,16 +345,16 @@ class _Parser:
         ):
             word = token._replace(text=token.text + follows.text, end=follows.end)
             self.at += 1
-            raise _MistakeError(word, f"`{word.text}` is neither a number nor a name")
+            raise _ScriptError(word, f"`{word.text}` is neither a number nor a name")
         text = token.text
         if text[:2] in ("0x", "0X"):
             value: int | float = int(text, 16)
         elif text.isdigit():
             if len(text) > 20:
-                raise _MistakeError(token, f"`{text[:20]}…` does not fit into 64 bits")
+                raise _ScriptError(token, f"`{text[:20]}…` does not fit into 64 bits")
             value = int(text)
         else:
             value = float(text)
         if isinstance(value, int) and value not in _INT64:
-            raise _MistakeError(token, f"`{text}` does not fit into 64 bits")
+            raise _ScriptError(token, f"`{text}` does not fit into 64 bits")
         return Number(self.span(token), value)

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML as frozen data, and its writer. Depends on expressions, not on HL-SCXML, ROS or JANI."""
+"""Plain SCXML as immutable data, and its writer. The package depends on expressions, but not on HL-SCXML, ROS or
+JANI."""

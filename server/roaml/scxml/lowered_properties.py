@@ -1,24 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties as a document beside the plain SCXML of their system, for SCAN and other tools
-(docs/spec/plain-scxml.md#lowered-properties).
+"""Writes the properties of a system as a document for SCAN and other tools, in addition to the plain SCXML of the
+system (docs/spec/plain-scxml.md#lowered-properties).
 
-Ports name single sendings: an event, the automaton that sends it, and one that receives it. Formulas are in past-time
+Each port selects one event, the automaton that sends it, and one automaton that receives it. Formulas are in past-time
 metric temporal logic, with times in steps of the clock.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from roaml.expr.format import format_expr
 from roaml.expr.operators import Operator
 from roaml.expr.transform import map_children
-from roaml.expr.tree import Binary, Boolean, Expr, Name
+from roaml.expr.tree import Binary, Boolean, Expr, Name, walk
 from roaml.expr.types import Scalar, ScalarKind
 from roaml.observers.past import past_formula
-from roaml.observers.properties import And, Atom, Constant, Formula, FormulaProperty, Not, Or, Since, Window
+from roaml.observers.properties import RIGHT, And, Atom, Constant, Formula, FormulaProperty, Not, Or, Since, Window
 from roaml.scxml.model import Automaton, Body, If, Network, Send
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.scxml.writer import NOBODY, receivers_of
@@ -28,20 +29,21 @@ NOBODY_TEXT = f"""<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0" n
     <state id="init"/>
 </scxml>
 """
-"""The document of an automaton that receives what nobody receives."""
+"""The document of an automaton that is the target of events that no automaton receives."""
 
 
 class _NotWrittenError(Exception):
-    """A property cannot be written; the message says why."""
+    """Raised if a property cannot be written. The message states the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoweredProperties:
-    """
+    """The document with the properties of a system.
+
     Attributes:
-        text: the document; "" if no property can be written.
-        left_out: the names of the other properties, with the reasons.
-        names_nobody: whether a port needs `NOBODY_TEXT`.
+        text: the text of the document; "" if no property can be written.
+        left_out: the properties that cannot be written, with the reasons.
+        names_nobody: whether a port refers to the automaton of `NOBODY_TEXT`.
     """
 
     text: str
@@ -50,7 +52,7 @@ class LoweredProperties:
 
 
 def lowered_properties(network: Network, properties: Sequence[ObservedProperty]) -> LoweredProperties:
-    """The guarantees in `properties`, with their assumptions."""
+    """The document with the guarantees in `properties` and their assumptions, for the system `network`."""
     writer = _Writer(network)
     guarantees: list[str] = []
     assumes: dict[str, str] = {}
@@ -59,7 +61,7 @@ def lowered_properties(network: Network, properties: Sequence[ObservedProperty])
     for property_ in properties:
         try:
             if property_.assumptions and not is_shared:
-                raise _NotWrittenError("the assumptions of a document hold for all its properties")
+                raise _NotWrittenError("the properties of a document must have the same assumptions")
             assumes |= {assumed.name: writer.property(assumed) for assumed in property_.assumptions}
             guarantees.append(writer.property(property_))
         except _NotWrittenError as error:
@@ -74,9 +76,10 @@ def lowered_properties(network: Network, properties: Sequence[ObservedProperty])
 
 
 class _Writer:
-    """
+    """Writes the properties of one system.
+
     Attributes:
-        ports: the ports that were needed; name of a variable -> the lines of its port.
+        ports: the ports that the written properties use: name of a variable -> the lines of its port.
     """
 
     def __init__(self, network: Network) -> None:
@@ -89,11 +92,10 @@ class _Writer:
         self.names: dict[str, str] = {}
 
     def property(self, property_: ObservedProperty) -> str:
-        written = property_.property
-        formula = written.formula if isinstance(written, FormulaProperty) else past_formula(written)
+        formula = _formula_of(property_)
         if formula is None:
             raise _NotWrittenError(
-                "a formula of the past cannot require what has no deadline or what the end of a scope ends"
+                "a past-time formula cannot express a requirement that has no deadline, or that ends with its scope"
             )
         variables = {variable.id: (port, variable) for port in property_.ports for variable in port.variables}
 
@@ -103,12 +105,13 @@ class _Writer:
             return map_children(expr, replaced)
 
         conditions = {name: format_expr(replaced(condition)) for name, condition in property_.conditions.items()}
-        # SCAN asks for the formula at the end of a run; here and there, it is true if it was at every letter.
+        # SCAN evaluates the formula at the end of a run. With `historically`, it is true if it was true at every event.
         text = f"historically {formula_text(formula, conditions)}"
         return f'        <property id={quoteattr(property_.name)} logic="pmtl" expr={quoteattr(text)}/>'
 
     def variable(self, port: ObservedPort, variable: ObservedVariable, place: Name) -> Expr:
-        """What has the value of a variable: one of the document, or a disjunction of several."""
+        """The expression that replaces a variable of a property: a variable of the document, or a disjunction of
+        several."""
         sendings = [
             (event.name, automaton.name)
             for event in port.events
@@ -118,7 +121,8 @@ class _Writer:
         if not sendings:
             return Boolean(place.span, False) if variable.initial is None else variable.initial
         if variable.initial is not None and len(sendings) > 1:
-            raise _NotWrittenError(f"`{variable.id}` has the value that one of several machines sent last")
+            message = f"several machines send the value of `{variable.id}`; a port can have only one sender"
+            raise _NotWrittenError(message)
         names = [self.port(variable, event, origin) for event, origin in sendings]
         result: Expr = Name(place.span, names[0])
         for name in names[1:]:
@@ -126,14 +130,14 @@ class _Writer:
         return result
 
     def port(self, variable: ObservedVariable, event: str, origin: str) -> str:
-        """The name of the variable of a port."""
+        """The name of the variable of the port for `event` from the automaton `origin`; a new port is added."""
         target = self.receivers.get(event, [NOBODY])[0]
         head = f"event={quoteattr(event)} origin={quoteattr(origin)} target={quoteattr(target)}"
         if variable.initial is None:
             content = "<event_var id={}/>"
         else:
             if not isinstance(variable.type, Scalar) or variable.type.kind is ScalarKind.STRING:
-                raise _NotWrittenError(f"`{variable.id}` is neither a number nor a boolean value")
+                raise _NotWrittenError(f"the type of `{variable.id}` is neither a number nor a boolean")
             if not variable.parameter:
                 raise _NotWrittenError(f"the event `{event}` has no parameter for `{variable.id}`")
             content = (
@@ -149,6 +153,24 @@ class _Writer:
                 self.ports[name] = "\n".join((*lines, "        </scxml_event_send>"))
             number += 1
         return self.names[key]
+
+
+def _formula_of(property_: ObservedProperty) -> Formula | None:
+    written = property_.property
+    if isinstance(written, FormulaProperty):
+        return written.formula
+    events = {variable.id for port in property_.ports for variable in port.variables if variable.initial is None}
+    answer = property_.conditions.get(RIGHT)
+    return past_formula(written, answers_with_clock=answer is not None and not _is_monotonic(answer, events))
+
+
+def _is_monotonic(condition: Expr, events: AbstractSet[str]) -> bool:
+    """Whether a condition that is false stays false when the event variables become false."""
+    if isinstance(condition, Binary) and condition.operator in (Operator.AND, Operator.OR):
+        return _is_monotonic(condition.left, events) and _is_monotonic(condition.right, events)
+    if isinstance(condition, Name):
+        return True
+    return not any(isinstance(part, Name) and part.name in events for part in walk(condition))
 
 
 def _sent(automaton: Automaton) -> Iterator[str]:
@@ -170,7 +192,7 @@ def _sent_in(body: Body) -> Iterator[str]:
 
 
 def formula_text(formula: Formula, conditions: Mapping[str, str]) -> str:
-    """A formula in the notation that both SCAN and this project read: with parentheses around each operation."""
+    """A formula in the notation that both SCAN and this project read. Each operation is in parentheses."""
     match formula:
         case Atom(name):
             return f"{{ {conditions[name]} }}"

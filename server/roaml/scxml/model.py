@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML: the result of lowering HL-SCXML, and the input of the translation to JANI (docs/spec/plain-scxml.md).
+"""The types of plain SCXML, the result of lowering HL-SCXML and the input of the translation to JANI
+(docs/spec/plain-scxml.md).
 
-- Flat state machines that share no data and exchange events by name. There are no ROS elements, trees or structs:
-  variables are scalars, strings and arrays of these.
-- Frozen. Everything has an `origin`, the place in the models from which it comes, including added parts.
-- Expressions are trees of `roaml.expr` over flat names: `pose__x`, `_event.data.ros_fields__data`. Their own spans are
-  in the file of the origin around them.
-- Whole numbers are ints outside of initial values, however they were written (docs/spec/expressions.md#whole-reals).
+- A system consists of flat state machines that share no data and exchange events by name. There are no ROS elements,
+  trees or structs. Variables are scalars, strings and arrays of these.
+- All data is immutable. Every part has an `origin`, the place in the models from which it comes. Parts that the
+  translation adds have one, too.
+- Expressions are trees of `roaml.expr` with flat names, such as `pose__x` or `_event.data.ros_fields__data`. The spans
+  of an expression refer to the file of the enclosing `origin`.
+- Outside of initial values, numbers without a fraction are ints, even if they are written as reals
+  (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -22,8 +25,7 @@ from roaml.text import Location
 
 
 class Role(enum.Enum):
-    """The role of an automaton in the system; the translation to JANI treats some roles differently
-    (docs/spec/jani.md#discarding)."""
+    """The role of an automaton in the system. The translation to JANI depends on it (docs/spec/jani.md#discarding)."""
 
     MACHINE = "machine"
     TREE_ROOT = "root of the behavior tree"
@@ -33,7 +35,7 @@ class Role(enum.Enum):
 
 
 class EventRole(enum.Enum):
-    """The purpose of an event; the translation to JANI treats some differently (docs/spec/jani.md#event-automata)."""
+    """The purpose of an event. The translation to JANI depends on it (docs/spec/jani.md#event-automata)."""
 
     PLAIN = "plain"
     """An event that a receiver discards if it does not wait for the event."""
@@ -57,10 +59,11 @@ class EventRole(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class ScxmlEvent:
-    """An event by name. Events of the same name have the same role.
+    """An event. Events with equal names have the same role.
 
     Attributes:
-        after: the event that must not wait for its receivers when this one is received; "" for none.
+        after: the name of an event; while it waits for its receivers, this event cannot be received. "" if there is no
+            such event.
     """
 
     name: str
@@ -80,7 +83,7 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """`location` is a variable, an element of one, or the `.length` of either."""
+    """An assignment. `location` is a variable, an element of an array, or the `.length` of either."""
 
     location: Expr
     value: Expr
@@ -110,7 +113,8 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """The first branch whose condition holds is executed, otherwise `otherwise`."""
+    """A conditional statement: the first branch whose condition holds is executed. If there is none, `otherwise` is
+    executed."""
 
     branches: tuple[Branch, ...]
     otherwise: Body
@@ -123,7 +127,8 @@ Body: TypeAlias = tuple[Statement, ...]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The target of a transition and the statements on the way; the probabilities of one transition add up to 1."""
+    """A target of a transition, with the statements that are executed before the target is entered. The probabilities
+    of the targets of a transition add up to 1."""
 
     state: str
     probability: float
@@ -133,8 +138,8 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A transition that is taken on `event` (`None` for none) if `cond` holds and no earlier transition on the same
-    event is taken."""
+    """A transition. It is taken on `event` if `cond` holds and no earlier transition on the same event is taken.
+    `event` is `None` for an eventless transition."""
 
     event: ScxmlEvent | None
     cond: Expr | None
@@ -153,11 +158,11 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Automaton:
-    """One state machine. Entering a state executes its `entry`; that of the initial state is executed once at the
-    start.
+    """One state machine. The `entry` of a state is executed when the state is entered; the `entry` of the initial state
+    is also executed once at the start.
 
     Attributes:
-        thread_of: the automaton of the machine whose thread this is; "" for other automata.
+        thread_of: for an action thread, the name of the automaton of its machine; "" for other automata.
     """
 
     name: str
@@ -184,7 +189,7 @@ class Network:
 
 
 def statements(body: Body) -> Iterator[Statement]:
-    """All statements of a body in document order, including those inside of an `If`."""
+    """All statements of a body in document order, including those inside an `If`."""
     for statement in body:
         yield statement
         if isinstance(statement, If):

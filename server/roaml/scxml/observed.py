@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of plain automata: the observed parts of the events that they send (docs/spec/xml-properties.md)."""
+"""Properties of automata in plain SCXML, with the events and parameters that they observe
+(docs/spec/xml-properties.md)."""
 
 from __future__ import annotations
 
@@ -15,12 +16,12 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class PortEvent:
-    """An event of the translation.
+    """An event of the translation that a port observes.
 
     Attributes:
         name: the name of the event.
         sender: the only automaton whose events are observed; "" for all automata.
-        constants: the values that follow from the event itself: kind of variable -> value.
+        constants: the values that the event itself determines: kind of variable and value.
     """
 
     name: str
@@ -30,10 +31,12 @@ class PortEvent:
 
 @dataclass(frozen=True, slots=True)
 class ObservedVariable:
-    """Attributes:
-    kind: the kind of the constant of an event, if it is one.
-    parameter: the parameter of the events; "" if it is not read from a parameter.
-    initial: the value before the first event; `None` for a variable that is true when the event is sent.
+    """A variable whose value the events of a port determine.
+
+    Attributes:
+        kind: the kind of the variable. If an event has a constant of this kind, the constant is the value.
+        parameter: the parameter of the events that contains the value; "" if there is none.
+        initial: the value before the first event; `None` for a variable that is true only when the event is sent.
     """
 
     id: str
@@ -51,12 +54,13 @@ class ObservedPort:
 
 @dataclass(frozen=True, slots=True)
 class ObservedProperty:
-    """
+    """A property with the ports that it observes.
+
     Attributes:
-        conditions: what the inputs of its observer are, as expressions over the ids of the variables.
-        comment: what the property requires, as a sentence.
-        assumptions: the properties that are assumed for it.
-        expected: what is expected of its probability.
+        conditions: input of the observer -> its expression over the ids of the variables.
+        comment: a sentence that states the property.
+        assumptions: the properties that are assumed to hold.
+        expected: the expected probability; `None` if there is no expectation.
     """
 
     name: str

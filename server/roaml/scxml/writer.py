@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML as documents that other tools read (docs/spec/plain-scxml.md#documents): one for each automaton.
+"""Writes plain SCXML as documents for other tools, one for each automaton (docs/spec/plain-scxml.md#documents).
 
-- Every `<data>` has its type in a comment before it, because SCXML has no types.
-- A `<send>` is written once for each automaton that receives the event, with that automaton as its target; `NONE` if
-  there is none.
-- A transition with several targets becomes a state that draws a number to select a target, so a new number is drawn
-  each time the transition is taken (docs/spec/plain-scxml.md#documents).
+- A comment before every `<data>` contains its type, because SCXML has no types.
+- A `<send>` is written once for each automaton that receives the event, with that automaton as its target. Without a
+  receiver, the target is `NONE`.
+- A transition with several targets becomes a state that draws a random number to select a target. So a new number is
+  drawn each time the transition is taken (docs/spec/plain-scxml.md#documents).
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ NAMESPACE = "http://www.w3.org/2005/07/scxml"
 NOBODY = "NONE"
 DRAWN = "__RAND__"
 DELAY = "1"
-"""The delay of the clock's event to itself, so that time passes only when no other event waits."""
+"""The delay of the event that the clock sends to itself. Because of it, time passes only if no other event waits."""
 _INDENT = "    "
 
 
 class WrittenLine(NamedTuple):
-    """A line without its terminator, and the place in the models from which it comes."""
+    """A line without its line end, and the place in the models from which it comes."""
 
     text: str
     origin: Location
@@ -37,20 +37,20 @@ Lines = Iterator[WrittenLine]
 
 
 def write(network: Network) -> Iterator[tuple[str, str]]:
-    """(automaton name, text of its document) for each automaton, in order."""
+    """For each automaton, in order, its name and the text of its document."""
     for automaton, lines in write_lines(network):
         yield automaton.name, "".join(f"{line.text}\n" for line in lines)
 
 
 def write_lines(network: Network) -> Iterator[tuple[Automaton, Lines]]:
-    """The documents line by line, each line with its origin."""
+    """For each automaton, in order, the lines of its document with their origins."""
     receivers = receivers_of(network)
     for automaton in network.automata:
         yield automaton, _Writer(automaton, receivers).document()
 
 
 def receivers_of(network: Network) -> dict[str, list[str]]:
-    """Event -> names of the automata that wait for it somewhere, in order."""
+    """Event -> the names of the automata that have a transition on it, in order."""
     receivers: dict[str, dict[str, None]] = {}
     for automaton in network.automata:
         for state in automaton.states:
@@ -111,7 +111,7 @@ class _Writer:
             yield from self.draw(identifier, transition)
 
     def draw(self, identifier: str, transition: Transition) -> Lines:
-        """The state that chooses one of several targets."""
+        """The state named `identifier` that draws a random number to select a target of `transition`."""
         origin = transition.origin
         assign = WrittenLine(f"<assign{_attributes(location=self.drawn, expr='Math.random()')}/>", origin)
         lines = [*_element("onentry", {}, (assign,), origin)]
@@ -186,7 +186,7 @@ def _fresh(name: str, taken: Iterable[str]) -> str:
 def _element(
     name: str, attributes: Mapping[str, str], content: Iterable[WrittenLine], origin: Location, always: bool = False
 ) -> Lines:
-    """An element; without content or attributes it is omitted unless `always`."""
+    """The lines of an element. An element without content and attributes is left out, unless `always` is true."""
     start, lines = f"<{name}{_attributes(**attributes)}", list(content)
     if lines:
         yield WrittenLine(f"{start}>", origin)

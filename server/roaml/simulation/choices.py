@@ -37,7 +37,7 @@ class Outcome:
 
     Attributes:
         probability: the probability of the outcome if the choice is taken.
-        text: how it differs from other outcomes; "" if the choice has only one.
+        text: the difference from other outcomes; "" if the choice has only one.
         decision: the decision that takes the choice with this outcome.
     """
 
@@ -123,7 +123,7 @@ def _outcomes(vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legen
 
 
 def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> Iterator[str]:
-    """The consequences of the destinations that were drawn from several."""
+    """The consequences of each destination that was drawn from several ones."""
     clients = [instance.automaton.name for instance in legend.layout.instances]
     for part, way in zip(parts, taken, strict=True):
         if sum(chance > 0 for chance in part.probabilities) > 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the steps of a run and keeps the parts of the state that variables do not contain: messages, calls, ticks."""
+"""Reads the steps of a run and keeps the parts of the state that are not in variables: messages, calls and ticks."""
 
 from __future__ import annotations
 
@@ -37,10 +37,12 @@ from roaml.views.turns import is_inner
 
 
 class Follower:
-    """Attributes:
-    position: the number of the steps read so far.
-    events: the reader of events, with the last parameters of each event.
-    time: the time of the clock in s; `None` if the model has no clock.
+    """Reads the steps of a run, in their order.
+
+    Attributes:
+        position: the number of the steps read so far.
+        events: the reader of events, with the last parameters of each event.
+        time: the time of the clock in s; `None` if the model has no clock.
     """
 
     def __init__(
@@ -75,8 +77,8 @@ class Follower:
         return self._is_machine[instance]
 
     def is_named(self, event: str, name: str) -> bool:
-        """Whether an event has this name, or belongs to a topic, service or action of this name, with or without the
-        leading `/`."""
+        """Whether `name` denotes an event: it is the name of the event, or of its topic, service or action, with or
+        without the leading `/`."""
         interface = interface_name(event, self._names)
         return name in (event, self.events.name(event)) or (bool(interface) and interface == f"/{name.lstrip('/')}")
 
@@ -198,7 +200,7 @@ class Follower:
 
 
 def _state_before(location: str, resting: frozenset[str]) -> str:
-    """The state with the handler that contains a location: the longest one with which the name of the location
-    begins."""
+    """The state that the name of a location begins with, followed by its handler: the longest one, if there are
+    several."""
     states = [state for state in resting if location.startswith(f"{state}-")]
     return max(states, key=len, default=location)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A change of the state by hand that the model itself does not make: a message is sent, a variable is set."""
+"""A change of the state by hand, which the model itself does not make: a message is sent, or a variable is set."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from roaml.smc.registers import REAL
 
 @dataclass(frozen=True, slots=True)
 class Intervention:
-    """
+    """A change of the state.
+
     Attributes:
         event: the event that is sent; "" if only variables are set.
-        values: the variables of the network that are set, with all elements of arrays.
+        values: the variables of the network that are set; an array is given with all elements.
     """
 
     event: str
@@ -31,9 +32,10 @@ class Intervention:
 
     @staticmethod
     def from_json(row: Any) -> Intervention:
-        """
+        """The inverse of `to_json`.
+
         Raises:
-            KeyError, TypeError, ValueError: `to_json` has not returned this.
+            KeyError, TypeError, ValueError: `row` was not written by `to_json`.
         """
         values = tuple((RecordedVariable(int(i), str(name)), _plain(value)) for i, name, value in row["values"])
         return Intervention(str(row["event"]), values)
@@ -48,7 +50,7 @@ def _plain(value: Any) -> Plain:
 
 
 def is_free(kernel: Kernel, legend: Legend, event: str) -> bool:
-    """Whether an event can be sent: the last one of its name has been received."""
+    """Whether an event can be sent: the previous one with its name has been received."""
     buffer = _buffer(legend, event)
     return buffer < 0 or legend.locations[kernel.location(buffer)][1] != RECEIVED
 
@@ -73,7 +75,7 @@ def _fits(value: Plain, storage: Storage, shape: tuple[int, ...]) -> bool:
 def intervene(
     kernel: Kernel, legend: Legend, variables: Iterable[tuple[RecordedVariable, Storage]], change: Intervention
 ) -> None:
-    """Change the state of a kernel; the random numbers of the following steps stay the same. The kernel counts the
+    """Change the state of a kernel. The random numbers of the following steps stay the same, and the kernel counts the
     change as a step."""
     *_, goal, draws, _ = kernel.save()
     place = [kernel.location(number) for number in range(len(legend.layout.instances))]
@@ -85,7 +87,7 @@ def intervene(
         for offset, cell in enumerate(_cells(value)):
             cells[storage.base + offset] = cell
     buffer = _buffer(legend, change.event)
-    if (buffer, RECEIVED) in legend.locations:  # not if nobody receives the event
+    if (buffer, RECEIVED) in legend.locations:  # an event that nobody receives has no such location
         place[buffer] = legend.locations.index((buffer, RECEIVED))
     kernel.restore(place, ints, reals)
     arrays, counts, (status, must_look, _, still, _), _, loop = kernel.save()

@@ -49,7 +49,7 @@ ByHand = Decision | Intervention
 
 
 class EnabledEdges(NamedTuple):
-    """The enabled edges of an automaton for an action: for each, its first way and the probabilities of its ways."""
+    """The enabled edges of an automaton for an action. For each: its first way, and the probabilities of its ways."""
 
     instance: int
     edges: tuple[tuple[int, tuple[float, ...]], ...]
@@ -60,7 +60,7 @@ class Enabled:
     """An enabled synchronisation vector.
 
     Attributes:
-        ties: the number of choices with the same effect as each combination of edges.
+        ties: for each combination of edges, the number of choices with the same effect.
         slots: the enabled edges of each participating automaton.
     """
 
@@ -73,7 +73,7 @@ class Run:
     """A run, and a position in it.
 
     Args:
-        decisions: the decisions of the first steps, `None` where the seed decides. It decides all later steps.
+        decisions: the decisions of the first steps, `None` if the seed decides a step. It decides all later steps.
 
     Attributes:
         start: the variables of the model before the first step.
@@ -140,7 +140,7 @@ class Run:
         """Take a step. If it differs from the step taken here before, the steps after the position are discarded.
 
         Returns:
-            `None` if no step is possible, or no step changes anything.
+            The step; `None` if no step is possible, or no step changes anything.
 
         Raises:
             RunError: the decision is not possible here.
@@ -182,7 +182,7 @@ class Run:
         self.go_to(position)
 
     def go_to(self, position: int) -> None:
-        """Go to the state after the first `position` of the steps taken."""
+        """Go to the state after the first `position` steps, which have been taken before."""
         nearest = max((at for at in self._snapshots if at <= position), default=0)
         if position < self.position or nearest > self.position:
             self._restore(nearest)
@@ -231,7 +231,7 @@ class Run:
         return bool(self._interventions) and self._interventions[0] <= self.position
 
     def is_free(self, event: str) -> bool:
-        """Whether an event can be sent by hand: the last one of its name has been received."""
+        """Whether an event can be sent by hand: the previous one with its name has been received."""
         return is_free(self._kernel, self.legend, event)
 
     def _check_possible(self, decision: ByHand) -> None:
@@ -252,8 +252,8 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """Store the verdict on the property after a step; a decided property stays decided, and a state that was
-        changed by hand decides nothing."""
+        """Store the verdict on the property after a step. A decided property stays decided. A state that was changed by
+        hand decides nothing."""
         if status == FAULTY or (self.status == UNKNOWN and not self.is_changed):
             self.status = status
             self._check()
@@ -262,7 +262,7 @@ class Run:
 
     @property
     def end(self) -> End | None:
-        """Why no further step changes anything; `None` if one does."""
+        """The reason why no further step changes anything; `None` if one does."""
         return End(self._kernel.standstill()) if self.has_ended else None
 
     def standstill(self) -> Standstill:

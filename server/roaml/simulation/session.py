@@ -151,7 +151,7 @@ class Session:
 
     @property
     def end(self) -> End | None:
-        """Why no further step changes anything; `None` if one does."""
+        """The reason why no further step changes anything; `None` if one does."""
         return self._run.end
 
     @property
@@ -217,7 +217,7 @@ class Session:
         return self._run.locations()
 
     def parameters(self, event: str) -> dict[str, Plain]:
-        """The parameters with which an event was sent last."""
+        """The parameters with which an event was last sent."""
         return self._follower.events.parameters(event)
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
@@ -295,7 +295,7 @@ class Session:
             outcome: the outcome of the choice; a hash of the seed and the position decides if `None`.
 
         Returns:
-            `None` if no step changes anything.
+            The step; `None` if no step changes anything.
         """
         if choice is not None:
             return self._advance((outcome or self._drawn(choice)).decision)
@@ -305,13 +305,13 @@ class Session:
         """Change the state by hand, as a step of the run. From then on, the run decides no property.
 
         Raises:
-            RunError: the model has no such event or variable, or the last event of this name has not been received.
+            RunError: the model has no such event or variable, or the previous event of this name has not been received.
             FaultError: a guard has no value in the new state.
         """
         self._advance(change)
 
     def is_free(self, event: str) -> bool:
-        """Whether an event can be sent by hand: the last one of its name has been received."""
+        """Whether an event can be sent by hand: the previous one with its name has been received."""
         return self._run.is_free(event)
 
     def _advance(self, decision: ByHand | None) -> TraceStep | None:
@@ -326,10 +326,10 @@ class Session:
         return step
 
     def upcoming(self) -> TraceStep | None:
-        """The next step that is taken unless a choice is made by hand; the position does not change.
+        """The step that is taken next unless a choice is made by hand. The position does not change.
 
         Returns:
-            `None` if no step changes anything.
+            The step; `None` if no step changes anything.
 
         Raises:
             FaultError: the model executes an undefined operation in this step.
@@ -355,7 +355,7 @@ class Session:
         """Take steps up to the first one for which `is_reached` is true.
 
         Returns:
-            Whether such a step was taken; not if no step changes anything before, or after `limit` steps.
+            Whether such a step was taken. It was not if no step changes anything, or after `limit` steps.
         """
         for _ in range(limit):
             step = self.step()
@@ -384,35 +384,35 @@ class Session:
         return [automaton.name for automaton in self._automata]
 
     def turn(self) -> bool:
-        """Take steps until a state machine has handled an event completely; returns whether one has.
+        """Take steps until a state machine has handled an event completely; return whether one has.
 
         Automata added by the translation, and nodes of the tree that only tick others, have no turns.
         """
         return self.go_on(self.ends_turn)
 
     def ends_turn(self, step: TraceStep) -> bool:
-        """Whether a state machine has handled an event completely after a step."""
+        """Whether a state machine has completed the handling of an event with a step."""
         return any(
             self._follower.is_machine(part.instance) and part.destination.location in self._resting[part.instance]
             for part in step.parts
         )
 
     def tick(self) -> bool:
-        """Take steps until the root of the tree has answered a tick; returns whether it has."""
+        """Take steps until the root of the tree has answered a tick; return whether it has."""
         return self.go_on(ends_tick)
 
     def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
-        """Take steps until the time of the clock is at least `seconds`; returns whether it is."""
+        """Take steps until the time of the clock is at least `seconds`; return whether it is."""
         return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
 
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
-        """Take steps until an event is sent, named as in plain SCXML or by its topic, service or action; returns
-        whether it was sent."""
+        """Take steps until an event is sent; return whether it was. The event is named as in plain SCXML, or by its
+        topic, service or action."""
         events = self.events_named(event)
         return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
-        """Take steps until the property is decided; returns whether it is."""
+        """Take steps until the property is decided; return whether it is."""
         return self.is_decided or self.go_on(lambda _: self.is_decided, limit)
 
     def back(self, steps: int = 1) -> None:
@@ -420,7 +420,7 @@ class Session:
         self.jump(max(0, self.position - steps))
 
     def jump(self, position: int) -> None:
-        """Go to the state after `position` steps; takes new steps if there are fewer."""
+        """Go to the state after `position` steps, and take new steps if there are fewer."""
         self._run.go_to(min(position, len(self._run.steps)))
         followers = {**self._followers, **self._recent}
         nearest = max(at for at in followers if at <= self.position)

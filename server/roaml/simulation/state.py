@@ -56,7 +56,7 @@ class NodeState:
 
 @dataclass(frozen=True, slots=True)
 class EventState:
-    """An event with the parameters with which it was sent last.
+    """An event with the parameters with which it was last sent.
 
     Attributes:
         name: the name of the event, without the name of the client of a service or action.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run decides about several properties, besides the one of its session."""
+"""The verdicts of a run on several properties, in addition to the property of its session."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ class Decided(NamedTuple):
 
 
 class Verdicts:
-    """Follows a run, and notes where each property is decided."""
+    """Follows a run, and stores where each property is decided."""
 
     def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
         self._followers = [_PropertyFollower(checker, asked, seed, trace) for asked in checker.asked]
 
     def follow(self, decisions: Sequence[ByHand | None], position: int, has_ended: bool) -> list[Decided]:
-        """Follow the run up to a position; returns the properties that are decided exactly there.
+        """Follow the run up to a position; return the properties that are decided exactly there.
 
         Args:
-            decisions: those of the steps of the run.
-            has_ended: whether no step changes anything there.
+            decisions: the decisions of the steps of the run.
+            has_ended: whether no step changes anything at the position.
         """
         for follower in self._followers:
             follower.follow(decisions, position, has_ended)
@@ -46,7 +46,7 @@ class Verdicts:
         return [each for each in decided if each is not None and each.position == position]
 
     def discard(self, position: int) -> None:
-        """Forget the run after `position`, because other steps follow."""
+        """Discard the run after `position`, because other steps follow."""
         for follower in self._followers:
             follower.discard(position)
 
@@ -77,7 +77,7 @@ class _PropertyFollower:
         while self.decided is None and self._position < position:
             decision = decisions[self._position]
             if isinstance(decision, Intervention):
-                return  # what follows says nothing about the model
+                return  # later steps say nothing about the model
             if decision is None:
                 until = self._position + 1
                 while until < position and decisions[until] is None:

@@ -13,11 +13,11 @@ from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
 STATUS_NAMES = {number: name for name, number in STATUSES.items()}
-"""The number with which a node answers -> the name of the status."""
+"""The number that a node returns -> the name of the status."""
 
 
 def who(automaton: str) -> str:
-    """The name of an automaton in messages."""
+    """The name of an automaton that messages show."""
     role = automaton_role(automaton)
     match role:
         case Role.CLOCK:
@@ -46,10 +46,10 @@ def resting(automaton: Automaton) -> frozenset[str]:
 
 
 def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[str]) -> str:
-    """A description of what a node does when it sends or receives an event of the tree; "" for other events.
+    """A description of how a node sends or receives an event of the tree; "" for other events.
 
     Args:
-        actor: the name of the node in messages.
+        actor: the name of the node that messages show.
         parameters: the parameters of the event; empty if it has not been sent yet.
     """
     tree = read_tree_event(event)

@@ -4,7 +4,8 @@
 - Types are known in advance, so each instruction is for ints or for reals.
 - Conditions become jumps; `∧`, `∨`, `⇒` and `ite` evaluate only the operands that they need, as `roaml.jani.semantics`
   defines.
-- Constant expressions are computed here. An expression that always fails stays in the code: it may never be reached.
+- Constant expressions are computed here. An expression that always fails is compiled, too, because it may never be
+  reached.
 - Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is padded with zeros.
 - A function is compiled where it is called.
 """
@@ -44,7 +45,7 @@ _LOGICAL = (BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES)
 
 
 class ExpressionAssembler:
-    """Writes expressions."""
+    """Writes the code of expressions."""
 
     def __init__(self, cells: CellAssembler) -> None:
         self.tape = cells.tape
@@ -79,7 +80,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ scalars
 
     def value(self, node: Expression, names: StorageNames, into: int = -1) -> Operand:
-        """Compute a scalar; with `into`, in that register."""
+        """Write code that computes a scalar; with `into`, in that register. Return the register with the value."""
         match node:
             case Integer():
                 if abs(node.value) > MAX_INT64:
@@ -118,7 +119,7 @@ class ExpressionAssembler:
                 raise FaultError(unsupported(node), node.origin)
 
     def stored(self, node: Expression, kind: str, names: StorageNames, into: int = -1) -> Operand:
-        """Compute a scalar as a value of `kind`."""
+        """Like `value`, with the result converted to `kind`."""
         if kind != REAL:
             return self.value(node, names, into)
         if shapes.kind(node, names) == REAL:
@@ -154,7 +155,7 @@ class ExpressionAssembler:
         self, test: Expression, then: Expression, otherwise: Expression, names: StorageNames, into: int
     ) -> Operand:
         kind = REAL if REAL in (shapes.kind(then, names), shapes.kind(otherwise, names)) else shapes.kind(then, names)
-        # Not directly into the target: the branches may read it while it is written.
+        # The branches may read the target, so they do not write directly into it.
         register = self.tape.temporary(kind)
         no, end = Label(), Label()
         self.jump(test, names, no, False)
@@ -213,7 +214,7 @@ class ExpressionAssembler:
             if node.operator is BinaryOperator.IMPLIES:
                 break
         parts.reverse()
-        # a ⇒ b is ¬a ∨ b; one operand with the value `decisive` decides.
+        # a ⇒ b is ¬a ∨ b. An operand with the value `decisive` decides the result.
         decisive = node.operator is not BinaryOperator.AND
         is_implication = node.operator is BinaryOperator.IMPLIES
         if when is decisive:
@@ -309,13 +310,13 @@ class ExpressionAssembler:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
     def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
-        """A copy of an array in separate registers."""
+        """An array that is stored in new registers."""
         region = Region(kind, shape, self.tape.room(kind, product(shape)))
         self.fill(node, region, names)
         return region
 
     def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
-        """Store an array into a region without offset; a smaller one is padded with zeros."""
+        """Write code that stores an array in a region without offset. A smaller array is padded with zeros."""
         match node:
             case ArrayValue(elements):
                 if len(elements) > into.shape[0]:
@@ -356,7 +357,7 @@ class ExpressionAssembler:
                 self.cells.copy(self.region(node, names), into, watch, node)
 
     def put(self, node: Expression, cell: Region, names: StorageNames, watch: int) -> None:
-        """Store a scalar into a single cell."""
+        """Write code that stores a scalar in a single cell."""
         if watch < 0 and cell.offset < 0:
             self.stored(node, cell.kind, names, cell.base)
             return
@@ -365,7 +366,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ functions
 
     def called(self, node: Call, names: StorageNames) -> tuple[Expression, StorageNames]:
-        """The body of a function, and the meaning of its names."""
+        """The body of a function, and the meanings of names in it."""
         function = names.called(node)
         bound: dict[str, Meaning] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments -> bytecode: in one part, or in two, first the computation and then the storing.
+"""Assignments -> bytecode. An assignment is written at once, or in two parts: first the computation, later the storing.
 
-A value that is stored in an array of the same or a larger shape is padded with zeros.
+A value that is stored in an array of a larger shape is padded with zeros.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
 class Later(NamedTuple):
-    """An assignment whose value is computed: its target, the register of the value, and the variable to notify."""
+    """An assignment whose value is computed and not stored yet: its target, the register of the value, and the number
+    of the variable that changes."""
 
     place: Region
     register: int
@@ -28,7 +29,7 @@ class Later(NamedTuple):
 
 
 class AssignmentAssembler:
-    """Writes assignments."""
+    """Writes the code of assignments."""
 
     def __init__(self, expressions: ExpressionAssembler) -> None:
         self.tape = expressions.tape
@@ -36,7 +37,7 @@ class AssignmentAssembler:
         self.expressions = expressions
 
     def assign(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> None:
-        """`target := value`, at once."""
+        """Write the code of `target := value`."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
         place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
@@ -70,7 +71,7 @@ class AssignmentAssembler:
         if place.offset < 0 and not isinstance(value, (ArrayValue, ArrayConstructor, Conditional)):
             self.expressions.fill(value, place, names, watch)
             return
-        # The stored value may depend on the current one.
+        # The new value may depend on the current one, so it is computed in a copy.
         copy = self.expressions.materialized(value, place.kind, place.shape, names)
         self.write_early(place, copy.base, watch)
 
@@ -87,7 +88,7 @@ class AssignmentAssembler:
                 self.tape.emit(Op.NOTE, watch)
 
     def early(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> Later:
-        """Compute the value and the target of an assignment; `finish` assigns it."""
+        """Write code that computes the value and the target of an assignment. `finish` stores the value."""
         self.tape.place(target.origin or origin)
         storage, accesses = self.assigned(target, names)
         place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
@@ -109,7 +110,7 @@ class AssignmentAssembler:
         self.write_early(later.place, later.register, later.watch)
 
     def reset(self, storage: Storage) -> None:
-        """Reset a variable to its initial value."""
+        """Write code that resets a variable to its initial value."""
         for i in range(product(storage.shape)):
             cells: Sequence[Number] = self.tape.reals if storage.kind == REAL else self.tape.ints
             value = self.tape.constant(storage.kind, cells[storage.base + i])

@@ -44,7 +44,7 @@ class TraceProblem(NamedTuple):
 class Task(NamedTuple):
     """The traces `first` to `first + size - 1`, none longer than `max_steps`, by `scheduler` (0: uniform).
 
-    `questions` are the numbers of those that are asked about them.
+    `questions` are the numbers of the questions that the traces answer.
     """
 
     payload: Payload
@@ -58,8 +58,9 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
-    """The result of a batch for one question: for each trace FALSE, TRUE or UNKNOWN, why it has ended for the question
-    (`End`), its steps until then, its `goal.Activity`, and for questions about rewards its reward."""
+    """The result of a batch for one question. For each trace it contains the verdict (FALSE, TRUE or UNKNOWN), the
+    reason why the trace has ended for the question (`End`), the number of steps until then, the `goal.Activity` and,
+    for questions about rewards, the reward."""
 
     verdicts: bytes
     ends: bytes
@@ -77,7 +78,7 @@ class BatchOutcome:
 
 
 def pack(compiled: Compiled) -> Payload:
-    """A compiled model in the form in which it is sent to workers."""
+    """A compiled model in the form that is sent to workers."""
     digest = hashlib.sha256()
     for part in (compiled.program, compiled.goal):
         for field in fields(part):
@@ -88,7 +89,7 @@ def pack(compiled: Compiled) -> Payload:
 
 
 class _Kernels(threading.local):
-    """The last kernel of each thread: a kernel simulates one trace at a time, and some executors run batches in
+    """The last kernel of each thread. A kernel simulates one trace at a time, and some executors run batches in
     threads."""
 
     digest = ""
@@ -99,7 +100,7 @@ _kernels = _Kernels()
 
 
 def kernel_of(payload: Payload) -> Kernel:
-    """The kernel of a payload in this thread; the last one is kept."""
+    """The kernel of a payload for this thread. The last kernel is kept for the next call."""
     kernel = _kernels.kernel
     if kernel is None or payload.digest != _kernels.digest:
         compiled: Compiled = pickle.loads(payload.data)
@@ -112,13 +113,13 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
     """Run the traces of a batch.
 
     Args:
-        pulse: called regularly with the number of the trace and its steps; what it raises ends the batch.
+        pulse: called regularly with the number of the trace and its steps; an exception that it raises ends the batch.
     """
     return run_on(kernel_of(task.payload), task, pulse)
 
 
 def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
-    """Run the traces of a batch on a kernel that is not used otherwise at the same time."""
+    """Run the traces of a batch on a kernel that nothing else uses at the same time."""
     kernel.choose(task.questions)
     rows = [(bytearray(), bytearray(), array("q"), bytearray()) for _ in task.questions]
     rewards = array("d")
@@ -146,22 +147,23 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
 
 
 class StoppedError(Exception):
-    """The batch is no longer needed."""
+    """Raised in a worker when its batch is no longer needed."""
 
 
 _stopping: Event | None = None
 
 
 def start_worker(stopping: Event) -> None:
-    """
+    """Prepare a worker process.
+
     Args:
         stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
             that is killed may leave an incomplete result, for which the main process would wait for ever.
     """
     global _stopping  # noqa: PLW0603
     _stopping = stopping
-    # Only the main process handles interrupts from the keyboard, and notifies its workers. If it is killed, they end as
-    # well.
+    # Only the main process handles interrupts from the keyboard, and notifies its workers. If the main process is
+    # killed, the workers end as well.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     main = multiprocessing.parent_process()
     if main is not None:
@@ -174,7 +176,8 @@ def _end_with(sentinel: int) -> None:
 
 
 def run_in_worker(task: Task) -> BatchOutcome:
-    """
+    """Run a batch in a worker process.
+
     Raises:
         StoppedError: the batch is no longer needed.
     """

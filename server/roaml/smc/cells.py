@@ -10,17 +10,18 @@ from roaml.smc.registers import INT, REAL, Operand, Region, Tape, product
 
 
 class CellAssembler:
-    """Writes code that copies computed values. `watch` is the number of a variable that is written, or -1."""
+    """Writes code that copies computed values. `watch` is the number of the variable that is written, or -1 if its
+    changes are not tracked."""
 
     def __init__(self, tape: Tape) -> None:
         self.tape = tape
 
     def end(self) -> None:
-        """The end of a piece of code whose result is not used."""
+        """Write the end of a piece of code whose result is not used."""
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
 
     def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
-        """Code for an expression without a value, which fails if it is reached."""
+        """Write code for an expression that has no value: it fails if it is reached."""
         self.tape.place(node.origin)
         self.tape.emit(Op.FAULT, code, value, size)
         return Operand(kind, self.tape.temporary(kind))
@@ -46,7 +47,7 @@ class CellAssembler:
         return Operand(REAL, register)
 
     def load(self, cell: Region, into: int = -1) -> Operand:
-        """The value of a single cell."""
+        """Write code that reads a single cell. Return the register with the value."""
         if cell.offset < 0:
             return self.moved(Operand(cell.kind, cell.base), into)
         register = self.target(cell.kind, into)
@@ -75,9 +76,9 @@ class CellAssembler:
             self.write(zero, Region(into.kind, (), into.base + i, into.offset), watch)
 
     def copy(self, source: Region, into: Region, watch: int, node: Node) -> None:
-        """Copy an array to a region without offset."""
+        """Write code that copies an array to a region without offset."""
         if len(source.shape) != len(into.shape):
-            raise FaultError("arrays of different dimensions", node.origin)
+            raise FaultError("the arrays have different numbers of dimensions", node.origin)
         if source.kind != into.kind and into.kind == REAL:
             for i in range(into.size):
                 value = self.load(Region(source.kind, (), source.base + i, source.offset))

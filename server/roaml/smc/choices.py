@@ -40,11 +40,11 @@ class Extreme:
 
     Attributes:
         value: the estimate, or the exact value.
-        bounds: contain the probability that some scheduler achieves: with the method's confidence, or certainly if all
-            states were explored.
+        bounds: an interval that contains a probability which some scheduler achieves: with the confidence of the
+            method, or certainly if all states were explored.
         found: the method: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
-        scheduler: a description of the scheduler that achieves it; empty for the best of all schedulers.
-        traces: the number of traces for it.
+        scheduler: a description of the scheduler that achieves the value; empty if all schedulers were considered.
+        traces: the number of traces on which the estimate is based.
     """
 
     value: float
@@ -60,10 +60,10 @@ class Extreme:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """The knowledge about schedulers other than the uniform one.
+    """What is known about schedulers other than the uniform one.
 
     Attributes:
-        agreement: why all have the same value; empty if that is unknown.
+        agreement: the reason why all schedulers have the same value; empty if that is unknown.
         minimum, maximum: the extreme values of schedulers; `None` if unknown.
         tried: the number of schedulers that were sampled.
     """
@@ -91,7 +91,8 @@ def look_at_choices(
     pulse: Pulse | None = None,
     ignored: Registers = NO_REGISTERS,
 ) -> Choices:
-    """
+    """Determine whether other schedulers may have other values, and which ones.
+
     Args:
         ignored: registers that neither the goal nor a choice depends on.
         answer: the answer under uniform choices.
@@ -133,7 +134,7 @@ def look_at_choices(
 
 
 def _exact(bounds: Bounds) -> Extreme | None:
-    """An extreme whose bounds are close enough to be called exact."""
+    """The extreme that exact bounds give; `None` if the bounds are too far apart to be called exact."""
     if bounds.half_width > 5e-7:
         return None
     middle = (bounds.lower + bounds.upper) / 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A JANI model -> a `Program`, once for all traces and properties: the code of guards and ways, and the tables."""
+"""A JANI model -> a `Program`, once for all traces and properties: code for guards and destinations, and tables."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
 @dataclass(frozen=True, slots=True)
 class Legend:
-    """The meaning of the numbers in a program; workers do not need it.
+    """The meanings of the numbers in a program. Workers do not need them.
 
     Attributes:
         locations: instance and name of each location.
@@ -188,7 +188,7 @@ class Compilation:
         return start
 
     def _has_hazard(self, group: list[Assignment], names: StorageNames) -> bool:
-        """Whether one of the simultaneous assignments reads what an earlier one writes."""
+        """Whether one of the simultaneous assignments reads a variable that an earlier one writes."""
         written: set[str] = set()
         for assignment in group:
             if written & self.network.reads.by(assignment, names):
@@ -211,7 +211,7 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """The changes between the locations of each way."""
+        """Write the tables of the changes between the source and the target of each way."""
         self.move_start, self.move_slot, self.move_count = [0], list[int](), list[int]()
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):
@@ -231,7 +231,8 @@ class Compilation:
             self.way_move.append(known[source, target])
 
     def _counts(self, location: int) -> dict[int, int]:
-        """For each slot the number of enabled edges, or -1 - group if that depends on guards."""
+        """For each slot, the number of its enabled edges in a location, or `-1 - group` if that number depends on
+        guards."""
         counts = {}
         for group in range(self.group_start[location], self.group_start[location + 1]):
             steps = self.group_steps[group]
@@ -242,7 +243,7 @@ class Compilation:
     # ------------------------------------------------------------ the end
 
     def program(self, marks: Marks) -> Program:
-        """The program with all code that was written so far."""
+        """The program with all code that has been written so far."""
         gates: dict[tuple[int, ...], list[int]] = {}
         for number, slot in enumerate(self.network.slots):
             if slot.vectors:
@@ -327,7 +328,13 @@ class Compilation:
         return Legend(self.layout, self.network.locations, self.ways, self.network.vectors, self.network.slots)
 
     def _write_transient(self) -> tuple[int, Ints]:
-        """Write code that resets transient variables, and for each location the values that they have in it."""
+        """Write code that resets transient variables, and code for each location that sets the values that they have
+        there.
+
+        Returns:
+            The start of the first code, -1 if there are no transient variables; and the start of the code of each
+            location, -1 if the location sets no values.
+        """
         model = self.model
         code = [-1] * len(self.network.locations)
         scopes: list[tuple[StorageNames, Iterable[Storage], Mapping[str, bool]]] = [
@@ -353,7 +360,8 @@ class Compilation:
         return settle, _ints(code)
 
     def _watch_tables(self) -> tuple[Ints, Ints, Ints, Ints, Ints]:
-        """The instances whose guards read each watched variable, and the groups of each location of these instances."""
+        """Two tables: the instances whose guards read each watched variable, and the groups of these guards in each
+        location of these instances."""
         readers: dict[tuple[int, int], dict[int, list[int]]] = {}
         for (location, _), group in self.group_of.items():
             number, _ = self.network.locations[location]
@@ -397,7 +405,7 @@ def _ranges(lists: Iterable[list[int]]) -> tuple[Ints, Ints]:
 
 
 def _by_index(assignments: tuple[Assignment, ...]) -> list[list[Assignment]]:
-    """The assignments of each index, in the order of their execution."""
+    """The assignments grouped by their index, in the order of their execution."""
     groups: dict[int, list[Assignment]] = {}
     for assignment in assignments:
         groups.setdefault(assignment.index, []).append(assignment)

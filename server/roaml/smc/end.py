@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Why a trace has ended.
 
-In any model: the goal is decided, no step is possible (DEADLOCK), only steps without any change are possible (IDLE), or
-there were too many steps (CUT). A caller that knows the meaning of the automata marks their locations, which explains
-why a trace without further changes ends: of the marks of all current locations, the smallest number is used.
+In any model, a trace ends because the goal is decided, because no step is possible (DEADLOCK), because only steps
+without any change are possible (IDLE), or because there were too many steps (CUT). A caller that knows the meaning of
+the automata marks their locations. The marks explain why a trace without further changes ends: of the marks of all
+current locations, the smallest number is used.
 """
 
 from __future__ import annotations
@@ -57,4 +58,4 @@ _TEXTS = {
 
 
 Marks: TypeAlias = Mapping[tuple[str, str], End]
-"""(automaton, location) -> the meaning of a trace that ends there."""
+"""(automaton, location) -> why a trace ends there, if it never leaves the location."""

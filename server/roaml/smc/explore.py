@@ -19,7 +19,7 @@ seconds."""
 
 
 class ExploredState(NamedTuple):
-    """The locations of all instances, and the values of all variables."""
+    """The current locations of all instances, and the values of all variables."""
 
     place: tuple[int, ...]
     ints: tuple[int, ...]
@@ -52,7 +52,7 @@ class TooManyChoicesError(Exception):
 
 
 class StateFaultError(Exception):
-    """An undefined operation is executed in a state."""
+    """A state executes an undefined operation."""
 
     def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
@@ -65,7 +65,8 @@ class Explorer:
     Args:
         limit: the maximum number of combinations of edges and destinations that are enumerated in one state. With n
             automata of k edges on one action there are kⁿ of them.
-        ignored: registers that neither the goal nor a choice depends on; states that differ only there are the same.
+        ignored: registers that neither the goal nor a choice depends on; states that differ only there are treated as
+            the same state.
     """
 
     def __init__(self, compiled: Compiled, limit: int = MAX_COMBINATIONS, ignored: Registers = NO_REGISTERS) -> None:
@@ -83,15 +84,16 @@ class Explorer:
         return self._kernel.look()
 
     def choices(self, state: ExploredState) -> Iterator[tuple[int, list[Successor]]]:
-        """The choices of a state with their successors, and the number of otherwise equal choices.
+        """The choices of a state. For each: the number of choices that are equal to it, and its successors.
 
         Raises:
-            StateFaultError: one of them executes an undefined operation.
+            StateFaultError: a choice executes an undefined operation.
             TooManyChoicesError: there are more than `limit`; nothing has been enumerated.
         """
         self._kernel.restore(*state)
         vectors = self._kernel.choices()
-        # Each combination of edges is a choice, and each combination of their destinations a successor of it.
+        # Each combination of edges is a choice, and each combination of their destinations is a successor of this
+        # choice.
         if sum(math.prod(sum(map(len, edges)) for edges in slots) for _, _, slots in vectors) > self._limit:
             raise TooManyChoicesError
         for vector, times, slots in vectors:
@@ -110,7 +112,7 @@ class Explorer:
                 yield times, branches
 
     def reachable(self, limit: int) -> dict[ExploredState, int]:
-        """All states with the verdict on the goal; states after a decided one are not explored.
+        """All states with their verdicts on the goal. States after a decided one are not explored.
 
         Raises:
             TooManyStatesError: there are more than `limit`.

@@ -8,17 +8,17 @@ from typing import Any
 from roaml.jani.node import Origin
 
 MODEL_FAULT = "model-fault"
-"""The code of undefined operations, and of models that cannot be run."""
+"""The code of the findings about undefined operations, and about models that cannot be run."""
 
 
 class FaultError(Exception):
-    """A model or property cannot be run, or executed an undefined operation.
+    """A model or property cannot be run, or has executed an undefined operation.
 
     Attributes:
         message: one sentence without a full stop.
         origin: the position of the invalid part, if known.
-        trace: the number of the trace in which it happened; `None` if it was found before.
-        code: the rule that documents it.
+        trace: the number of the trace in which the operation was executed; `None` if there was no trace.
+        code: the rule that documents the error.
     """
 
     def __init__(

@@ -60,7 +60,7 @@ _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, Fil
 
 
 def faults_in(property_: Property, step: int | None = None) -> Iterator[FaultError]:
-    """Why sampling cannot decide a property of this form, with the positions of the unsupported parts.
+    """The reasons why sampling cannot decide a property of this form, with the positions of the unsupported parts.
 
     Args:
         step: the step of the clock in ns; `None` if there is no clock.
@@ -71,16 +71,18 @@ def faults_in(property_: Property, step: int | None = None) -> Iterator[FaultErr
 
 
 def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:
-    """The bounds on time and rewards, anywhere in a property, and why JANI models do not support them."""
+    """The bounds on time and rewards, anywhere in a property, and the reason why each is not supported. Each pair is
+    (reason, bound)."""
     for formula in walk(property_.expression):
         if isinstance(formula, (UnaryPath, BinaryPath)):
             yield from _in_bounds(formula)
 
 
 def check_form(property_: Property) -> None:
-    """
+    """Check that sampling can answer a property of this form.
+
     Raises:
-        FaultError: sampling cannot answer a property of this form.
+        FaultError: it cannot.
     """
     for fault in faults_in(property_):
         raise fault
@@ -95,7 +97,7 @@ class Lasting:
 
 
 def lasting_part(formula: Formula) -> Lasting | None:
-    """The condition of `formula` on the state in which a path stays; `None` if it has another form."""
+    """The condition of a formula of the form `F G c` or `G F c`; `None` for another form."""
     lasting = lasting_condition(formula)
     if lasting is None:
         return None
@@ -142,7 +144,7 @@ def _about(states: Formula) -> str:
 
 
 def _in_path(path: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
-    """The errors in a formula over paths."""
+    """The errors in a path formula."""
     waiting = [path]
     while waiting:
         formula = waiting.pop()
@@ -169,7 +171,7 @@ def _in_path(path: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
 
 
 def _in_nested(path: UnaryPath | BinaryPath, step: int | None) -> Iterator[tuple[str, Node]]:
-    """The errors in a formula over paths that contains others."""
+    """The errors in a path formula that contains other path formulas."""
     try:
         without_nesting(path, step, lambda _: path)
     except NestingError as error:
@@ -188,7 +190,7 @@ def _in_nested(path: UnaryPath | BinaryPath, step: int | None) -> Iterator[tuple
 
 
 def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
-    """The errors in a formula about states."""
+    """The errors in a state formula."""
     while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
         formula = formula.operand
     if isinstance(formula, Predicate):

@@ -58,7 +58,7 @@ _MIRRORED = {
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """`relation number`, as in `P(...) ≥ 0.95`."""
+    """A comparison with a number, such as `≥ 0.95` in `P(...) ≥ 0.95`."""
 
     relation: BinaryOperator
     number: float
@@ -85,7 +85,7 @@ class Question:
         is_stuck: whether it is about stuck traces (`ask_stuck`).
         can_be_vacuous: whether it may not apply to a trace (`Activity`).
         can_be_late: see `ObserverOutputs`.
-        is_conditional: whether only traces that satisfy assumptions count.
+        is_conditional: whether it is only about traces that satisfy assumptions.
     """
 
     name: str
@@ -103,9 +103,9 @@ class Activity(enum.IntEnum):
     """How far a trace has exercised a property. The numbers are those of the kernel."""
 
     CLOSED = 0
-    """The scope of the property was never judged: nothing was asked."""
+    """The scope of the property was never evaluated, so the trace says nothing about the property."""
     IDLE = 1
-    """The scope was judged, but what the property is about never occurred in it, such as the request of a response."""
+    """The scope was evaluated, but the event that triggers the property never occurred in it, such as a request."""
     ASKED = 2
 
 
@@ -121,13 +121,13 @@ class CompiledProperty:
 
 @dataclass(frozen=True, slots=True)
 class ObserverOutputs:
-    """Expressions over the variables of observers; `None` where there are none.
+    """Expressions over the variables of a property's observer; `None` where it has no such variable.
 
     Attributes:
-        open: for a variable x, where this holds at the end of the model's time, `F G x` is undecided.
-        asked: whether what the property is about has occurred.
-        opened: whether the scope of the property has been judged.
-        can_be_late: whether the property fails if the time ends while something is still to come.
+        open: (x, e): if e holds at the end of the model's time, `F G x` is undecided.
+        asked: whether the event that triggers the property has occurred.
+        opened: whether the scope of the property has been evaluated.
+        can_be_late: whether the property fails if the time ends before an event that it still requires.
     """
 
     open: tuple[tuple[str, Name], ...] = ()
@@ -148,7 +148,7 @@ def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs 
     """Compile a property.
 
     Args:
-        outputs: those of its observer.
+        outputs: the outputs of its observer.
 
     Raises:
         FaultError: it has a form that sampling cannot answer, or contains a comparison with something other than a
@@ -159,18 +159,18 @@ def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs 
 
 
 def given(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
-    """The question about `asked`, which includes the assumptions, of those traces that satisfy them."""
+    """The question `asked`, restricted to traces that satisfy `assumptions`."""
     return replace(asked, question=replace(asked.question, is_conditional=True), assumptions=assumptions.goal)
 
 
 STUCK_PROPERTY = "stuck"
-"""The name of the property that every model has: that a trace gets stuck."""
+"""The name of the property that every model has: the probability that a trace gets stuck."""
 
 
 def ask_stuck(compilation: Compilation) -> CompiledProperty:
-    """The probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another, and nothing can
-    ever change. Every trace runs to its end."""
-    # JANI has no such predicate; this is the closest one.
+    """The question about the probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another,
+    and nothing can ever change. Every trace runs to its end."""
+    # JANI has no predicate for this; `deadlock` is the closest one.
     path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
     states = Predicate(StatePredicate.INITIAL)
     formula = Filter(FilterFunction.VALUES, Probability(ProbabilityOperator.PMAX, path), states)
@@ -256,7 +256,7 @@ class _Writer:
         return CompiledProperty(self.property, question, goal)
 
     def activity(self) -> int:
-        """Code that gives the activity of the property in a trace."""
+        """The code that computes the activity of the property in a trace; -1 if the activity is always `ASKED`."""
         asked, opened = self.outputs.asked, self.outputs.opened
         if asked is None and opened is None:
             return -1
@@ -271,7 +271,8 @@ class _Writer:
         return tuple(name for name in names if not isinstance(self.names.values.get(name), Operand))
 
     def opened(self, formula: Formula) -> tuple[Formula, Threshold | None]:
-        """The probability or reward inside of filters and comparisons."""
+        """Remove filters and the comparison with a number. Return the probability or reward in them, and the
+        comparison."""
         threshold: Threshold | None = None
         while True:
             match formula:
@@ -287,7 +288,7 @@ class _Writer:
                     return formula, threshold
 
     def number(self, formula: Formula) -> float:
-        """The value of an expression without variables."""
+        """The value of an expression that does not depend on the state."""
         assert not isinstance(formula, ProperFormula)
         try:
             value = evaluate(formula, self.names.constants(), self.names.functions)
@@ -300,7 +301,7 @@ class _Writer:
     # ------------------------------------------------------------ paths
 
     def path(self, formula: Formula) -> None:
-        """Write a formula over paths; its value is then on top of the stack."""
+        """Write a path formula. Its value is then on top of the stack."""
         lasting = lasting_part(formula)
         if lasting is not None:
             self.at_end(lasting)
@@ -342,7 +343,7 @@ class _Writer:
                 self.until(TRUE, self.condition(formula), 0, 0)
 
     def at_end(self, lasting: Lasting) -> None:
-        """`F G b` is true if b holds in the state in which a trace stays."""
+        """Write `F G b`, which is true if b holds in the state in which a trace stays."""
         read = {name for name, _ in identifiers(lasting.condition)}
         opened = next((expression for name, expression in self.outputs.open if name in read), None)
         left = FALSE if opened is None else self.condition(opened)
@@ -374,7 +375,7 @@ class _Writer:
         self.unread = set()
 
     def condition(self, formula: Formula, negated: bool = False) -> int:
-        """The code of a formula about states."""
+        """The code of a state formula."""
         match formula:
             case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
                 return self.condition(operand, not negated)
@@ -392,7 +393,7 @@ class _Writer:
                 )
 
     def bounds(self, path: PathBounds) -> tuple[int, int | None]:
-        """The step bounds, both inclusive."""
+        """The bounds on steps of a formula, both inclusive. The upper one is `None` if there is none."""
         interval = path.step_bounds
         if interval is None:
             return 0, None
@@ -427,5 +428,5 @@ _COMBINE = {BinaryOperator.AND: AND, BinaryOperator.OR: OR, BinaryOperator.IMPLI
 
 
 def with_threshold(question: Question, threshold: Threshold) -> Question:
-    """A question with a comparison with a number."""
+    """A question whose value is compared with a number."""
     return replace(question, threshold=threshold)

@@ -36,7 +36,7 @@ HUGE = 2.0**512
 TINY = 2.0**-512
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
-"""What is known of the goal. UNKNOWN: the trace can go on; FAULTY: the model executed an undefined operation."""
+"""The status of the goal. UNKNOWN: the trace can go on; FAULTY: the model has executed an undefined operation."""
 DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
 """The reason why a trace has ended, see `end.End`."""
 ASKED = 2
@@ -178,7 +178,7 @@ class Kernel:
     # ------------------------------------------------------------ public
 
     def choose(self, questions: Sequence[int]) -> None:
-        """Ask only these questions, given by their numbers, of the traces that begin from now on."""
+        """Let the traces that begin from now on answer only these questions, given by their numbers."""
         for i in range(self.questions):
             self.asked[i] = 0
         for i in questions:
@@ -191,7 +191,7 @@ class Kernel:
             scheduler: 0 draws uniformly among the choices; any other number identifies a scheduler, see `lss`.
 
         Returns:
-            What is known of the goal there: UNKNOWN while it is unknown of one of the questions.
+            The status of the goal there: UNKNOWN if one of the questions is undecided.
         """
         self.key = self._mixed((self._mixed(seed & MASK) + (trace & MASK) * GOLDEN) & MASK)
         self.drawn = 0
@@ -200,7 +200,7 @@ class Kernel:
         return self._finish(self._look())
 
     def advance(self, limit: int) -> int:
-        """Continue until the goal is decided or the trace has `limit` steps; returns what is known of the goal then."""
+        """Continue until the goal is decided or the trace has `limit` steps; return the status of the goal then."""
         return self._advance(limit)
 
     def step(self) -> int:
@@ -218,7 +218,7 @@ class Kernel:
         return UNKNOWN
 
     def look(self) -> int:
-        """What is known of the goal in the current state."""
+        """The status of the goal in the current state."""
         return self._look()
 
     def ended(self) -> bool:
@@ -226,7 +226,7 @@ class Kernel:
         return self.enabled_count == 0 or self._can_leave() == 0
 
     def taken(self) -> list[tuple[int, int]]:
-        """The instance and the way of each part of the last step that does something."""
+        """The instance and the way of each part of the last step that has an effect."""
         return [(self.slot_instance[self.part_slot[i]], self.part_way[i]) for i in range(self.parts)]
 
     def outcome(self) -> tuple[int, int, float]:
@@ -234,8 +234,8 @@ class Kernel:
         return self.steps, self.drawn, self.reward
 
     def result(self, question: int) -> tuple[int, int, int, int]:
-        """What the trace says about a question: the verdict; why the trace has ended for it (`end.End`), DECIDED while
-        it can go on; the number of steps until then; and its `goal.Activity`."""
+        """The result of the trace for a question: the verdict; why the trace has ended for it (`end.End`), DECIDED
+        while it can go on; the number of steps until then; and its `goal.Activity`."""
         if self.known[question] == UNKNOWN:
             return UNKNOWN, self.end, self.steps, self._active(self.activity[question])
         return (
@@ -254,7 +254,7 @@ class Kernel:
         return self._reason(0 if self.enabled_count == 0 else 1)
 
     def close(self) -> int:
-        """What is known of the goal if the trace ends in this state, in which no step changes anything."""
+        """The status of the goal if the trace ends in this state, in which no step changes anything."""
         return self._finish(self._ends(0 if self.enabled_count == 0 else 1))
 
     def open_ways(self, instance: int) -> list[int]:
@@ -330,8 +330,8 @@ class Kernel:
         return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
-        """All enabled vectors. For each: its number; how many choices differ only in slots that do nothing; and for
-        each slot that does something the probabilities of the ways of each enabled edge."""
+        """All enabled vectors. Each is described by its number, the number of choices that differ only in slots without
+        effect, and, for each slot that has an effect, the probabilities of the ways of each enabled edge."""
         found = []
         for i in range(self.enabled_count):
             vector = self.enabled[i]
@@ -349,10 +349,10 @@ class Kernel:
         return found
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
-        """Take a given choice; returns the same as `step`.
+        """Take a given choice; return the same as `step`.
 
         Args:
-            picks: for each slot of the vector that does something, the number of its edge among the enabled ones.
+            picks: for each slot of the vector that has an effect, the number of its edge among the enabled ones.
             ways: for each of these slots, the number of the way.
         """
         self._take_given(vector, picks, ways)
@@ -567,7 +567,7 @@ class Kernel:
         return found
 
     def _toss(self) -> int:
-        """The next number that decides between choices: random, or a hash of the scheduler and the state."""
+        """The next number that decides between choices: a random one, or a hash of the scheduler and the state."""
         if self.scheduler == 0:
             return self._draw()
         self.tossed += 1
@@ -598,16 +598,16 @@ class Kernel:
         return found
 
     def _takes_part(self, vector: int, instance: int) -> int:
-        """Whether `instance` does something in `vector`."""
+        """Whether `instance` has a slot in `vector` that has an effect."""
         for i in range(self.active_start[vector], self.active_start[vector + 1]):
             if self.slot_instance[self.active_slot[i]] == instance:
                 return 1
         return 0
 
     def _notice(self, state: int) -> None:
-        """Detect that the scheduler has returned to a state without a random draw in between. It chooses by this hash
-        alone, so the trace then repeats for ever. Each remembered state is kept for twice as many choices as the one
-        before it (Brent 1980)."""
+        """Detect that the scheduler has returned to a state without a random draw in between. The scheduler chooses
+        only by the hash of the state, so the trace then repeats for ever. Each remembered state is kept for twice as
+        many choices as the previous one (Brent 1980)."""
         if self.drawn != self.loop_drawn:
             self.loop_drawn = self.drawn
             self.loop_state = state
@@ -623,11 +623,12 @@ class Kernel:
                 self.loop_left = self.loop_span
 
     def _state_hash(self) -> int:
-        """A hash of the scheduler and of everything that its choice depends on."""
+        """A hash of the scheduler and of all values that its choice depends on."""
         state = self.scheduler
         if (self.scheduler >> 56) & 1 != 0:
             state = self._mixed((state + self.vector + 2) & MASK)
-        # Only one multiplication for each of hundreds of values, and no function call, which is slow in plain Python.
+        # Each of hundreds of values needs only one multiplication and no function call, which would be slow in plain
+        # Python.
         for i in range(self.instances):
             state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & MASK
         for i in range(self.int_count):
@@ -748,7 +749,7 @@ class Kernel:
         return low
 
     def _way_computed(self, edge: int) -> int:
-        """The same as `_way` for probabilities that depend on the state."""
+        """Like `_way`, for probabilities that depend on the state."""
         first = self.way_start[edge]
         end = self.way_start[edge + 1]
         unit = (self._draw() >> 11) * TO_UNIT
@@ -815,7 +816,7 @@ class Kernel:
                             return
 
     def _look_around(self) -> None:
-        """Evaluate the guards again that read a changed variable, in the current locations."""
+        """Evaluate guards in the current locations again, if they read a changed variable."""
         for i in range(self.note_count):
             variable = self.notes[i]
             self.noted[variable] = 0
@@ -925,7 +926,7 @@ class Kernel:
         return FAULTY if self.fault != 0 else status
 
     def _look(self) -> int:
-        """Evaluate the goal in the current state; returns what is known of it."""
+        """Evaluate the goal in the current state; return its status."""
         decided = 0
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
@@ -983,8 +984,8 @@ class Kernel:
         return self._combined()
 
     def _goes_round(self) -> int:
-        """Evaluate the goal if the trace repeats a cycle for ever: a condition that has not been true will never be.
-        Whether a condition is true at every step of the cycle is not known."""
+        """Evaluate the goal if the trace repeats a cycle for ever. A condition that has not been true will then never
+        be true. Whether a condition is true at every step of the cycle is not known."""
         self.end = IDLE
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN and self.lower[i] >= 0:
@@ -1003,7 +1004,8 @@ class Kernel:
         return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:
-        """Evaluate the formulas of the open questions; UNKNOWN if one of them stays open, else the last verdict."""
+        """Evaluate the formulas of the open questions. Return UNKNOWN if one of them stays open, otherwise the last
+        verdict."""
         status = self.status
         is_open = 0
         for i in range(self.questions):
@@ -1025,12 +1027,13 @@ class Kernel:
         return ASKED if code < 0 else self._execute(code)
 
     def _drop(self, question: int) -> None:
-        """Do not evaluate the leaves of a question any more."""
+        """Stop the evaluation of the untils of a question."""
         for i in range(self.leaf_start[question], self.leaf_start[question + 1]):
             self.verdict[i] = FALSE
 
     def _value(self, start: int, end: int) -> int:
-        """The value of a formula over the leaves. It is in reverse Polish notation: -1 is not, -2 and, -3 or."""
+        """The value of a formula over the untils. The formula is in reverse Polish notation: -1 is not, -2 is and, -3
+        is or."""
         top = 0
         for i in range(start, end):
             item = self.formula[i]
@@ -1071,7 +1074,7 @@ class Kernel:
             self.note_count += 1
 
     def _call(self, function: int, real: int, target: int) -> int:
-        """Call a Python function with the collected arguments; returns whether it has a value."""
+        """Call a Python function with the collected arguments; return whether it has a value for them."""
         arguments = self.arguments
         self.arguments = []
         try:
@@ -1096,7 +1099,7 @@ class Kernel:
         return 1
 
     def _execute(self, pc: int) -> int:
-        """Execute the bytecode from `pc` on; returns the operand of its RETURN. The codes are those of `opcodes.Op`."""
+        """Execute the bytecode from `pc` on; return the operand of its RETURN. The codes are those of `opcodes.Op`."""
         while True:
             op = self.code[pc]
             d = self.code[pc + 1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The registers of variables and constants, and the meaning of names in each instance of an automaton."""
+"""The registers of variables and constants, and the meanings of names in each instance of an automaton."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from roaml.smc.shapes import kind_of, larger, shape_of
 
 @dataclass(frozen=True, slots=True)
 class AutomatonInstance:
-    """An automaton as an element of the system; `own` are its variables."""
+    """An automaton as an element of the system. `own` are its own variables."""
 
     automaton: Automaton
     names: StorageNames
@@ -33,9 +33,9 @@ class MemoryLayout:
     """All variables of a model.
 
     Attributes:
-        names: the meaning of names outside of automata.
+        names: the meanings of names outside of automata.
         shared: the variables of the model.
-        initial: for each storage, by its identity, the first value.
+        initial: the initial value of each storage, by the identity (`id`) of the storage.
     """
 
     names: StorageNames
@@ -91,7 +91,7 @@ def lay_out(model: Model, tape: Tape) -> MemoryLayout:
             value = constants[constant.name]
             kind = kind_of(constant.type)
             assert isinstance(value, (bool, int, float))
-            # In every scope: the same register.
+            # A constant has the same register in every scope.
             operand = tape.constant(kind, float(value) if kind == REAL else value)
             values[constant.name] = operand
             for (_, _, own), scope in zip(drafts, scopes, strict=True):

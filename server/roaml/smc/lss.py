@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The minimum and the maximum probability over schedulers, by sampling schedulers (Legay, Sedwards and Traonouez 2014):
-a scheduler is a number, and its choice in a state a hash of both.
+"""The minimum and the maximum probability over schedulers, by sampling schedulers (Legay, Sedwards and Traonouez 2014).
+A scheduler is a number, and its choice in a state is a hash of this number and the state.
 
 Four kinds are tried, each with many numbers:
 
@@ -9,9 +9,10 @@ Four kinds are tried, each with many numbers:
 - for each automaton, some that take its edges only if nothing else is possible;
 - for each automaton, some that take its edges whenever possible.
 
-Smart sampling (D'Argenio, Legay, Sedwards and Traonouez 2015): many schedulers are tried briefly, and the better half
-longer, until one is left. Its probability is then estimated with traces that were not used to select it. So the
-interval is one for the probability under this scheduler; the true minimum or maximum may be more extreme.
+Smart sampling (D'Argenio, Legay, Sedwards and Traonouez 2015): many schedulers are tried with few traces, then the
+better half with more traces, until one is left. Its probability is then estimated with traces that were not used to
+select it. So the interval is one for the probability under this scheduler; the true minimum or maximum may be more
+extreme.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ TRIED = 16
 SURE = 3
 """The number of rounds after which a scheduler is selected that has never, or always, succeeded."""
 USUAL = 100
-"""The number of traces with uniform choices, to measure their length."""
+"""The number of rounds after which a scheduler may be selected whose traces have all failed, or all succeeded."""
 PROBED = 6
 """The number of traces for each scheduler with a small budget."""
 LARGE = 1 << 40
-"""Trace numbers from here on are for the selection of schedulers."""
+"""Traces with this number or a greater one are used to select schedulers."""
 
-# The number of a scheduler: its kind, an automaton of the system, and its index. The kernel reads it.
+# The number of a scheduler consists of its kind, an automaton of the system, and an index. The kernel decodes it.
 MEMORY, STARVE, FAVOUR = 1 << 56, 2 << 56, 4 << 56
 _KINDS = 7 << 56
 _AUTOMATON = 32
@@ -51,7 +52,7 @@ class Extremes:
     """The probabilities under the selected schedulers.
 
     Attributes:
-        least_by, greatest_by: their numbers.
+        least_by, greatest_by: the numbers of the selected schedulers.
         tried: the number of schedulers that were tried.
     """
 
@@ -79,7 +80,7 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
 
 
 def candidates(automata: int, each: int = 2, memoryless: int = SCHEDULERS, memory: int = SCHEDULERS // 4) -> list[int]:
-    """Numbers of schedulers.
+    """The numbers of the schedulers that are tried.
 
     Args:
         automata: the number of automata of the system.
@@ -165,7 +166,8 @@ def search(
 
 
 def _longest(length: float) -> int:
-    """The number of steps after which a trace is abandoned while schedulers are tried: many schedulers repeat cycles.
+    """The number of steps after which a trace is abandoned while schedulers are tried. The limit is needed because many
+    schedulers repeat cycles for ever.
 
     Args:
         length: the average length of a trace with uniform choices.
@@ -188,12 +190,12 @@ def probe(
     length: float,
     pulse: Pulse | None = None,
 ) -> Extremes | None:
-    """A search with about `budget` steps: one round for all schedulers, then some traces for the two best.
+    """Search with about `budget` steps: one round for all schedulers, then some traces for the two best ones.
 
     A trace that is much longer than usual is abandoned, and is undecided.
 
     Args:
-        budget: steps in the first round, and again in the second.
+        budget: the number of steps for the first round, and again for the second.
         length: the average length of a trace with uniform choices.
 
     Returns:

@@ -38,22 +38,22 @@ from roaml.smc.run import (
 from roaml.smc.size import check_size
 
 DEPTH = 15_000
-"""Python's recursion limit while expressions are compiled, which may be nested as deeply as JSON allows."""
+"""Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""
 
 
 class ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
-        marks: the meaning of a trace that ends in a location; see `roaml.smc.end`.
-        outputs: property -> what its observer says, if it has one.
+        marks: why a trace that stays in a location ends; see `roaml.smc.end`.
+        outputs: property -> the outputs of its observer, if it has one.
         assumptions: property -> the property that its assumptions hold, if it has any; both are in `model`.
         asks_stuck: whether `stuck` is the last question.
 
     Attributes:
         asked: a question for each property that can be answered.
         refused: the names of the other properties -> the reason.
-        stuck: the question whether traces get stuck.
+        stuck: the question about traces that get stuck.
 
     Raises:
         FaultError: the model cannot be run.
@@ -112,8 +112,8 @@ class ModelChecker:
         return Compiled(self.program, asked.goal)
 
     def reduced(self, asked: CompiledProperty) -> ModelChecker:
-        """A model checker for one question, without the automata that only other questions need: the model has fewer
-        states and the same probabilities. Its traces have other numbers."""
+        """A model checker for one question, without the automata that only other questions need. The model has fewer
+        states and the same probabilities, but its traces have other numbers."""
         model = without_passive(self.model, *self._read(asked))
         if model is self.model:
             return self
@@ -124,7 +124,7 @@ class ModelChecker:
         )
 
     def _ignored(self, asked: CompiledProperty) -> Registers:
-        """The registers that only matter to other questions."""
+        """The registers that only other questions depend on."""
         names = unread_variables(self.model, *self._read(asked))
         ints: list[int] = []
         reals: list[int] = []
@@ -135,7 +135,7 @@ class ModelChecker:
         return Registers(tuple(ints), tuple(reals))
 
     def _read(self, asked: CompiledProperty) -> tuple[Formula, ...]:
-        """All that the probability of a question depends on."""
+        """All formulas on which the probability of a question depends."""
         outputs = self.outputs.get(asked.property.name, NO_OUTPUTS)
         return (asked.property.expression, *(expression for _, expression in outputs.open))
 
@@ -144,7 +144,7 @@ class ModelChecker:
         return {name: ObserverOutputs(open=self.outputs[name].open)} if name in self.outputs else {}
 
     def payload(self, *asked: CompiledProperty) -> Payload:
-        """The data that workers need for questions."""
+        """The data that workers need to answer questions."""
         goals = [goal for each in asked for goal in (each.goal, each.assumptions) if goal is not None]
         return pack(Compiled(self.program, merged(goals)))
 
@@ -176,11 +176,11 @@ class ModelChecker:
         watch: Callable[[CompiledProperty, Tally], None],
         pulse: Pulse | None = None,
     ) -> list[Answer | FaultError]:
-        """Answer several questions by the same traces, each exactly as by traces of its own; see
-        `roaml.smc.run.answer_together`.
+        """Answer several questions with the same traces. Each answer is exactly the one that separate traces would
+        give; see `roaml.smc.run.answer_together`.
 
         Args:
-            tallies: where to go on; they are changed as batches come in.
+            tallies: the states to continue from; they are updated after each batch.
             watch: called for each question after each of its batches.
         """
         questions = [each.question for each in asked]
@@ -222,7 +222,7 @@ class ModelChecker:
             raise self.fault(error.problem) from None
 
     def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
-        """The knowledge about schedulers other than the uniform one, to which an answer refers.
+        """What is known about schedulers other than the uniform one, in relation to an answer.
 
         Raises:
             FaultError: a trace under some scheduler failed.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The meaning of names while a model is compiled."""
+"""The meanings of names while a model is compiled."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class Storage:
 
 
 Meaning: TypeAlias = Storage | Operand | Region
-"""The meaning of a name: a variable, a bound scalar, a bound array."""
+"""The meaning of a name: a variable or constant, a bound scalar, or a bound array."""
 
 
 @dataclass(frozen=True)
 class StorageNames:
-    """The meaning of names at a place; `calls` are the functions whose bodies contain it."""
+    """The meanings of names at a place. `calls` are the functions whose bodies contain the place."""
 
     values: Mapping[str, Meaning]
     functions: Mapping[str, Function]
@@ -45,7 +45,7 @@ class StorageNames:
         return replace(self, values={**self.values, **more})
 
     def inside(self, function: Function, parameters: Mapping[str, Meaning]) -> StorageNames:
-        """The meaning of names in the body of a function."""
+        """The meanings of names in the body of a function."""
         return StorageNames({**self.values, **parameters}, self.functions, (*self.calls, function.name))
 
     def constants(self) -> dict[str, Number]:
@@ -87,7 +87,7 @@ def variables_in(expression: Expression, functions: Mapping[str, Function]) -> s
 
 
 def read_by(assignment: Assignment, functions: Mapping[str, Function]) -> set[str]:
-    """The names on which an assignment depends: its value, and its target."""
+    """The names on which an assignment depends: those in its value, and those in the indices of its target."""
     read_names = variables_in(assignment.value, functions)
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):

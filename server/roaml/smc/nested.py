@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas about paths inside others that observers can decide (docs/spec/properties.md#nested).
+"""Nested path formulas that observers can decide (docs/spec/properties.md#nested).
 
-A formula is brought into its normal form, and is then compared with the forms of the patterns. If none of them fits,
-its negation is compared.
+A formula is brought into its normal form, which is then compared with the forms of the patterns. If none of them fits,
+the negation of the formula is compared.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ from roaml.smc.normal_form import (
 )
 
 MAX_FORMULAS = 100
-"""The maximum number of operators over paths in a nested formula."""
+"""The maximum number of path operators in a nested formula."""
 MAX_STEPS = 1_000_000
 """The maximum bound on the time, in clock steps."""
 _SECOND = 1_000_000_000
-"""Nanoseconds."""
+"""The number of nanoseconds in a second."""
 _ANY_TIME = Window()
 _T = TypeVar("_T")
 
@@ -79,7 +79,7 @@ class ObservedFormula:
 
 
 def is_nested(formula: Formula) -> bool:
-    """Whether a path operator is applied to a formula over paths."""
+    """Whether a path operator is applied to a path formula."""
     if not isinstance(formula, (UnaryPath, BinaryPath)):
         return False
     operands = (formula.operand,) if isinstance(formula, UnaryPath) else (formula.left, formula.right)
@@ -93,12 +93,12 @@ def _is_about_paths(formula: Formula) -> bool:
 
 
 def without_nesting(formula: Formula, step: int | None, observe: Callable[[ObservedFormula], Formula]) -> Formula:
-    """An equivalent formula over paths in which observers replace what is nested.
+    """An equivalent path formula in which observers replace the nested formulas.
 
     Args:
         formula: a path formula for which `is_nested` is true.
         step: the step of the clock in ns; `None` if there is no clock.
-        observe: creates an observer, and returns the formula over paths that says that its property holds.
+        observe: creates an observer, and returns the path formula that states that its property holds.
 
     Raises:
         NestingError: no pattern has this form.
@@ -109,7 +109,8 @@ def without_nesting(formula: Formula, step: int | None, observe: Callable[[Obser
 
 
 def without_nesting_before(formula: BinaryFormula, observe: Callable[[ObservedFormula], Formula]) -> Formula | None:
-    """The same for `F close ⇒ ((request ⇒ (¬close U (answer ∧ ¬close))) U close)`; `None` for another form."""
+    """Like `without_nesting`, for `F close ⇒ ((request ⇒ (¬close U (answer ∧ ¬close))) U close)`; `None` if the formula
+    has another form."""
     if _count_formulas(formula) > MAX_FORMULAS:
         return None
     try:
@@ -136,7 +137,7 @@ def _count_formulas(formula: Formula) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Request:
-    """`request ⇒ F answer`; with a scope, `request ⇒ (¬close U (answer ∧ ¬close))`."""
+    """A request and its answer: `request ⇒ F answer`; with a scope, `request ⇒ (¬close U (answer ∧ ¬close))`."""
 
     request: Expression
     answer: Expression
@@ -149,7 +150,7 @@ class _Recogniser:
         self.observe = observe
 
     def path(self, formula: Formula) -> Formula:
-        """A formula without nesting for a formula over paths in normal form."""
+        """A path formula without nesting that is equivalent to one in normal form."""
         match formula:
             case BinaryFormula(operator, left, right):
                 return BinaryFormula(operator, self.path(left), self.path(right))
@@ -181,7 +182,7 @@ class _Recogniser:
             case BinaryPath(operator=BinaryPathOperator.WEAK_UNTIL, left=left, right=right):
                 return self.weak_until(left, right)
             case BinaryPath(operator=BinaryPathOperator.UNTIL, left=left, right=right):
-                # A condition on the state ends the stretch, whatever else is required at its end.
+                # The condition on the state ends the stretch, whatever the other parts require at its end.
                 ends = [part for part in conjuncts(right) if not isinstance(part, ProperFormula)]
                 if not ends:
                     raise NestingError
@@ -197,7 +198,7 @@ class _Recogniser:
         lasting = [path for path in clause.paths if lasting_condition(path) is not None]
         paths = [path for path in clause.paths if lasting_condition(path) is None]
         if lasting:
-            # What a path does in the end does not depend on where it begins.
+            # Whether `F G` or `G F` holds for a path does not depend on where the path begins.
             result = self.always(Disjunction(clause.condition, tuple(paths)))
             for path in lasting:
                 result = BinaryFormula(BinaryOperator.OR, result, path)
@@ -231,7 +232,7 @@ class _Recogniser:
         raise NestingError
 
     def request(self, clause: Disjunction, close: Expression | None = None) -> _Request:
-        """The request that a clause contains; inside a stretch that `close` ends if it is given."""
+        """The request that a clause contains. If given, `close` ends the stretch in which the answer is required."""
         request = negated(clause.condition)
         match clause.paths:
             case (UnaryPath(operator=UnaryPathOperator.FINALLY, operand=answer) as path,) if close is None:
@@ -243,18 +244,19 @@ class _Recogniser:
         raise NestingError
 
     def always_after(self, trigger: Expression, clause: Disjunction) -> Formula:
-        """G (trigger ⇒ G clause)."""
+        """The formula G (trigger ⇒ G clause)."""
         if not clause.paths:
             return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER, {LEFT: clause.condition, OPEN: trigger})
         return self.response(self.request(clause), ScopeKind.AFTER, {OPEN: trigger})
 
     def bounded_after(self, trigger: Expression, condition: Expression, window: Window) -> Formula:
-        """G (trigger ⇒ G[window] condition): a trigger in the window forbids the opposite."""
+        """The formula G (trigger ⇒ G[window] condition): after a trigger, the negated condition is forbidden in the
+        window."""
         formula = implies(once(Atom(OPEN), window), Atom(LEFT))
         return self._observed(FormulaProperty(formula), {LEFT: condition, OPEN: trigger})
 
     def after_until(self, trigger: Expression, stays: Formula, close: Expression) -> Formula:
-        """G (trigger ⇒ (stays W close))."""
+        """The formula G (trigger ⇒ (stays W close))."""
         conditions = {OPEN: trigger, CLOSE: close}
         if not isinstance(stays, ProperFormula):
             return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER_UNTIL, {LEFT: stays, **conditions})
@@ -262,7 +264,7 @@ class _Recogniser:
         return self.response(self.request(clause, close), ScopeKind.AFTER_UNTIL, conditions)
 
     def between(self, trigger: Expression, close: Expression, stays: Formula, end: Expression) -> Formula:
-        """G (trigger ∧ F close ⇒ (stays U end))."""
+        """The formula G (trigger ∧ F close ⇒ (stays U end))."""
         conditions = {OPEN: trigger, CLOSE: close}
         if key_of(close) == key_of(end):
             if not isinstance(stays, ProperFormula):
@@ -293,7 +295,7 @@ class _Recogniser:
         return _all([self.after(opening, part) for part in parts if isinstance(part, ProperFormula)])
 
     def before(self, never: UnaryPath, path: BinaryPath) -> Formula:
-        """G ¬close ∨ ((request ⇒ …) U close)."""
+        """The formula G ¬close ∨ ((request ⇒ …) U close)."""
         if never.operator is not UnaryPathOperator.GLOBALLY or never.time_bounds is not None:
             raise NestingError
         close = _condition(path.right)
@@ -303,7 +305,7 @@ class _Recogniser:
         return self.response(self.request(clause, close), ScopeKind.BEFORE, {OPEN: close})
 
     def after(self, opening: Expression, path: Formula) -> Formula:
-        """¬opening W (opening ∧ path)."""
+        """The formula ¬opening W (opening ∧ path)."""
         conditions = {OPEN: opening}
         match path:
             case UnaryPath(operator=UnaryPathOperator.FINALLY, operand=operand):
@@ -343,7 +345,7 @@ class _Recogniser:
         """The bounds on the time of F and G, in clock steps.
 
         Raises:
-            NestingError: there is no clock, or no step of it is in the bounds.
+            NestingError: there is no clock, or no step of the clock is within the bounds.
         """
         interval = path.time_bounds
         if interval is None:

@@ -24,7 +24,7 @@ _CLOSE = 1e-6
 
 @dataclass(slots=True)
 class Way:
-    """A destination of an edge; `probability` is `None` if it depends on the state."""
+    """A destination of an edge. `probability` is `None` if it depends on the state."""
 
     destination: Destination
     probability: float | None
@@ -32,7 +32,7 @@ class Way:
 
 @dataclass(slots=True)
 class EdgeStep:
-    """An edge of an instance that can be taken. `guard` is None if it is always enabled."""
+    """An edge of an instance that can be taken. `guard` is `None` if the edge is always enabled."""
 
     edge: Edge
     ways: list[Way]
@@ -42,7 +42,7 @@ class EdgeStep:
 
 @dataclass(slots=True)
 class Slot:
-    """The edges of an instance for one action, by location."""
+    """The edges of an instance for one action, grouped by their source location."""
 
     instance: int
     action: str | None
@@ -53,7 +53,7 @@ class Slot:
 
 
 class Reads:
-    """The variables that affect a part of a model, computed once. The part is kept alive, so that its id is not
+    """The variables that affect a part of a model, computed once. The part is kept alive, so that its `id` is not
     reused."""
 
     def __init__(self) -> None:
@@ -140,7 +140,7 @@ class CompiledNetwork:
         return self.slots[self._slot_of[key]]
 
     def _step(self, edge: Edge, instance: AutomatonInstance) -> EdgeStep | None:
-        """The step of an edge; `None` if it can never be taken."""
+        """The step of an edge; `None` if the edge can never be taken."""
         if edge.rate is not None:
             raise FaultError("rates are not supported", edge.origin)
         guard = None if edge.guard is None else edge.guard.exp
@@ -171,7 +171,7 @@ class CompiledNetwork:
         return EdgeStep(edge, ways, guard, is_inert)
 
     def _known(self, expression: Expression, instance: AutomatonInstance) -> bool | float | None:
-        """The value of an expression that does not depend on the state."""
+        """The value of an expression; `None` if it depends on the state."""
         names = instance.names
         if isinstance(expression, Boolean):
             return expression.value
@@ -199,7 +199,7 @@ class CompiledNetwork:
 
 
 def root(assignment: Assignment) -> str:
-    """The variable to which a value is assigned."""
+    """The variable that an assignment changes."""
     target: Expression = assignment.target
     while isinstance(target, ArrayAccess):
         target = target.array
@@ -207,7 +207,8 @@ def root(assignment: Assignment) -> str:
 
 
 def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:
-    """Loops that accept an action wherever no edge for it is enabled, as `input-enable` requires."""
+    """Loops that accept an action in each location and state in which no edge for it is enabled, as `input-enable`
+    requires."""
     loops = []
     for action in actions:
         for location in instance.automaton.locations:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The normal form of formulas over paths: negations only of conditions on states, and only F, G, U, W, ∧ and ∨ above
-them. F and G may have bounds on the time."""
+"""The normal form of path formulas: negations only of state formulas, and only F, G, U, W, ∧ and ∨ above them. F and G
+may have bounds on the time."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ MAX_CLAUSES = 16
 
 
 class NestingError(Exception):
-    """A nested formula has another form than those of the patterns.
+    """A nested formula does not have the form of a pattern.
 
     Attributes:
-        is_time: whether its bounds on the time are the reason.
+        is_time: whether the reason is its bounds on the time.
     """
 
     def __init__(self, *, is_time: bool = False) -> None:
@@ -40,7 +40,7 @@ class NestingError(Exception):
 
 
 def lasting_condition(formula: Formula) -> tuple[Formula, bool] | None:
-    """The condition c of `F G c` or `G F c`, and whether it is `F G c`; `None` for another form."""
+    """The condition c of `F G c` or `G F c`, and whether the formula is `F G c`; `None` for another form."""
     if not isinstance(formula, UnaryPath) or not isinstance(formula.operand, UnaryPath):
         return None
     outer, inner = formula, formula.operand
@@ -133,14 +133,14 @@ def weak(left: Formula, right: Formula) -> Formula:
 
 @dataclass(frozen=True, slots=True)
 class Disjunction:
-    """A disjunction of a condition and formulas over paths."""
+    """A disjunction of a condition and path formulas."""
 
     condition: Expression
     paths: tuple[Formula, ...]
 
 
 def clauses_of(formula: Formula) -> list[Disjunction]:
-    """The conjunctive normal form."""
+    """The clauses of the conjunctive normal form of a formula."""
     match formula:
         case BinaryFormula(BinaryOperator.AND, left, right):
             return [*clauses_of(left), *clauses_of(right)]
@@ -199,7 +199,7 @@ _OPPOSITE = {
 
 
 def key_of(condition: Expression, *, is_negated: bool = False) -> _Key:
-    """Conditions with equal keys are equivalent."""
+    """A key of a condition. Conditions with equal keys are equivalent."""
     return run(_key_steps(condition, is_negated))
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The instructions of the bytecode, which `assemble` writes and `kernel` executes.
 
-An instruction is five numbers: its code and the operands d, a, b, c. `I` are the registers for ints and bools (0 or
-1), `D` those for reals; they contain variables, constants and intermediate results. The kernel writes the codes as
-numbers, because a C compiler creates a jump table from them; a test compares both.
+An instruction consists of five numbers: its code and the operands d, a, b, c. `I` are the registers for ints and bools
+(0 or 1), `D` those for reals; they contain variables, constants and intermediate results. The kernel contains the codes
+as numbers, because a C compiler creates a jump table from them; a test compares both.
 """
 
 from __future__ import annotations

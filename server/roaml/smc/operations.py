@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Operators on values in registers: evaluated here if the values are known, otherwise compiled.
+"""Operators on values in registers. They are evaluated here if the values are known, and compiled otherwise.
 
-An operation that always fails stays in the code: it may never be reached.
+An operation that always fails is compiled, too, because it may never be reached.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
 MAX_INT64 = (1 << 63) - 1
 
 COMPARISONS = {
-    # operator: for ints: (jump if it holds, jump if not, whether operands are exchanged for either)
+    # operator: for ints: (the jump if it holds, the jump if it does not, whether the operands are exchanged for each)
     BinaryOperator.EQUAL: ((Op.JUMP_EQ, False), (Op.JUMP_NE, False)),
     BinaryOperator.NOT_EQUAL: ((Op.JUMP_NE, False), (Op.JUMP_EQ, False)),
     BinaryOperator.LESS: ((Op.JUMP_LT, False), (Op.JUMP_LE, True)),
@@ -43,14 +43,14 @@ ARITHMETIC = {
 
 
 class OperatorAssembler:
-    """Writes operators whose operands are computed already."""
+    """Writes the code of operators whose operands are already computed."""
 
     def __init__(self, cells: CellAssembler) -> None:
         self.tape = cells.tape
         self.cells = cells
 
     def applied(self, node: Unary, value: Operand, into: int) -> Operand:
-        """An operator to its one operand."""
+        """Write code that applies an operator to its only operand."""
         op = node.operator
         is_int = value.kind != REAL
         kind = value.kind if op is UnaryOperator.ABS else INT if op.signature is Signature.ROUNDING else REAL
@@ -84,7 +84,7 @@ class OperatorAssembler:
         return self.call(node, op, (first, second), kind, into)
 
     def compared(self, op: BinaryOperator, first: Operand, second: Operand, label: Label, when: bool) -> None:
-        """Jump to `label` if the comparison of two scalars is `when`, otherwise continue."""
+        """Write code that jumps to `label` if the comparison of two scalars is `when`, and continues otherwise."""
         if first.value is not None and second.value is not None:
             if bool(op.function(first.value, second.value)) is when:
                 self.tape.jump(Op.JUMP, label)
@@ -103,7 +103,7 @@ class OperatorAssembler:
         if when:
             self.tape.jump(_REAL_JUMPS[code], label, first.register, second.register)
             return
-        # Not the opposite comparison: with NaN, neither holds.
+        # The opposite comparison cannot be used, because with NaN neither holds.
         holds = Label()
         self.tape.jump(_REAL_JUMPS[code], holds, first.register, second.register)
         self.tape.jump(Op.JUMP, label)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Batches on several processors or machines, in order, even if workers die.
+"""Runs batches on several processors or machines, even if workers die.
 
 The results are in the order of the batches, so they do not depend on the speed of workers. A batch is a pure function:
 if a worker dies, its batch is run again.
@@ -21,7 +21,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
 WORKER_START_DELAY_S = 0.4
-"""The time in s before workers are started: most questions are answered by then."""
+"""The time in s before workers are started, because most questions are answered in less time."""
 ATTEMPTS = 5
 """The maximum number of consecutive losses of workers without progress."""
 _TICK = 0.1
@@ -34,29 +34,29 @@ class WorkersLostError(Exception):
 
 
 class Alone:
-    """Runs batches in this thread, on a separate kernel, so that several threads may do so."""
+    """Runs batches in this thread. Each object has its own kernel, so several threads may use one each."""
 
     def __init__(self, compiled: Compiled) -> None:
         self._kernel = Kernel(compiled.program, compiled.goal)
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
-        """The outcome of each task, in their order."""
+        """The outcome of each task, in the order of the tasks."""
         return ((task, run_on(self._kernel, task, pulse)) for task in tasks)
 
 
 class Runner(Protocol):
-    """A way to run batches."""
+    """Runs batches."""
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
-        """The outcome of each task, in their order."""
+        """The outcome of each task, in the order of the tasks."""
 
 
 class Pool:
-    """Runs batches: in this process at first, then on `jobs` processes; or on a given executor.
+    """Runs batches, first in this process and after a delay in `jobs` processes; or on a given executor.
 
     If `start_delay_s` is `None`, no batch is run in this process, so that it stays responsive.
 
-    Use it in a `with` statement; leaving it ends the workers.
+    Use it in a `with` statement, which ends the workers at its end.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Pool:
         self._stop()
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
-        """The outcome of each task, in their order. The caller may stop the iteration at any time.
+        """The outcome of each task, in the order of the tasks. The caller may stop the iteration at any time.
 
         Raises:
             WorkersLostError: the tasks cannot be run.
@@ -127,7 +127,7 @@ class Pool:
                     future.cancel()
 
     def _submit(self, task: Task) -> Future[BatchOutcome] | None:
-        """Submit a batch; `None` if workers are being lost right now."""
+        """Submit a batch; return `None` if this fails because workers have just been lost."""
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")

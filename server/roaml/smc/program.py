@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A model and a goal as flat arrays, which the kernel simulates and workers receive.
 
-Numbers: an *instance* is an automaton as an element of the system; *locations*, *groups* (the edges of a location for
-one slot), *edges* and *ways* (destinations) are numbered across all instances. `x_start[i]` to `x_start[i + 1]` is the
-range of the parts of `i`. Code is given by the index of its first instruction, -1 for none.
+An *instance* is an automaton as an element of the system. *Locations*, *groups* (the edges of a location for one slot),
+*edges* and *ways* (destinations) are numbered across all instances. The range from `x_start[i]` to `x_start[i + 1]`
+contains the parts of `i`. Code is given by the index of its first instruction, -1 if there is none.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from typing import TypeAlias
 from roaml.jani.operators import Operator
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
-"""The verdict on a trace. The kernel uses the same numbers. UNKNOWN: the trace can continue; if it does not, it is
-undecided."""
+"""The verdict on a trace. The kernel uses the same numbers. UNKNOWN: the trace can continue; if it has ended, it is
+undecided. FAULTY: it has executed an undefined operation."""
 
 AT_END = -1
-"""A lower bound; see `Goal`."""
+"""The lower bound of a formula that is decided at the end of a trace; see `Goal`."""
 
 Ints: TypeAlias = "array[int]"
 Reals: TypeAlias = "array[float]"
@@ -41,7 +41,7 @@ class Program:
             `-1 - group` must be evaluated.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
         entangled: whether assignments of several parts of a vector depend on one another.
-        phase_*: for these, the code of each way by the index of its assignments.
+        phase_*: for entangled vectors, the code of each way, by the index of its assignments.
         watch_*: the instances whose guards read a variable; watched_*: the groups for each location of an instance.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
@@ -100,22 +100,22 @@ class Program:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """What is asked about a trace: for each question a formula over untils, and rewards. A goal with rewards, or with a
+    """The questions about a trace: a formula over untils for each question, and rewards. A goal with rewards, or with a
     deadlock in a condition, has one question.
 
     Attributes:
         seen_start, seen_leaf: for each watched variable, the untils with a condition that reads it.
-        left, right: the two sides of each until: code; -1 is true, -2 false, -3 deadlock, -4 no deadlock; on the right
-            side, -5 that the trace gets stuck.
-        lower, upper: its step bounds, both inclusive; -1 is none. With the lower bound `AT_END`, it is decided where
-            the trace ends: it is true if the right side holds there; it stays undecided if the time has ended and the
-            left side holds.
+        left, right: code for the two sides of each until; -1 is true, -2 false, -3 deadlock, -4 no deadlock; on the
+            right side, -5 means that the trace gets stuck.
+        lower, upper: the bounds of each until on steps, both inclusive; -1 is none. An until with the lower bound
+            `AT_END` is decided where the trace ends: it is true if the right side holds there; it stays undecided if
+            the time has ended and the left side holds.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
         formula_start, leaf_start: the formula and the untils of each question.
-        activity: code for each question that gives its `goal.Activity`; -1 if that is always `ASKED`.
+        activity: code for each question that computes its `goal.Activity`; -1 if that is always `ASKED`.
         zero_steps: a counter for each question.
-        is_bounded: the evaluation depends on changes of variables (0), also on the number of steps (1), also on the
-            enabled edges (2).
+        is_bounded: what the evaluation depends on: 0 changes of variables, 1 also the number of steps, 2 also the
+            enabled edges.
         step_reward, exit_reward: code that returns the register of the reward of a step.
     """
 
@@ -136,7 +136,7 @@ class Goal:
 
 
 def merged(goals: Sequence[Goal]) -> Goal:
-    """One goal with the questions of several, in their order."""
+    """One goal with the questions of several goals, in their order."""
     first, *others = goals
     if not others:
         return first

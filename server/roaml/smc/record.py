@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace, simulated again step by step: the edges taken, the changes, and the places from which they come."""
+"""A trace that is simulated again step by step, with the edges taken, the changes, and the places in the model from
+which they come."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ from roaml.smc.standstill import Standstill
 Plain: TypeAlias = "bool | int | float | list[Plain]"
 
 SHORTEST = -1
-"""The number of a trace that was not made at random: the shortest one of all."""
+"""The number of a trace that was not generated at random: the shortest possible one."""
 
 VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
 
@@ -52,7 +53,7 @@ class VariableChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TraceStep:
-    """A step; `number` is 1 for the first. `action` is None if it is silent."""
+    """A step. `number` is 1 for the first one; `action` is `None` if the step has no action."""
 
     number: int
     action: str | None
@@ -102,7 +103,8 @@ class StepReader:
         self._ints, self._reals = self._kernel.snapshot()
 
     def read(self, number: int) -> TraceStep:
-        """The step from the previous state to the current one, which becomes the state before the next step."""
+        """The step from the previous state to the current one. The current state becomes the previous one of the next
+        call."""
         places, ints, reals = self._places, self._ints, self._reals
         self.start()
         _, action = self.legend.vectors[self._kernel.vector]
@@ -110,7 +112,7 @@ class StepReader:
         return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
 
     def change(self, number: int, action: str | None) -> TraceStep:
-        """A step that no automaton has taken: the state was changed by hand."""
+        """A step that no automaton has taken, because the state was changed by hand."""
         ints, reals = self._ints, self._reals
         self.start()
         return TraceStep(number, action, (), self._changes(ints, reals, self._ints, self._reals))
@@ -180,7 +182,7 @@ class Recorder:
         return self.values(storages)
 
     def rush(self, recording: Recording) -> None:
-        """Go to the end of a trace at once."""
+        """Simulate a trace to its end, without its steps."""
         kernel = self._kernel
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
         if verdict == UNKNOWN:
@@ -188,7 +190,7 @@ class Recorder:
         self._finish(recording, verdict)
 
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
-        """The steps of a trace; `values` are those after each step."""
+        """The steps of a trace. During the iteration, `values` returns the values after each step."""
         kernel, done = self._kernel, 0
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
         self._steps.start()
@@ -209,7 +211,7 @@ class Recorder:
             recording.problem = TraceProblem(recording.trace, *self._kernel.problem())
 
     def standstill(self) -> Standstill:
-        """The state in which the last walk ended."""
+        """The final state of the last trace, as input for the analysis of which automaton waits for which."""
         return self._steps.standstill(self.system)
 
     def reads(self, part: AutomatonStep) -> set[RecordedVariable]:

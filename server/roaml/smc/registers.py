@@ -56,7 +56,7 @@ class Label:
 
 
 class Tape:
-    """The code so far, and the registers that it uses."""
+    """The code that has been written so far, and the registers that it uses."""
 
     def __init__(self) -> None:
         self.code: list[int] = []
@@ -93,7 +93,7 @@ class Tape:
             self.code[use] = label.at
 
     def constant(self, kind: str, value: Number) -> Operand:
-        """A register that always has this value."""
+        """A register that always contains this value."""
         # The sign distinguishes -0.0 from 0.0, which are equal.
         key = (f"{kind}{str(value)[0]}", value)
         register = self._constants.get(key)
@@ -103,7 +103,7 @@ class Tape:
         return register
 
     def room(self, kind: str, size: int, value: Number = 0) -> int:
-        """New consecutive registers."""
+        """Reserve consecutive registers; return the number of the first one."""
         if kind == REAL:
             self.reals += [float(value)] * size
             return len(self.reals) - size
@@ -111,7 +111,7 @@ class Tape:
         return len(self.ints) - size
 
     def begin(self, origin: Origin | None = None) -> int:
-        """Begin a piece of code with an origin; all temporary registers are free in it. Returns its index."""
+        """Begin a piece of code with an origin; return its index. All temporary registers are free in it."""
         self._used_ints = self._used_reals = 0
         self.origins.append((len(self.code), origin))
         return len(self.code)
@@ -129,7 +129,7 @@ class Tape:
         return self._free_ints[self._used_ints - 1]
 
     def function(self, operator: Operator) -> int:
-        """The number by which code calls the function of an operator."""
+        """The number with which code calls the function of an operator."""
         if operator not in self._functions:
             self._functions[operator] = len(self.functions)
             self.functions.append(operator)

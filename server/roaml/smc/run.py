@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The answer to a question: the number of traces, and their result.
+"""The answer to a question: how many traces are generated, and what they say.
 
-- Whether more traces are needed is decided after whole batches, in the order of their numbers, and the size of a batch
+- Whether more traces are needed is decided after whole batches, in the order of their numbers. The size of a batch
   depends only on the traces before it. So the answer is a function of model, property, seed and options.
 - The state that is needed to continue after an interruption is a `Tally`: a few numbers.
 """
@@ -30,10 +30,10 @@ PEEKING = 0.75
 """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this part of
 the allowed error. A test computes that the total error stays within the confidence."""
 MIN_EPSILON = 1e-9
-"""The minimum half-width of an interval; a narrower one needs more traces than can be counted."""
+"""The minimum half-width of an interval. A narrower interval needs more traces than can be counted."""
 NO_MORE_FOR_REWARDS = 10_000_000
 MAX_REJECTED = 100_000
-"""The number of traces after which no more are made if the assumptions have rejected all of them."""
+"""The number of traces after which the work ends if the assumptions have rejected all of them."""
 REJECTED = 4
 """The verdict on a trace that violates the assumptions of a question."""
 MAX_KEPT_TRACES = 1000
@@ -48,7 +48,7 @@ class Options:
         confidence: the probability with which the interval contains the true value.
         epsilon: half the width of the interval; for rewards relative to the value.
         max_traces: the maximum number of traces; with the method "fixed", the exact number.
-        max_steps: traces that are not decided by then stay undecided.
+        max_steps: the maximum number of steps; traces that are not decided by then are undecided.
 
     Raises:
         ValueError: a number is not valid; the message states which.
@@ -89,17 +89,17 @@ class Ended:
 
 @dataclass(slots=True)
 class Tally:
-    """The state after some batches; sufficient to continue.
+    """The counts after some batches, which are sufficient to continue.
 
     Attributes:
-        traces: of a question with assumptions, the accepted ones.
-        rejected: the traces that violate the assumptions.
-        closed, idle: the traces with these activities; see `goal.Activity`.
-        late: the traces that failed at the end of time, because something was still to come.
+        traces: the number of traces; for a question with assumptions, only the accepted ones.
+        rejected: the number of traces that violate the assumptions.
+        closed, idle: the numbers of traces with these activities; see `goal.Activity`.
+        late: the number of traces that failed because the time ended before an event that the property requires.
         accepted: the decision of a sequential test.
         is_revised: whether the options were changed after results were known: then the number of traces depends on
             earlier results.
-        examples: for each verdict the first traces; shortest: for each the shortest one.
+        examples: for each verdict, the first traces; shortest: for each verdict, the shortest trace.
         ends: why traces have ended, by reason.
     """
 
@@ -150,7 +150,8 @@ class Tally:
 
     @staticmethod
     def from_json(value: dict) -> Tally:  # type: ignore[type-arg]
-        """
+        """The inverse of `to_json`.
+
         Raises:
             KeyError, TypeError, ValueError, AttributeError: the value was not written by `to_json`.
         """
@@ -200,7 +201,7 @@ class Answer:
 
     @property
     def interval(self) -> str:
-        """The kind of the interval; those for rewards are valid only for many traces."""
+        """The kind of the interval. The kinds for rewards are valid only for many traces."""
         if self.question.is_reward:
             return "asymptotic confidence sequence" if self.is_anytime else "Student's t"
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
@@ -235,9 +236,9 @@ def answer(
     """Run traces until the question is answered.
 
     Args:
-        payload: of the question, and of its assumptions if it has any.
-        tally: the state to continue from; it is updated after each batch, so that it contains the result if this is
-            interrupted.
+        payload: the goals of the question and of its assumptions, if it has any.
+        tally: the state to continue from. It is updated after each batch, so that it contains the result so far if the
+            work is interrupted.
         watch: called after each batch.
         first: the number of the first trace.
 
@@ -262,9 +263,9 @@ class Inquiry:
     """A question that shares traces with others.
 
     Attributes:
-        tally: changed after each batch.
-        columns: its numbers in the goal of the shared traces: its own, and that of its assumptions if it has any.
-        problem: the trace that failed for it; then it has no answer.
+        tally: the state to continue from, updated after each batch.
+        columns: the numbers of the question, and of its assumptions if it has any, in the goal of the shared traces.
+        problem: the trace that failed for the question, which then has no answer.
     """
 
     question: Question
@@ -274,7 +275,7 @@ class Inquiry:
 
 
 def columns_of(questions: Iterable[Question]) -> list[tuple[int, ...]]:
-    """The numbers that questions have in a goal that is made of theirs in their order."""
+    """The numbers that each question and its assumptions have in a goal that joins the goals of all, in their order."""
     columns: list[tuple[int, ...]] = []
     count = 0
     for question in questions:
@@ -292,8 +293,8 @@ def answer_together(
     watch: Callable[[Inquiry], None],
     pulse: Pulse | None = None,
 ) -> None:
-    """Answer several questions by the same traces. Each answer is exactly that of `answer`: a question is asked until
-    its own rule stops it, and a trace says the same whatever else is asked of it.
+    """Answer several questions with the same traces. Each answer is exactly that of `answer`: its own rule stops each
+    question, and what a trace says about a question does not depend on the other questions.
 
     Args:
         payload: with the questions of all inquiries.
@@ -303,13 +304,13 @@ def answer_together(
     groups: dict[object, list[Inquiry]] = {}
     for inquiry in inquiries:
         if not inquiry.tally.is_finished:
-            # Questions share traces if they have the same numbers of traces before them.
+            # Questions share traces only if the same numbers of traces have been generated for them before.
             key = (inquiry.tally.simulated, _limit(inquiry.question, options))
             groups.setdefault(key, []).append(inquiry)
     for group in groups.values():
         if _run(payload, group, options, pool, watch, pulse) is None:
             continue
-        # A trace has failed, which need not concern all of them: the others would have ended it before.
+        # The trace that failed need not concern all questions: with separate traces, some may have stopped before it.
         for inquiry in group:
             if not inquiry.tally.is_finished:
                 inquiry.problem = _run(payload, [inquiry], options, pool, watch, pulse)
@@ -325,10 +326,10 @@ def _run(
     first: int = 0,
     scheduler: int = 0,
 ) -> TraceProblem | None:
-    """Run traces until the questions are answered, which have the same number of traces before them.
+    """Run traces until the questions are answered. The same number of traces was generated for all of them before.
 
     Returns:
-        The trace that failed. If there are several questions, its batch is not counted.
+        The trace that failed; `None` if there is none. If there are several questions, its batch is not counted.
     """
     open_ = list(inquiries)
     done = inquiries[0].tally.simulated
@@ -360,7 +361,7 @@ def _run(
 
 
 def summary(question: Question, options: Options, tally: Tally) -> Answer:
-    """The result of a tally, complete or not."""
+    """The answer that follows from a tally, complete or not."""
     is_anytime = not tally.is_finished or _stops_freely(tally, options)
     bounds = bounds_of(tally, question, options, is_anytime)
     if question.is_reward:
@@ -377,7 +378,8 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
     """The interval of a tally.
 
     Args:
-        is_anytime: whether it must be valid at any stopping time; otherwise only for the stopping rule of the method.
+        is_anytime: whether the interval must be valid at any stopping time; otherwise it is valid only for the stopping
+            rule of the method.
     """
     error = 1 - options.confidence
     confidence = 1 - error * PEEKING if options.method == ADAPTIVE and not is_anytime else options.confidence
@@ -392,20 +394,21 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
 
 
 def _stops_freely(tally: Tally, options: Options) -> bool:
-    """Whether the number of traces depends on the results in a way for which only an anytime-valid interval is correct:
-    by a sequential test, or because the options were changed after results were known."""
+    """Whether the number of traces depends on the results in a way for which only an anytime-valid interval is correct.
+    This is the case after a sequential test, or if the options were changed after results were known."""
     return options.method == SPRT or tally.is_revised
 
 
 def wanted_traces(options: Options) -> int | None:
-    """The number of traces of a method that is not adaptive."""
+    """The number of traces of a method that is not adaptive; `None` for an adaptive one."""
     if options.method == OKAMOTO:
         return okamoto(options.confidence, options.epsilon)
     return options.max_traces if options.method == FIXED else None
 
 
 def _limit(question: Question, options: Options) -> int | None:
-    """The maximum number of traces; with assumptions, how many of them are accepted is not known before."""
+    """The maximum number of traces; `None` if there is no limit. Okamoto's number is not a limit for a question with
+    assumptions, because it is not known in advance how many traces they accept."""
     wanted = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
     limits = [limit for limit in (options.max_traces, wanted) if limit is not None]
     return min(limits) if limits else None
@@ -461,8 +464,8 @@ def _each(rows: Rows) -> Iterator[tuple[int, int, int, int, float]]:
 
 
 def _given(both: Sequence[Rows]) -> Iterator[tuple[int, int, int, int, float]]:
-    """The traces for a question with assumptions: those that violate them are rejected, those for which they are
-    undecided are undecided."""
+    """The traces for a question with assumptions. Traces that violate the assumptions are rejected; traces for which
+    the assumptions are undecided are undecided."""
     rows, assumptions = both
     for row, assumed, end, steps in zip(
         _each(rows), assumptions.verdicts, assumptions.ends, assumptions.steps, strict=True

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The kind and the shape of the value of an expression, determined before any code for it is written.
 
-A kind is `bool`, `int` or `real`, for an array the kind of its elements; a shape is the lengths of an array in all
-dimensions, () for a scalar.
+A kind is `bool`, `int` or `real`; the kind of an array is that of its elements. A shape contains the lengths of an
+array in all dimensions; it is () for a scalar.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def shape(node: Expression, names: StorageNames) -> tuple[int, ...]:
 
 
 def _argument(node: Expression, type_: Type, names: StorageNames) -> Meaning:
-    """The placeholder for the value of a parameter if only shapes are needed."""
+    """A placeholder for an argument, for use where only shapes are needed."""
     if isinstance(type_, ArrayType):
         return Region(kind_of(type_), shape(node, names), -1)
     return Operand(kind_of(type_), -1, known(node, names))
@@ -139,7 +139,7 @@ def length(node: ArrayConstructor, names: StorageNames) -> int:
 
 
 def known(node: Expression, names: StorageNames) -> Number | None:
-    """The value of a scalar that does not depend on the state."""
+    """The value of a scalar; `None` if it depends on the state."""
     match node:
         case Integer() | Real() | Boolean():
             return node.value
@@ -156,7 +156,7 @@ def known(node: Expression, names: StorageNames) -> Number | None:
 
 
 def kind_of(type_: Type) -> str:
-    """The kind of values of a type, of the elements of an array type.
+    """The kind of the values of a type; for an array type, of its elements.
 
     Raises:
         FaultError: values of this type are not supported.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The size of a compiled model, computed in advance: calls of functions are replaced by their bodies, and array
-constructors by their elements."""
+"""Checks of the size of a compiled model before it is compiled, because calls of functions are replaced by their
+bodies, and array constructors by their elements."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ MAX_CELLS = 10_000_000
 
 
 def check_size(model: Model, properties: Iterable[Property]) -> None:
-    """
+    """Check that the compiled model is not too large.
+
     Raises:
-        FaultError: at the function or array that is too large.
+        FaultError: a function or an array is too large; the error has its position.
     """
     for variables in (model.variables, *(automaton.variables for automaton in model.automata)):
         for variable in variables:
@@ -43,11 +44,11 @@ def check_size(model: Model, properties: Iterable[Property]) -> None:
 
 
 def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
-    """The operations of each function including those of all functions that it calls. A recursive call is one
-    operation.
+    """The number of operations of each function, including those of all functions that it calls. A recursive call is
+    one operation.
 
     Raises:
-        FaultError: one is too large.
+        FaultError: a function is too large.
     """
     sizes: dict[str, int] = {}
     entered: set[str] = set()
@@ -73,7 +74,7 @@ def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
 
 
 def _called(part: object, sizes: Mapping[str, int]) -> int:
-    """The operations of all calls in a part of a model, without those in the bodies of functions."""
+    """The number of operations of all calls in a part of a model, without the calls in the bodies of functions."""
     return sum(sizes.get(node.function, 1) for node in _nodes(part) if isinstance(node, Call))
 
 

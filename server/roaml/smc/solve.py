@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The minimum and the maximum probability of a goal over all schedulers, from all states of a model, if there are few.
 
-- Every value is enclosed from below and above. From below by value iteration; from above by Park induction, as in
-  optimistic value iteration (Hartmanns and Kaminski 2020): values that no step increases are upper bounds. Strongly
+- Every value is enclosed from below and above: from below by value iteration, from above by Park induction, as in
+  optimistic value iteration (Hartmanns and Kaminski 2020). Values that no step increases are upper bounds. Strongly
   connected components are solved in reverse topological order, so that most need one iteration.
 - Goals of one path operator without step bounds are solved. For all others, only the existence of choices is
   determined.
@@ -26,18 +26,20 @@ WORK = 400_000
 _CLOSE = 1e-6
 _FLOAT = 1e-13
 _SWEEPS = 1_000_000
-"""The maximum number of additions for a component; then its bounds stay as wide as they are."""
+"""The maximum number of additions for a component. After that, its bounds stay as wide as they are."""
 
 _Choice: TypeAlias = tuple[tuple[float, int], ...]
-"""The destinations of a choice: probabilities and numbers of states."""
+"""The destinations of a choice: pairs of a probability and the number of a state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """Attributes:
-    minimum, maximum: enclose the least and the greatest probability; None where the goal cannot be solved.
-    states: the number of states.
-    has_choices: whether some state has choices with different effects.
+    """The result of the exploration.
+
+    Attributes:
+        minimum, maximum: enclose the least and the greatest probability; `None` if the goal cannot be solved.
+        states: the number of states.
+        has_choices: whether some state has choices with different effects.
     """
 
     minimum: Bounds | None
@@ -93,7 +95,7 @@ def solve(
 def _explored(
     compiled: Compiled, limit: int, work: int, stops: bool, ignored: Registers
 ) -> tuple[list[int], list[tuple[_Choice, ...]]] | None:
-    """The verdict on the goal in each state, and the choices of each.
+    """The verdict on the goal in each state, and the choices of each state; `None` if a limit is exceeded.
 
     Args:
         stops: whether states after one in which the goal is decided are irrelevant.
@@ -158,7 +160,7 @@ def _solved(verdicts: list[int], choices: list[tuple[_Choice, ...]], target: int
 def _enclose(
     states: list[int], choices: list[tuple[_Choice, ...]], low: list[float], high: list[float], is_max: bool
 ) -> None:
-    """Upper bounds for the states of a component; those of later components are known."""
+    """Compute upper bounds for the states of a component, from the bounds of the components after it."""
     best = max if is_max else min
     slack = 1e-10
     while slack < _CLOSE:
@@ -183,7 +185,8 @@ def _mean(choice: _Choice, values: list[float]) -> float:
 
 
 def _components(choices: list[tuple[_Choice, ...]]) -> list[list[int]]:
-    """The strongly connected components, each after those that it leads to (Tarjan 1972, without recursion)."""
+    """The strongly connected components. Each comes after the components that can be reached from it (Tarjan 1972,
+    without recursion)."""
     index = [-1] * len(choices)
     lowest = [0] * len(choices)
     open_ = [False] * len(choices)

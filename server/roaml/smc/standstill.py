@@ -10,7 +10,8 @@ from roaml.jani.model import Automaton, Edge, System
 
 @dataclass(frozen=True, slots=True)
 class Standstill:
-    """
+    """The state in which a trace does not change any more.
+
     Attributes:
         automata: the automaton of each element of the system.
         locations: the current location of each element.

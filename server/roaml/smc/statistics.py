@@ -30,7 +30,8 @@ class Bounds(NamedTuple):
 def incomplete_beta(x: float, a: float, b: float) -> float:
     """The regularised incomplete beta function I_x(a, b) for a, b > 0 and 0 ≤ x ≤ 1.
 
-    By its continued fraction (DLMF 8.17.22), which converges fast below the mean; above it, by symmetry.
+    It is computed by its continued fraction (DLMF 8.17.22), which converges fast below the mean; above the mean, the
+    symmetry of the function is used.
     """
     if x <= 0.0:
         return 0.0
@@ -70,7 +71,7 @@ def beta_quantile(probability: float, a: float, b: float) -> float:
             low = middle
         else:
             high = middle
-        if high - low < 1e-13 * high:  # relative: Student's quantiles divide by small ones
+        if high - low < 1e-13 * high:  # a relative error, because Student's quantiles divide by small values
             break
     return (low + high) / 2
 
@@ -117,8 +118,8 @@ def confidence_sequence(successes: int, traces: int, confidence: float, undecide
 
 
 def _crossing(successes: int, traces: int, limit: float) -> float:
-    """The greatest probability below the estimate at which the logarithm of the martingale reaches `limit`; 0 if it
-    does nowhere. The function falls up to the estimate."""
+    """The greatest probability below the estimate at which the logarithm of the martingale reaches `limit`; 0 if there
+    is no such probability. The function decreases up to the estimate."""
     if successes == 0:
         return 0.0
     failures = traces - successes
@@ -188,8 +189,8 @@ class Mean(NamedTuple):
 
 
 class Ratio(NamedTuple):
-    """Wald's sequential test of "the probability is at least `threshold` + `epsilon`" against "at most `threshold` -
-    `epsilon`".
+    """Wald's sequential test of "the probability is at least `threshold` + `epsilon`" against "it is at most
+    `threshold` - `epsilon`".
 
     Each error has a probability of at most `error`: the ratio of likelihoods is a martingale under either hypothesis,
     and reaches 1 / `error` with at most that probability (Ville's inequality). For probabilities in between, there is

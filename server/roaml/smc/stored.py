@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Validates a tally from a file, which may have been changed: whether traces can have produced it."""
+"""Validates a tally from a file: since a file may have been changed, it checks whether traces can have produced the
+tally."""
 
 from __future__ import annotations
 
@@ -15,14 +16,14 @@ _MAX_COUNT = 1 << 62
 
 
 def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
-    """A tally as `Tally.to_json` wrote it.
+    """A tally that `Tally.to_json` has written.
 
     Args:
         value: from JSON.
         question, options: the question and the options of the traces.
 
     Raises:
-        ValueError: it does not have this form, or its numbers contradict each other; the message names the part.
+        ValueError: the value does not have this form, or its numbers contradict each other; the message names the part.
     """
     shape = _row(value, "tally")
     for key in ("traces", "successes", "undecided", "steps", "rejected", "closed", "idle", "late"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A trace as a story: the steps that led to its end.
 
-The relevant steps are those that change a variable of the property, and those on which these depend, back to the start:
-the last change of each variable that they read, and the step that triggered the automaton that takes them.
+The relevant steps are those that change a variable of the property, and those on which these steps depend, back to the
+start: the last change of each variable that a step reads, and the step that triggered the automaton that takes it.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Story:
         variables: the variables that the property reads.
         automata: the automaton of each instance.
         start: the variables of the model before the first step.
-        standstill: its final state, if it is stuck.
+        standstill: the final state, if the trace is stuck.
         is_whole: whether all steps are shown, not only the relevant ones.
-        comment: what the property requires, if the model says it.
+        comment: a description of what the property requires, if the model contains one.
     """
 
     property: str
@@ -72,10 +72,10 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
 
 
 def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> Iterator[float | None]:
-    """The time after each step, in seconds; None if the model has no clock.
+    """The time after each step, in s; `None` if the model has no clock.
 
     Args:
-        clock: the variables that hold the seconds and nanoseconds.
+        clock: the variables that contain the seconds and nanoseconds.
     """
     seconds = nanoseconds = 0.0
     for step in steps:

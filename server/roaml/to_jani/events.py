@@ -6,9 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from roaml.expr.infer import infer
-from roaml.expr.types import UNKNOWN, Struct, Type, join
+from roaml.expr.tree import Expr, Name, walk
+from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.scxml.event_data import Round, infer_in_rounds, parameter_types
 from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
 from roaml.text import Location
 from roaml.to_jani.moves import AutomatonMoves
@@ -38,22 +41,13 @@ class EventUsage:
     def role(self) -> EventRole:
         return self.event.role
 
-    @property
-    def data(self) -> Struct:
-        return Struct("", (("data", Struct("", tuple(self.params.items()))),))
-
 
 def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
     """All events by name, in the order of their first occurrence."""
     table = _occurrences(behaviors)
-    for _ in range(_ROUNDS):
-        if not _infer_params(behaviors, table):
-            break
+    for name, params in infer_in_rounds(lambda known: _infer_params(behaviors, known)).items():
+        table[name].params.update(params)
     return table
-
-
-_ROUNDS = 4
-"""The maximum number of rounds in which types are passed from the data of one event to the parameters of another."""
 
 
 def _occurrences(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
@@ -82,22 +76,30 @@ def _sent(body: Body, index: int, table: dict[str, EventUsage]) -> None:
                 event.places.setdefault(param.name, param.origin)
 
 
-def _infer_params(behaviors: Sequence[AutomatonMoves], table: Mapping[str, EventUsage]) -> bool:
-    """Infer types once from everything that is sent; return whether an unknown type remains that another round may
-    infer."""
-    waiting = False
+EventParams: TypeAlias = Mapping[str, Mapping[str, Type]]
+"""Event -> parameter -> type."""
+
+
+def _infer_params(behaviors: Sequence[AutomatonMoves], known: EventParams) -> Round[EventParams, Mapping[str, Type]]:
+    """The types of everything that is sent, if received events carry `known`."""
+    sent: dict[str, list[tuple[str, Type]]] = {}
+    forwarded: set[str] = set()
     for behavior in behaviors:
-        local: dict[str, Type] = {data.id: data.type for data in behavior.automaton.data}
+        variables: dict[str, Type] = {data.id: data.type for data in behavior.automaton.data}
         for trigger, body in behavior.bodies():
-            scope = dict(local)
+            scope = dict(variables)
             if trigger:
-                scope["_event"] = table[trigger].data
+                data = Struct("", tuple(known[trigger].items())) if trigger in known else UNKNOWN
+                scope["_event"] = Struct("", (("data", data),))
             for statement in statements(body):
                 if isinstance(statement, Send):
-                    params = table[statement.event.name].params
-                    for param in statement.params:
-                        type_, _ = infer(param.value, scope.get)
-                        known = params.get(param.name, UNKNOWN)
-                        params[param.name] = join(known, type_) or known
-                        waiting = waiting or params[param.name] == UNKNOWN
-    return waiting
+                    values = sent.setdefault(statement.event.name, [])
+                    values += ((param.name, infer(param.value, scope.get)[0]) for param in statement.params)
+                    if any(_reads_event(param.value) for param in statement.params):
+                        forwarded.add(trigger)
+    types = {event: parameter_types(values) for event, values in sent.items()}
+    return Round(types, types, frozenset(forwarded))
+
+
+def _reads_event(value: Expr) -> bool:
+    return any(isinstance(node, Name) and node.name == "_event" for node in walk(value))

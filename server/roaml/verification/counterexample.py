@@ -17,11 +17,13 @@ from roaml.views.story import StoryLine, heading, lines
 
 @dataclass(frozen=True, slots=True)
 class Counterexample:
-    """Attributes:
-    heading: a summary of the trace, in one sentence.
-    verdict: "failed", "passed" (if that contradicts the expectation) or "undecided".
-    trace: its number.
-    lines: one for each turn of an automaton.
+    """The explanation of a trace.
+
+    Attributes:
+        heading: a summary of the trace, in one sentence.
+        verdict: "failed", "passed" (if that contradicts the expectation) or "undecided".
+        trace: the number of the trace.
+        lines: one line for each turn of an automaton.
     """
 
     heading: str
@@ -39,9 +41,10 @@ def unwanted_verdict(result: Result) -> int:
 
 
 def unwanted_trace(result: Result) -> Seen | None:
-    """The shortest trace that contradicts an expectation; an undecided one if there is none.
+    """The shortest trace that contradicts an expectation; an undecided one if there is none; `None` if there is
+    neither.
 
-    If any trace got stuck, the shortest of these, because it explains why the number is doubtful.
+    If any trace got stuck, the result is the shortest stuck trace, because it explains why the number is doubtful.
     """
     if result.answer is None:
         return None
@@ -52,8 +55,8 @@ def unwanted_trace(result: Result) -> Seen | None:
 
 
 def witness_trace(result: Result) -> Seen | None:
-    """The shortest trace that speaks for a property: one that is as expected, or in which it holds if nothing is
-    expected."""
+    """The shortest trace that supports a property: one that is as expected or, if nothing is expected, one in which the
+    property holds. `None` if there is none."""
     if result.answer is None:
         return None
     return result.answer.tally.shortest.get(FALSE if unwanted_verdict(result) == TRUE else TRUE)

@@ -16,7 +16,7 @@ from roaml.verification.results import ALL, NONE, Exact, ShortestTrace
 from roaml.verification.schedulers import asks_for_minimum
 
 _SLACK = 1e-6
-"""By so much a value may miss a number that is compared with `≥`, `≤` or `=`: numbers of models are rounded."""
+"""The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
 
 
 class UndecidedError(Exception):
@@ -67,7 +67,7 @@ def exact_values(
 
 
 def _proof(space: Space, values: GoalValues) -> str:
-    """What all states prove beyond a probability of 0 or 1: that nothing else is possible."""
+    """What all states prove in addition to a probability of 0 or 1: `ALL`, `NONE` or "" (see `Exact`)."""
     goal = space.asked.goal
     if space.asked.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
         return ""
@@ -78,7 +78,7 @@ def _proof(space: Space, values: GoalValues) -> str:
 
 
 def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
-    """Whether the value that a property asks for, the minimum or the maximum, satisfies an expectation."""
+    """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation."""
     threshold = expectation.threshold
     what, bounds, value = ("least", exact.minimum, exact.least)
     if not asks_for_minimum(question):

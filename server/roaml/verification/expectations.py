@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`NAME >= 0.95`: the expected value of a property, and whether it holds.
 
-- Decided by the estimate, not by its interval: no number of traces could ever show that a probability is 1. If the
-  interval contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
+- The estimate decides, not its interval: no number of traces could ever show that a probability is 1. If the interval
+  contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
 - A bound on a probability treats undecided traces as if each had the unfavourable result; `==` means at most epsilon
   away.
 - A decision of a sequential test about the same number takes precedence.
@@ -28,12 +28,12 @@ _RELATIONS = {
 }
 _FORM = re.compile(r"\s*(.+?)\s*((?:>=|<=|==|≥|≤|>|<|=)\s*\S+)\s*")
 NO_EXPECTATION = "no expectation set"
-"""What is said of a result that is neither good nor bad."""
+"""The text for a result with which no expectation is compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """A comparison of the value of a property with a number. `is_own`: it is part of the property itself."""
+    """A comparison of the value of a property with a number. `is_own` is whether it is part of the property itself."""
 
     name: str
     threshold: Threshold
@@ -50,9 +50,9 @@ class Verdict:
 
     Attributes:
         is_certain: whether the verdict is the same for the whole interval.
-        is_uniform: whether it is met under uniform choices and is not known to be met under all schedulers.
+        is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
         under: a phrase for the scheduler under which it is not met; "" if only one scheduler is considered.
-        unanimous: the traces and the bound of the interval, if none of the traces contradicts an expected 0 or 1.
+        unanimous: the number of traces and the bound of the interval, if no trace contradicts an expected 0 or 1.
     """
 
     expectation: Expectation
@@ -75,7 +75,7 @@ class Verdict:
         return f"no trace against it in {self.unanimous[0]:,}" if self.unanimous is not None and self.is_met else ""
 
     def doubt(self, epsilon: float) -> str:
-        """Why the interval leaves the verdict open; "" if it does not.
+        """The reason why the interval leaves the verdict open; "" if it does not.
 
         Args:
             epsilon: the difference that `==` allows.
@@ -97,7 +97,8 @@ class Verdict:
 
 
 def parse(text: str) -> Expectation:
-    """
+    """The expectation that a text such as `NAME >= 0.95` states.
+
     Raises:
         ValueError: the text does not have this form; the message contains the reason.
     """
@@ -113,13 +114,14 @@ def expectation_of(name: str, comparison: Comparison) -> Expectation:
 
 
 class RangeError(ValueError):
-    """A probability is compared with an impossible number; the message states which."""
+    """A probability is compared with a number that is not between 0 and 1; the message names both."""
 
 
 def check_range(expectation: Expectation, question: Question) -> None:
-    """
+    """Check that a probability is compared with a number from 0 to 1.
+
     Raises:
-        RangeError: a probability is compared with a number that is not between 0 and 1.
+        RangeError: it is compared with another number.
     """
     if not is_possible(expectation, question):
         number = expectation.threshold.number
@@ -129,7 +131,7 @@ def check_range(expectation: Expectation, question: Question) -> None:
 
 
 def is_possible(expectation: Expectation, question: Question) -> bool:
-    """Whether a value of the property can be near the number."""
+    """Whether the value of a property can be equal to the number of an expectation, or near it."""
     return question.is_reward or 0 <= expectation.threshold.number <= 1
 
 
@@ -161,5 +163,5 @@ def judge(expectation: Expectation, answer: Answer) -> Verdict:
 
 
 def _rounded(bound: float) -> float:
-    """Away from the expected 0 or 1, to three digits."""
+    """A bound of the interval with three digits, rounded away from the expected 0 or 1."""
     return math.floor(bound * 1000) / 1000 if bound > 0.5 else math.ceil(bound * 1000) / 1000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why a property has no answer, with its position; the other properties are still decided."""
+"""The reason why a property has no answer, with its position. Other properties are still decided."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from roaml.verification.target import LineColumn, VerificationTarget
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Attributes:
-    code: the rule whose document explains it.
-    place: its place in the files; `None` if unknown.
+    """The reason why a property has no answer.
+
+    Attributes:
+        code: the rule whose document explains the reason.
+        place: its place in the files; `None` if unknown.
     """
 
     code: str
@@ -22,7 +24,8 @@ class Refusal:
 
 
 def refusal(fault: FaultError, target: VerificationTarget, seed: int) -> Refusal:
-    """
+    """The refusal for an error in a model or property.
+
     Args:
         seed: the seed of the traces.
     """
@@ -30,5 +33,5 @@ def refusal(fault: FaultError, target: VerificationTarget, seed: int) -> Refusal
 
 
 def fault_message(fault: FaultError, seed: int) -> str:
-    """A description of the undefined operation, with the trace that shows it."""
+    """The message of an error, with the trace that shows it if there is one."""
     return fault.message if fault.trace is None else f"{fault.message} (in trace {fault.trace} of seed {seed})"

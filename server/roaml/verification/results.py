@@ -25,7 +25,7 @@ from roaml.verification.target import VerificationTarget
 
 @dataclass(frozen=True, slots=True)
 class ShortestTrace:
-    """The shortest trace of all with a verdict."""
+    """The shortest of all traces with a certain verdict."""
 
     space: Space = field(repr=False)
     path: Path
@@ -58,13 +58,13 @@ class Exact:
     """The values from all states.
 
     Attributes:
-        minimum, maximum: over all schedulers, enclosed by bounds.
+        minimum, maximum: the extreme values over all schedulers, enclosed by bounds.
         uniform: the value with uniform choices.
-        states: how many there are.
+        states: the number of states.
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
-        proof: `ALL` if the property is an invariant that holds in all states, `NONE` if no state is what it asks
-            for; "" otherwise.
-        traces: the shortest ones in which the property fails or holds, if there are such traces.
+        proof: for a property about one condition that is always or never reached: `ALL` if the condition holds in all
+            states, `NONE` if it holds in no state; "" otherwise.
+        traces: the shortest traces in which the property fails or holds, if there are any.
     """
 
     minimum: Bounds
@@ -85,16 +85,16 @@ class Exact:
 
     @property
     def average(self) -> float:
-        """With uniform choices."""
+        """The value with uniform choices."""
         return _value(self.uniform)
 
     def shortest(self, verdict: int) -> ShortestTrace | None:
-        """The shortest trace with a verdict, if there is one."""
+        """The shortest trace with a verdict; `None` if there is none."""
         return next((trace for trace in self.traces if trace.verdict == verdict), None)
 
 
 def _value(bounds: Bounds) -> float:
-    """The value within close bounds: an end that is exact, else their middle."""
+    """The value that is enclosed by bounds: an end of the bounds that is exact, otherwise their middle."""
     if bounds.lower == bounds.upper:
         return bounds.lower
     if math.isinf(bounds.upper) or math.isinf(bounds.lower):
@@ -108,7 +108,7 @@ class SampledResult:
 
     Attributes:
         side: `LEAST` or `GREATEST` of `roaml.smc.lss`.
-        scheduler: its number; `words` describes it.
+        scheduler: the number of the scheduler; `words` describes it.
         stuck: the traces that got stuck, if any.
     """
 
@@ -129,7 +129,7 @@ class Traces:
     options: Options
 
     def recorder(self) -> Recorder:
-        """Simulates single traces; one recorder is used by one thread at a time."""
+        """A recorder that simulates single traces. It must not be used by several threads at a time."""
         return Recorder(self.checker, self.asked, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
@@ -158,10 +158,10 @@ class Result:
         sampled: the results of traces with sampled schedulers.
         tried: the number of schedulers from which these were selected.
         stuck: the traces that got stuck, if any.
-        choices: the knowledge about schedulers other than the uniform one; `None` if only uniform choices are
+        choices: what is known about schedulers other than the uniform one; `None` if only uniform choices are
             considered.
-        refusal: why there is no answer; `fault` is its cause.
-        undecided: why all states could not decide it.
+        refusal: the reason why there is no answer; `fault` is its cause.
+        undecided: the reason why the exploration of all states could not decide the property.
         traces: the traces of `answer`, which can be simulated again.
     """
 
@@ -182,7 +182,7 @@ class Result:
 
     @property
     def comment(self) -> str:
-        """What the property requires, if the model says it."""
+        """A description of what the property requires, if the model contains one."""
         return (self.traces.asked.property.comment or "") if self.traces is not None else ""
 
     @property
@@ -199,7 +199,7 @@ class Result:
 
     @property
     def has_no_expectation(self) -> bool:
-        """Whether there is an answer that is compared with nothing, so that it is neither good nor bad."""
+        """Whether there is an answer, and nothing is expected of it."""
         return self.refusal is None and not self.undecided and not self.verdicts
 
     @property

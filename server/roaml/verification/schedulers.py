@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`Pmin` and `Pmax` refer to all schedulers, but traces use one: the consequences for an answer and for the verdict on
-an expectation.
+"""The effect of schedulers on answers and verdicts. `Pmin` and `Pmax` refer to all schedulers, but traces use one.
 
 - A lower bound on a minimum, or an upper bound on a maximum, must hold under every scheduler. One scheduler can refute
-  it; if it is only known to hold for uniform choices, it is met under uniform choices.
+  it. If it is only known to hold for uniform choices, it is met under uniform choices.
 - An upper bound on a minimum, or a lower bound on a maximum, is met if it holds under one scheduler, such as the
   uniform one.
 """
@@ -22,7 +21,8 @@ _SLACK = 1e-6
 
 
 def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
-    """The verdict on an expectation of an answer under uniform choices, with the knowledge about other schedulers.
+    """The verdict on an expectation of an answer under uniform choices, corrected by what is known about other
+    schedulers.
 
     Args:
         choices: `None` if the question is about uniform choices.
@@ -73,12 +73,12 @@ def asks_for_minimum(question: Question) -> bool:
 
 
 def may_differ(choices: Choices | None) -> bool:
-    """Whether it is unknown if schedulers other than the uniform one have another value."""
+    """Whether schedulers other than the uniform one may have another value, as far as is known."""
     return choices is not None and not choices.agreement and not choices.differ
 
 
 def extreme_asked(question: Question) -> str:
-    """The extreme that a property asks for, in a word."""
+    """The extreme that a property asks for: `minimum` or `maximum`."""
     return "minimum" if asks_for_minimum(question) else "maximum"
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a system gets stuck, checked in every verification by traces that do not stop when a property is decided.
+"""Whether a system gets stuck. Every verification checks this with traces that do not stop when a property is decided.
 
-A trace is stuck if its automata wait for one another, so that the time of the model stands still for ever. The result
-of a stuck trace for a property is accidental. So it is reported beside every number, with an example: the chain of
-waiting automata.
+A trace is stuck if its automata wait for one another, so that the time of the model stands still for ever. What such a
+trace says about a property is accidental. So stuck traces are reported beside every number, with an example: the chain
+of waiting automata.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ MAX_TRACES = 100
 """The number of traces that are generated to check whether a system gets stuck."""
 MAX_STEPS_PER_TRACE = 100_000
 MAX_STEPS = 1_000_000
-"""The number of steps after which no more traces are generated; they take a tenth of a second."""
+"""The number of steps after which no further traces are generated; this many steps take a tenth of a second."""
 BATCH_SIZE = 10
-"""The number of traces after which the steps are counted."""
+"""The number of traces that are generated regardless of their steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +39,10 @@ class Stuck:
     """Traces of one question that got stuck.
 
     Attributes:
-        count: their number.
+        count: the number of stuck traces.
         traces: the number of all traces.
         seen: the shortest stuck trace.
-        time: the time of the model at its end, in s; `None` without a clock.
+        time: the time of the model at its end, in s; `None` if the model has no clock.
         waits: the waiting automata at its end.
     """
 
@@ -54,7 +54,7 @@ class Stuck:
 
     @property
     def advice(self) -> str:
-        """The advice how to fix the system; "" if unknown."""
+        """How the system can be fixed; "" if unknown."""
         return advice(self.waits)
 
     @property
@@ -64,13 +64,13 @@ class Stuck:
 
     @property
     def warning(self) -> str:
-        """A sentence on the consequence for the value of the property of these traces."""
+        """A sentence on the consequence of these traces for the value of the property."""
         of = f"all {self.traces:,} traces" if self.count == self.traces else f"{self.count:,} of {self.traces:,} traces"
         return f"{of} got stuck and say nothing about the property, so its value is doubtful"
 
     @property
     def chain(self) -> Chain:
-        """The chain of waiting automata, independent of the time."""
+        """The chain of waiting automata, which does not depend on the time."""
         return chain_of(self.waits)
 
 
@@ -78,8 +78,8 @@ Chain: TypeAlias = tuple[tuple[str, str, str], ...]
 
 
 def chain_of(waiting: Sequence[Wait]) -> Chain:
-    """The chain of waiting automata, independent of the time: automata, their locations, and the events that they wait
-    for."""
+    """The chain of waiting automata: the automata, their locations, and the events that they wait for. It does not
+    depend on the time."""
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
@@ -88,10 +88,10 @@ class Look:
     """The result of the check for stuck traces.
 
     Attributes:
-        answer: the answer of the traces that were generated for it; `None` if there were none.
+        answer: the answer of the traces that were generated for the check; `None` if there were none.
         stuck: the shortest example, from these traces or from those of a property.
         level: whether it is a warning or an error.
-        fault: the undefined operation in one of these traces; then there is no answer.
+        fault: the message about an undefined operation in one of these traces; then there is no answer.
     """
 
     answer: Answer | None
@@ -130,7 +130,7 @@ def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Ans
 
 
 def can_be_stuck(checker: ModelChecker) -> bool:
-    """Whether the meaning of a stuck trace is known, because the model is a translated system."""
+    """Whether it is known which traces are stuck. This is so for translated systems."""
     return any(checker.program.location_mark)
 
 
@@ -148,7 +148,7 @@ def stuck_in(
 
 
 def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
-    """The time of the model in the current state, in s; `None` without a clock."""
+    """The time of the model in the current state, in s; `None` if the model has no clock."""
     if target.clock is None:
         return None
     by_name = {storage.name: storage for storage in recorder.shared}
@@ -159,5 +159,5 @@ def time_of(target: VerificationTarget, recorder: Recorder) -> float | None:
 
 
 def shortest(examples: Iterable[Stuck | None]) -> Stuck | None:
-    """The stuck traces with the shortest example, which is shown."""
+    """The stuck traces with the shortest example; `None` if there are none."""
     return min((stuck for stuck in examples if stuck is not None), key=lambda stuck: stuck.seen.steps, default=None)

@@ -17,7 +17,7 @@ from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 
 CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
-"""The variables of a translated system that hold its time: seconds and nanoseconds."""
+"""The variables of a translated system that contain its time: seconds and nanoseconds."""
 
 
 class LineColumn(NamedTuple):
@@ -33,12 +33,12 @@ class VerificationTarget:
     """A model, with the texts that its positions refer to.
 
     Attributes:
-        path: the named file; "" for a model that was not read from a file.
-        files: all files that were read, the named one first.
+        path: the file that the user has named; "" for a model that was not read from a file.
+        files: all files that were read, `path` first.
         source_of: path -> the text of the file of an origin; `None` if it is unknown.
         clock: the variables for seconds and nanoseconds, if the model has them.
         assumptions: property -> the property that its assumptions hold, if it has any.
-        expectations: those beside the properties, and those in the configuration.
+        expectations: property -> the expected values, from the file of the property and from the configuration.
     """
 
     path: str
@@ -51,12 +51,12 @@ class VerificationTarget:
 
     @property
     def properties(self) -> tuple[Property, ...]:
-        """What can be verified: the properties of the model, without those about assumptions."""
+        """The properties of the model that can be verified: all except those that state assumptions."""
         assumed = {property_.name for property_ in self.assumptions.values()}
         return tuple(property_ for property_ in self.model.properties if property_.name not in assumed)
 
     def expecting(self, comparisons: Mapping[str, Comparison]) -> VerificationTarget:
-        """The same target, which expects these values of properties too; of those that it has."""
+        """The same target with further expectations. Comparisons for properties that it does not have are ignored."""
         names = {property_.name for property_ in self.properties}
         more = [expectation_of(name, each) for name, each in comparisons.items() if name in names]
         return replace(self, expectations=(*self.expectations, *more)) if more else self

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What random traces of a tree with mocks show: its outcome, its time, its recoveries, and the leaves that matter
-(docs/spec/mocks.md#results)."""
+"""The result of random traces of a tree with mocks: its outcome, its time, its recoveries, and the influence of its
+leaves (docs/spec/mocks.md#results)."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ from roaml.smc.statistics import Bounds, Mean, clopper_pearson, incomplete_beta
 from roaml.verification.target import VerificationTarget
 
 STATUS = "bt_1000_response__status"
-"""The variable with the last answer of the tree."""
+"""The variable with the status that the tree returned last."""
 SUCCEEDS, FAILS = "succeeds", "fails"
 """The names of the properties of a tree without a system."""
 TRACES = 1000
-"""The number of traces, unless one is given."""
+"""The default number of traces."""
 QUANTILES = (0.5, 0.9, 0.99)
 COUNTERS = ("recoveries", "failed_attempts")
 _SUCCESS, _FAILURE, _RUNNING, _SKIPPED, _HELD = 1, 2, 3, 4, 5
@@ -68,7 +68,7 @@ def _eventually(name: str, condition: Expression) -> Property:
 
 @dataclass(frozen=True, slots=True)
 class OutcomeShare:
-    """How many of all traces have a property, with the interval for its probability."""
+    """The number of traces with a certain outcome, with the interval for its probability."""
 
     count: int
     traces: int
@@ -81,7 +81,7 @@ class OutcomeShare:
 
 @dataclass(frozen=True, slots=True)
 class Quantile:
-    """The time within which a share of the traces has ended, in s, with its interval; infinite if it is not known."""
+    """The time in s within which a share of the traces has ended, with its interval; infinite if it is unknown."""
 
     share: float
     value: float
@@ -90,7 +90,7 @@ class Quantile:
 
 @dataclass(frozen=True, slots=True)
 class Influence:
-    """The derivative of the probability of success by the probability of a mock. `bounds` is its interval."""
+    """The derivative of the probability of success with respect to the probability of a mock, with its interval."""
 
     leaf: MockedLeaf
     value: float
@@ -99,16 +99,18 @@ class Influence:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TreeOutcome:
-    """Attributes:
-    success, failure: of the tree; `failure` includes trees that were skipped.
-    unfinished: traces in which the tree had not ended at the end of time.
-    exceptions: traces in which a node got stuck, because the library throws an exception there.
-    time: until the tree succeeds, in s; `None` if it never does.
-    quantiles: of this time.
-    counts: node and counter -> the expected number for a trace.
-    influences: of the leaves, the greatest first; without those whose mock never or always succeeds. Empty if all
-        traces had the same outcome, which shows no influence.
-    shortest: the number of the shortest trace that fails; `None` if there is none.
+    """The measurements of all traces of a tree.
+
+    Attributes:
+        success, failure: the outcomes of the tree; `failure` includes trees that were skipped.
+        unfinished: the traces in which the tree had not ended at the end of time.
+        exceptions: the traces in which a node got stuck, because the library throws an exception there.
+        time: the time until the tree succeeds, in s; `None` if it never does.
+        quantiles: the quantiles of this time.
+        counts: node and counter -> the expected number for a trace.
+        influences: the influences of the leaves, the greatest first; leaves whose mock never or always succeeds are
+            omitted. Empty if all traces had the same outcome, which shows no influence.
+        shortest: the number of the shortest trace that fails; `None` if there is none.
     """
 
     traces: int
@@ -125,12 +127,13 @@ class TreeOutcome:
 
 
 def measure(mocked: MockedTree, target: VerificationTarget, options: Options) -> TreeOutcome:
-    """Make traces until the tree has ended, and measure them.
+    """Generate traces until the tree has ended, and measure them.
 
-    The model must count (`MockOptions.counts`). The number of traces is fixed before, so intervals hold as they are.
+    The model must have counters (`MockOptions.counts`). The number of traces is fixed in advance, so the intervals are
+    valid without correction.
 
     Raises:
-        ValueError: a trace did something that has no meaning.
+        ValueError: a trace executed an undefined operation.
     """
     return _Measuring(mocked, target, options).run()
 
@@ -196,8 +199,8 @@ class _Measuring:
         )
 
     def trace(self, number: int) -> tuple[int, int, bool]:
-        """The last answer of the tree in a trace (0 or RUNNING if it has not ended), its steps, and whether a node has
-        got stuck."""
+        """The result of a trace: the status that the tree returned last (0 or RUNNING if it has not ended), the number
+        of steps, and whether a node has got stuck."""
         verdict = self.kernel.begin(self.options.seed, number, 0)
         if verdict == UNKNOWN:
             verdict = self.kernel.advance(self.options.max_steps)
@@ -213,7 +216,7 @@ class _Measuring:
         return self.kernel.integer(storage.base)
 
     def clock_time(self) -> float:
-        """In s; the clock may be one step ahead of the tree."""
+        """The time of the model in s. The clock may be one step ahead of the tree."""
         seconds, nanoseconds = map(self.integer, self.clock)
         return seconds + nanoseconds / 1e9
 
@@ -221,7 +224,7 @@ class _Measuring:
         return OutcomeShare(count, traces, clopper_pearson(count, traces, self.options.confidence, undecided))
 
     def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
-        """The derivative of the logarithm of the probability of the trace by the probability of a mock."""
+        """The derivative of the logarithm of the probability of the trace with respect to the probability of a mock."""
         p = leaf.probability
         successes = self.integer(own["successes"]) if "successes" in own else 0
         failures = self.integer(own["failures"]) if "failures" in own else 0
@@ -230,8 +233,8 @@ class _Measuring:
     def influences(
         self, leaves: Sequence[MockedLeaf], scores: Sequence[Sequence[float]], outcomes: Sequence[bool]
     ) -> tuple[Influence, ...]:
-        """The derivatives, by score functions: the expectation of outcome times score. The scores have the expectation
-        0, so subtracting the mean outcome changes nothing but the variance."""
+        """The derivatives, computed with score functions: each is the expectation of outcome times score. Scores have
+        the expectation 0, so subtracting the mean outcome only reduces the variance."""
         traces = len(outcomes)
         total = sum(outcomes)
         if total in (0, traces):
@@ -240,15 +243,15 @@ class _Measuring:
         for position, leaf in enumerate(leaves):
             mean = Mean()
             for row, outcome in zip(scores, outcomes, strict=True):
-                others = (total - outcome) / max(1, traces - 1)  # without the trace itself: no bias
+                others = (total - outcome) / max(1, traces - 1)  # excludes the trace itself, which avoids a bias
                 mean = mean.add((outcome - others) * row[position])
             influences.append(Influence(leaf, mean.mean, mean.bounds(self.options.confidence)))
         return tuple(sorted(influences, key=lambda influence: -abs(influence.value)))
 
 
 def quantile(share: float, values: Sequence[float], confidence: float) -> Quantile:
-    """A quantile of sorted values, with a distribution-free confidence interval. Its ends are two of the values, or 0
-    and infinity where there are too few values."""
+    """A quantile of sorted values, with a distribution-free confidence interval. Its ends are two of the values. If
+    there are too few values, they are 0 and infinity."""
     count = len(values)
     tail = (1 - confidence) / 2
 

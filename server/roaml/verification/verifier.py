@@ -29,7 +29,7 @@ from roaml.views.ends import marks, observer_outputs
 
 
 class NoThresholdError(ValueError):
-    """A sequential test requires a property that is compared with a number."""
+    """A sequential test is requested for a property that is not compared with a number."""
 
 
 def checker_of(target: VerificationTarget, properties: Iterable[str] | None = None) -> ModelChecker:
@@ -77,7 +77,7 @@ def verifier_of(
     """A target prepared for verification.
 
     Args:
-        properties: the names of those to verify; `None` for all. Those with expectations are added.
+        properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
 
     Raises:
@@ -103,7 +103,7 @@ def verifier_of(
 
 
 def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
-    """The expectations of a property: its own, and those of the given ones that are about it."""
+    """The expectations of a property: its own, and those in `given` that are about it."""
     name, threshold = asked.question.name, asked.question.threshold
     about_it = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
     if threshold is None or any(expectation.threshold == threshold for expectation in about_it):
@@ -112,7 +112,7 @@ def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tu
 
 
 def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
-    """A result of traces with uniform choices, compared with other expectations, without new traces.
+    """The result of traces with uniform choices, compared with other expectations, without new traces.
 
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
@@ -144,10 +144,10 @@ class Verifier:
         return self.checker.names
 
     def question(self, name: str) -> CompiledProperty:
-        """A property; for a sequential test, compared with the first expected number.
+        """The question about a property. For a sequential test, its value is compared with the first expected number.
 
         Raises:
-            FaultError: it cannot be decided.
+            FaultError: the property cannot be decided.
         """
         if name in self.checker.refused:
             raise self.checker.refused[name]
@@ -159,7 +159,7 @@ class Verifier:
         return asked
 
     def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
-        """The expectations of a property: its own, those in `expectations`, and those of the target."""
+        """The expectations of a property: its own, those of the verifier, and those of the target."""
         return expectations_of(asked, (*self.expectations, *self.target.expectations))
 
     def verify(self, name: str, pool: Pool) -> Result:
@@ -175,7 +175,7 @@ class Verifier:
             return self.refused(name, fault)
 
     def verify_all(self, pool: Pool) -> Iterator[Result]:
-        """The results of all properties, in their order. Those that can share traces do.
+        """The results of all properties, in their order. Properties that can share traces are verified together.
 
         Raises:
             NoThresholdError, WorkersLostError: see `verify`.
@@ -189,7 +189,7 @@ class Verifier:
             yield results.get(name) or self.verify(name, pool)
 
     def sharing(self) -> list[CompiledProperty]:
-        """The properties that can share traces; none if there are fewer than two."""
+        """The properties that can share traces; empty if there are fewer than two."""
         asked = [self.question(name) for name in self.names if name not in self.checker.refused]
         sharing = [each for each in asked if self.can_share(each)]
         return sharing if len(sharing) > 1 else []
@@ -202,7 +202,7 @@ class Verifier:
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, by traces with uniform choices.
+        """The result of a property, from traces with uniform choices.
 
         Args:
             tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
@@ -222,7 +222,7 @@ class Verifier:
         return self._judged(asked, answer, choices, time.monotonic() - began)
 
     def can_share(self, asked: CompiledProperty) -> bool:
-        """Whether a property can be answered by the traces of others: if it is about probabilities, and not about
+        """Whether the traces of other properties can answer a property: it must be about a probability, and not about
         deadlocks."""
         return not asked.question.is_reward and asked.goal.is_bounded < 2
 
@@ -237,7 +237,7 @@ class Verifier:
         """The results of properties that can share traces (`can_share`). Each has the answer that `answer` gives.
 
         Args:
-            tallies: where to go on; they are changed as batches come in.
+            tallies: the states to continue from; they are updated after each batch.
             watch: called for each property after each of its batches.
 
         Raises:
@@ -261,7 +261,7 @@ class Verifier:
     def _result(
         self, asked: CompiledProperty, answer: Answer | FaultError, pool: Pool, pulse: Pulse | None, seconds: float
     ) -> Result:
-        """The result for an answer that took `seconds` s; a refusal if the answer is a fault."""
+        """The result that contains an answer, which took `seconds` s to compute; a refusal if the answer is a fault."""
         began = time.monotonic()
         try:
             if isinstance(answer, FaultError):
@@ -272,23 +272,24 @@ class Verifier:
         return self._judged(asked, answer, choices, seconds + time.monotonic() - began)
 
     def _choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
-        """What is known of other schedulers; `None` if only uniform choices are asked about."""
+        """What is known about other schedulers; `None` if the question is only about uniform choices."""
         question = asked.question
         if self.only_uniform or question.is_stuck or question.is_conditional:
             return None
         return self.checker.choices(asked, answer, pool, pulse)
 
     def check_method(self, asked: CompiledProperty) -> None:
-        """
+        """Check that a sequential test has a number to compare with, if one is requested.
+
         Raises:
-            NoThresholdError: a sequential test is requested, and there is no number to compare with.
+            NoThresholdError: it has no such number.
         """
         question = asked.question
         if self.options.method == SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
     def interrupted(self, asked: CompiledProperty, tally: Tally, seconds: float) -> Result:
-        """The result of a property so far."""
+        """The result of a property so far, after an interruption."""
         answer = summary(asked.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
         return replace(self._judged(asked, answer, choices, seconds), is_interrupted=True)
@@ -301,7 +302,7 @@ class Verifier:
     def sampled(
         self, asked: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
     ) -> Result:
-        """The minimum and maximum probability of sampled schedulers, as far as the search has progressed."""
+        """The minimum and maximum probability under sampled schedulers, as far as the search has progressed."""
         sampled = []
         for side, (scheduler, tally) in search.found.items():
             if tally.traces:
@@ -331,10 +332,10 @@ class Verifier:
     def exhaustive(
         self, asked: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
     ) -> Result:
-        """The exact values of a property, from all states; undecided where a limit ends their exploration.
+        """The exact values of a property, from all states; undecided if a limit ends the exploration.
 
         Args:
-            watch: called with the number of states, and of those whose steps are known.
+            watch: called with the number of states, and the number of those whose steps are known.
 
         Raises:
             FaultError: the model executes an undefined operation in some state.

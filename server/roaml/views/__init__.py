@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What people see of models and their traces: diagrams as DOT, Mermaid or PlantUML, and stories in words."""
+"""Representations of models and their traces for users: diagrams as DOT, Mermaid or PlantUML, and stories as text."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The meaning of the final state of a trace of a translated system (`roaml.smc.end`).
+"""Why a trace of a translated system has ended, determined from its final state (`roaml.smc.end`).
 
 If the clock has ended, the time is over. If the root of the tree has ended, the tree has finished. Otherwise a clock
 that does not advance, or an event that is not received, means that automata wait for one another. In a system without a
@@ -37,7 +37,8 @@ from roaml.smc.goal import ObserverOutputs
 
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
-    """(automaton, location) -> the meaning of a trace that ends there; empty for a model that is not a translation."""
+    """(automaton, location) -> why a trace that stays in the location ends; empty for a model that is not a
+    translation."""
     marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
     is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
     return marks if is_translated else {}
@@ -59,7 +60,7 @@ def _mark(automaton: Automaton, location: str) -> End:
 
 
 def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
-    """Property -> the variables of its observers that say more than its formula (docs/spec/jani.md#observers)."""
+    """Property -> the variables of its observers that contain more than its formula (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
     observers = {automaton.name for automaton in model.automata}
     outputs = {}
@@ -69,7 +70,7 @@ def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
         prefixes = [prefix for prefix in prefixes if f"{prefix}{OBSERVER_SUFFIX}" in observers]
         if not prefixes:
             continue
-        own = prefixes[0]  # The others are of its assumptions.
+        own = prefixes[0]  # the other observers belong to its assumptions
         outputs[property_.name] = ObserverOutputs(
             tuple(
                 (observer_variable(prefix, PENDING), Name(observer_variable(prefix, OPEN)))

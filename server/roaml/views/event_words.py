@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Phrases of ROS and BehaviorTree.CPP for events of a translated system (docs/spec/plain-scxml.md#events)."""
+"""Phrases, in the terms of ROS and BehaviorTree.CPP, for events of a translated system
+(docs/spec/plain-scxml.md#events)."""
 
 from __future__ import annotations
 
@@ -40,8 +41,8 @@ def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken:
     """A phrase for an event.
 
     Args:
-        clients: the automata of the system, of which one may be named at the end.
-        role: that of the automaton that waits for the event, or receives it.
+        clients: the automata of the system; the name of an event may end with one of them.
+        role: the role of the automaton that waits for the event, or receives it.
         taken: whether this automaton receives the tick of a timer, instead of waiting for the timer.
     """
     if is_timer(event):
@@ -67,7 +68,7 @@ def interface_name(event: str, clients: Collection[str]) -> str:
 
 
 def _form_of(event: str, clients: Collection[str]) -> tuple[str, str]:
-    """The phrase of an event, and the name of its interface; each "" if there is none."""
+    """The phrase for an event, and the name of its interface. Each is "" if there is none."""
     name, _, client = event.partition("_client_")
     if client not in clients:
         name = event

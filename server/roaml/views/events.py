@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events of a translated system: the variables that carry them, and the parameters with which they were sent
-last."""
+"""The events of a translated system: the variables that contain them, and the parameters with which they were last
+sent."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _VALID = ".valid"
 
 
 class EventReader:
-    """Reads the steps of a trace one after the other.
+    """Reads the steps of a trace, in their order.
 
     Args:
         automata: the automaton of each instance.
@@ -41,7 +41,7 @@ class EventReader:
         return other
 
     def read(self, step: TraceStep) -> None:
-        """Record the changes of a step."""
+        """Store the changes of a step."""
         for change in step.changes:
             if change.variable.instance < 0:
                 self._values[change.variable.name] = change.after
@@ -55,11 +55,11 @@ class EventReader:
         return name in self._events
 
     def carries_event(self, variable: str) -> bool:
-        """Whether a variable of the model carries an event or one of its parameters."""
+        """Whether a variable of the model belongs to an event: it contains one of its parameters."""
         return variable in self._of_events
 
     def parameters(self, event: str) -> dict[str, Plain]:
-        """The parameters with which an event was sent last, by their names in the interface."""
+        """The parameters with which an event was last sent, by their names in the interface."""
         return {
             variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): self._values[variable]
             for variable in self._parameters.get(event, ())
@@ -71,7 +71,7 @@ class EventReader:
         return name if client in self._automata else event
 
     def _is_of_event(self, name: str) -> bool:
-        """Whether a variable of the model carries an event; its parameters are recorded."""
+        """Whether a variable of the model belongs to an event. If it does, its parameter is stored."""
         if name.endswith(_VALID):
             return name.removesuffix(_VALID) in self._events
         at = name.rfind("__")

@@ -15,7 +15,7 @@ class Kind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class GraphNode:
-    """`lines` are its label; `minor` nodes are in the background."""
+    """A node of a diagram. `lines` are the lines of its label; `minor` nodes are drawn less prominently."""
 
     id: str
     lines: tuple[str, ...]
@@ -31,7 +31,7 @@ class GraphLink:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """`initial` is the initial node; "" if there is none."""
+    """A diagram. `initial` is the initial node; "" if there is none."""
 
     kind: Kind
     title: str

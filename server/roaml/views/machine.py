@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A state machine as it is written: its states and transitions."""
+"""A diagram of a state machine as it is written: its states and transitions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roaml.views.graph import Graph, GraphLink, GraphNode, Kind
 
 
 def machine_graph(machine: Machine) -> tuple[Graph, ...]:
-    """The machine's own chart, then those of its action threads."""
+    """A diagram of the machine itself, then one for each of its action threads."""
     name = machine.name.value if machine.name else "machine"
     return tuple(_chart(chart, f"{name} {chart.scope}".strip()) for chart in machine.charts)
 
@@ -37,7 +37,7 @@ def _links(source: str, handler: Handler) -> Iterator[GraphLink]:
 
 
 def trigger_label(handler: Handler) -> tuple[str, ...]:
-    """The trigger of a transition, and its condition: a line for each."""
+    """The trigger of a transition, and its condition, one line each."""
     words = (
         [handler.element.name.removeprefix("ros_").removeprefix("bt_")]
         if handler.trigger is not ProtocolPart.EVENT
@@ -49,7 +49,7 @@ def trigger_label(handler: Handler) -> tuple[str, ...]:
 
 
 def chance_label(handler: Handler, target: Target) -> tuple[str, ...]:
-    """The probability of one of several targets; empty if there is only one."""
+    """The probability of one of several targets, as a line; empty if there is only one target."""
     if target.probability:
         return (f"p = {target.probability.value}",)
     return ("otherwise",) if handler.is_probabilistic else ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JANI network: the automata and the events that they exchange. The buffers of events are drawn as links."""
+"""A diagram of the JANI network: the automata and the events that they exchange. Links represent buffers of events."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from roaml.views.graph import Graph, GraphNode, Kind
 
 @dataclass(frozen=True, slots=True)
 class Notation:
-    """A language of diagrams: its name for programs and for users, the extension of its files, its writer."""
+    """A language for diagrams: its name in programs, its name for users, the extension of its files, and its writer."""
 
     name: str
     title: str
@@ -42,7 +42,7 @@ def _dot(graph: Graph) -> Iterator[str]:
 
 
 def _quoted(*lines: str) -> str:
-    """A string of DOT; lines are separated by the two characters `\\n`."""
+    """A string in DOT. Lines are separated by the two characters `\\n`."""
     return '"' + "\\n".join(line.replace("\\", "\\\\").replace('"', '\\"') for line in lines) + '"'
 
 
@@ -117,7 +117,7 @@ def _plantuml_text(node: GraphNode) -> str:
 
 
 def _names(graph: Graph) -> dict[str, str]:
-    """Identifiers that are valid in every notation, for nodes with any name."""
+    """An identifier for each node that is valid in every notation, whatever the name of the node is."""
     return {node.id: f"n{i}" for i, node in enumerate(graph.nodes)}
 
 

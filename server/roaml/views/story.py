@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story of a trace for readers: text, a Mermaid sequence diagram, a self-contained page."""
+"""A story of a trace for users: as text, as a Mermaid sequence diagram, or as a self-contained HTML page."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from roaml.views.waiting import Wait, help_line, waits
 
 MAX_CHARACTERS = 60
 FIRST, LAST = 30, 50
-"""The maximum number of turns that are shown; those in between are folded."""
+"""The maximum number of turns that are shown. If there are more, those in the middle are folded."""
 
 PlaceOf = Callable[[Origin], str]
-"""File and line of an origin, for readers."""
+"""File and line of an origin, as text for users."""
 
 
 class StoryLine(NamedTuple):
-    """The turn of one automaton from one event to the next; `details` are its effects.
+    """The turn of one automaton from one event to the next. `details` are its effects.
 
-    `place` and `origin` are the place of the turn, as a phrase and in the text; `location` is the location after it.
-    `automaton` is its name in the model, `who` the one for readers; both are "" for folded turns. `step` and
-    `last_step` are the numbers of its first and last step.
+    `place` and `origin` are the place of the turn, as a phrase and as a position in the text; `location` is the
+    location after the turn. `automaton` is the name of the automaton in the model, and `who` its name for users. Both
+    are "" for folded turns. `step` and `last_step` are the numbers of its first and last step.
     """
 
     step: int
@@ -46,7 +46,7 @@ class StoryLine(NamedTuple):
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    """The story as a table; if it gets stuck, with the waiting automata at its end."""
+    """The lines of a story. If it gets stuck, the waiting automata follow at its end."""
     return [*_told(story, place_of), *_waiting(story, place_of)]
 
 
@@ -73,7 +73,7 @@ def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 
 
 def waits_of(story: Story) -> tuple[Wait, ...]:
-    """The waiting automata at the end, if it is stuck."""
+    """The waiting automata at the end of a story; empty if it is not stuck."""
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
@@ -129,7 +129,7 @@ def heading(story: Story) -> str:
 
 
 def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
-    """A sequence diagram. An event is an arrow from its sender to its receiver, drawn when it arrives.
+    """A sequence diagram. An event is an arrow from its sender to its receiver, at the time when it is received.
 
     Args:
         first: turns that end before this step are left out.
@@ -178,7 +178,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
 
 
 def as_html(stories: Sequence[Story], place_of: PlaceOf, title: str) -> str:
-    """A self-contained page; each line contains its place."""
+    """A self-contained HTML page. Each line contains its place."""
     parts = [_section(story, place_of) for story in stories]
     return _PAGE.format(title=html.escape(title), body="\n".join(parts))
 
@@ -223,7 +223,7 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 
 
 def _folded(story: Story, told: Sequence[Turn]) -> range:
-    """The turns that are not shown."""
+    """The indexes of the turns that are folded, and not shown."""
     return range(0) if story.is_whole else range(FIRST, len(told) - LAST)
 
 
@@ -233,7 +233,7 @@ def _more(folded: range) -> str:
 
 def _what(turn: Turn) -> str:
     source, destination = turn.source, turn.destination
-    # At the end the automaton may be between two states, which has no name for readers.
+    # At the end, the automaton may be between two states, in a location without a name for users.
     stays = source == destination or (turn.ends and turn.heard is not None)
     move = _short(source if stays else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
@@ -281,7 +281,8 @@ def _short(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Mermaid ends a line at `;` and reads `#` as the start of a character's number."""
+    """A text in which `;` and `#` are escaped: Mermaid ends a line at `;` and reads `#` as the start of a character's
+    number."""
     return text.translate(_CODES)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree: every node with its number, its plugin and its ports."""
+"""A diagram of the executed tree: every node with its number, its plugin and its ports."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story in turns: in each turn an automaton receives an event, and executes everything that follows from it.
+"""A story in turns: in each turn, an automaton receives an event and executes everything that follows from it.
 
-A translated system takes many steps for a turn: each statement is one, each event waits in a separate automaton between
-sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks down and
-statuses up. A turn is included if one of its steps is relevant, or if it receives what a relevant turn sends; turns
-that only pass an event on are left out.
+A translated system takes many steps for a turn: each statement is one, each event is buffered by a separate automaton
+between sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks
+down and statuses up. A turn is included if one of its steps is relevant, or if it receives an event that a relevant
+turn sends. Turns that only pass an event on are omitted.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ class Turn:
 
     Attributes:
         number: the number of its first step.
-        heard: the received event with which it begins; `None` if there is none.
-        action: the action with which it begins together with others, if it is not an event.
+        heard: the received event with which the turn begins; `None` if there is none.
+        action: the action with which it begins together with other automata, if that is not an event.
         parts: the parts of the automaton in its steps.
-        changes: the changes of its own variables, and of those of the model that carry no event.
-        messages: the events that it has sent.
+        changes: the changes of its own variables, and of variables of the model that do not belong to an event.
+        messages: the events that the automaton has sent.
         last: the number of its last step.
-        ends: whether the trace ends with it.
+        ends: whether the trace ends with this turn.
     """
 
     instance: int
@@ -78,12 +78,12 @@ class Turn:
 
     @property
     def who(self) -> str:
-        """The name of the automaton for readers: a node of a tree by its name and number."""
+        """The name of the automaton for users. A node of a tree has its name and its number."""
         return name_of(self.automaton)
 
     @property
     def protocol(self) -> str:
-        """The prefix of the events between the tree and this node; "" if it is not a node."""
+        """The prefix of the events between the tree and this node; "" if the automaton is not a node."""
         node = NODE_AUTOMATON.fullmatch(self.automaton)
         return f"bt_{node[1]}_" if node else ""
 
@@ -97,23 +97,23 @@ class Turn:
 
     @property
     def is_answered(self) -> bool:
-        """Whether it begins with the answer of a child to an inner node."""
+        """Whether the turn begins with the answer of a child to an inner node."""
         return self.heard is not None and _kind(self.heard.event) in _ANSWERS
 
     @property
     def sent(self) -> Iterator[Message]:
-        """The events that it sends, except its answers to the tree."""
+        """The events that the automaton sends, except its answers to the tree."""
         return (message for message in self.messages if not self._answers(message))
 
     @property
     def status(self) -> str:
-        """The status that it returns to the tree; "" if it does not."""
+        """The status that the node returns to the tree; "" if it returns none."""
         given = [message.values.get("status") for message in self.messages if self._answers(message)]
         return next((name for name, number in STATUSES.items() if number in given), "")
 
     @property
     def is_calm(self) -> bool:
-        """Whether the received event had no effect."""
+        """Whether the received event has no effect."""
         has_moved = self.source != self.destination or bool(self.changes)
         return self.heard is not None and not has_moved and not any(self.sent) and not self.status
 
@@ -140,7 +140,7 @@ class Message:
 
 
 def name_of(automaton: str) -> str:
-    """The name of an automaton for readers: a node of a tree by its name and number."""
+    """The name of an automaton for users. A node of a tree has its name and its number."""
     node = NODE_AUTOMATON.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
@@ -156,7 +156,7 @@ def turns(story: Story) -> list[Turn]:
 
 
 def _observes_another(turn: Turn, own: Collection[str]) -> bool:
-    """Whether the automaton observes another property than the one that the story is about."""
+    """Whether the automaton observes another property than that of the story."""
     return turn.automaton.endswith(OBSERVER_SUFFIX) and turn.automaton not in own
 
 
@@ -171,11 +171,11 @@ def _is_told(turn: Turn, inner: Collection[int]) -> bool:
 
 
 class _Reader:
-    """Reads the steps one after the other, and keeps the state after each.
+    """Reads the steps in their order, and stores the state after each.
 
     Attributes:
         inner: the nodes of BehaviorTree.CPP that tick children, and the automaton that ticks the root. Their turns are
-            left out; those of a control node of the user are included.
+            omitted; the turns of control nodes that the user has written are included.
         turns: the turns of all automata except those that only buffer an event.
     """
 
@@ -220,8 +220,8 @@ class _Reader:
         return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
-        """The changes of the variables of an automaton, and of those of the model that carry no event; the latter are
-        included once."""
+        """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
+        The latter are included once."""
         for change in step.changes:
             instance, name = change.variable
             is_lasting = instance < 0 and is_last and not self._events.carries_event(name)

@@ -7,7 +7,7 @@ from roaml.smc.record import Plain
 
 
 def shown_value(value: Plain) -> str:
-    """A value in the notation of the models; an array of bytes that holds a string as that string."""
+    """A value in the notation of the models. An array of bytes that represents a string is written as that string."""
     match value:
         case bool():
             return "true" if value else "false"

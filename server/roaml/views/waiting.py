@@ -2,9 +2,9 @@
 """Which automata wait for each other in a translated system that is stuck.
 
 The search begins with the clock, or with an event that is not received. An automaton waits for the event that leads it,
-with the fewest events, to the action that the previous one waits for; the sender of this event is next. Conditions are
-evaluated only at the current location. Handlers of services and actions and the inner nodes of a tree, which only pass
-events on, are left out.
+with the fewest events, to the action that the previous automaton waits for. The sender of this event is next.
+Conditions are evaluated only at the current location. Handlers of services and actions and the inner nodes of a tree
+only pass events on, so they are omitted.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ class Wait(NamedTuple):
     """An automaton that waits, with a description of what it waits for.
 
     Attributes:
-        origin: the corresponding place in the text.
+        origin: the place in the source where it waits.
         automaton, location, role: its name in the model, its location, and its role in the system.
         whom: the automaton for which it waits; "" if there is none.
-        unanswered: `TICK` or `HALT` if it waits for the answer to one; then `origin` is the place of the node that must
-            answer, in the tree.
+        unanswered: `TICK` or `HALT` if it waits for the answer to one of these; `origin` is then the place in the tree
+            of the node that must answer.
         for_timer: whether it waits for a timer.
     """
 
@@ -66,11 +66,11 @@ class Wait(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Link:
-    """An automaton, and what it waits for: that each of `others` takes the event, or sends it.
+    """An automaton, and what it waits for: each of `others` must receive or send the event.
 
     Attributes:
         action: the action that the previous automaton waits for; "" for the first one.
-        event: "" if it waits for a condition; None if it never takes the action.
+        event: the event; "" if it waits for a condition, `None` if it never executes the action.
         others: the next automata, and the action that each must execute.
     """
 
@@ -83,7 +83,7 @@ class _Link:
 
 
 def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]:
-    """The chain of waiting automata, beginning with the clock if there is one; empty if none waits.
+    """The chain of waiting automata, beginning with the clock if there is one; empty if no automaton waits.
 
     Args:
         time: the time of the model, in s.
@@ -92,17 +92,17 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
 
 
 NEEDS_TIME = "answer-needs-time"
-"""The rule that reports a tick or halt whose answer needs time, before anything is run."""
+"""The rule that reports a tick or halt whose answer takes time, without running the model."""
 
 
 def rule(waiting: Sequence[Wait]) -> str:
-    """The rule that documents the problem: for a node that must answer the tree and waits for a timer; otherwise ""."""
+    """The rule that documents the problem, if a node must answer the tree and waits for a timer; "" otherwise."""
     is_late = any(wait.unanswered for wait in waiting) and any(wait.for_timer for wait in waiting)
     return NEEDS_TIME if is_late and any(wait.role is Role.CLOCK for wait in waiting) else ""
 
 
 def advice(waiting: Sequence[Wait]) -> str:
-    """The advice how to fix a node that does not answer the tree in time; "" for other reasons."""
+    """How to fix a node that does not answer the tree in time; "" for other reasons."""
     late = next((wait for wait in waiting if wait.unanswered), None)
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
@@ -112,7 +112,7 @@ def advice(waiting: Sequence[Wait]) -> str:
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
-    """The advice how to fix the system, with the rule that documents it; "" if unknown."""
+    """How to fix the system, as a line with the rule that documents it; "" if unknown."""
     text, code = advice(waiting), rule(waiting)
     return f"help: {text}{f' [{code}]' if code else ''}" if text else ""
 
@@ -149,7 +149,7 @@ class _Chain:
                 yield from (self.words(link) for link in links)
 
     def follow(self, first: int, action: str) -> None:
-        """All links from an automaton on, each automaton once, depth first."""
+        """All links that can be reached from an automaton, depth first. Each automaton occurs once."""
         stack = [(first, action)]
         while stack:
             number, action = stack.pop()
@@ -165,12 +165,12 @@ class _Chain:
         return event in self.events and self.locations[self.events[event]] == RECEIVED
 
     def not_taking(self, event: str) -> list[int]:
-        """The automata that must receive an event and cannot."""
+        """The automata that should receive an event and cannot."""
         action = on_receive(named(event))
         return [number for number in self.does.get(action, ()) if (number, action) not in self.ready]
 
     def blocked(self, number: int, awaited_action: str) -> Iterator[_Link]:
-        """The links from an automaton that would send an event or advance the time."""
+        """The links from an automaton that is about to send an event or to advance the time."""
         links: dict[tuple[str, int], _Link] = {}
         for edge in self.edges(number):
             if edge.action is None or received_by(edge.action) or (number, edge.action) not in self.ready:
@@ -212,8 +212,8 @@ class _Chain:
         return self.does.get(on_send(named(event)), []) if event else []
 
     def is_asleep(self, event: str, asker: int) -> bool:
-        """Whether all possible senders of an event wait for the automaton that waits for it: children that are not
-        ticked."""
+        """Whether all possible senders of an event wait for the automaton that waits for the event, because they are
+        children that are not ticked."""
         senders = self.senders(event)
         return bool(senders) and all(
             not any(True for _ in self.blocked(sender, ""))
@@ -223,7 +223,8 @@ class _Chain:
         )
 
     def awaited(self, number: int, action: str) -> dict[str, Edge]:
-        """The events that lead an automaton to the action in the fewest steps; "" for a condition."""
+        """The events that lead an automaton to the action in the fewest steps, each with the edge that receives it. The
+        key "" means that the edge waits for a condition."""
         distances = self.distances(number, action)
         here = self.locations[number]
         ways: list[tuple[tuple[int, int], Edge]] = []
@@ -237,8 +238,8 @@ class _Chain:
         return {received_by(edge.action or ""): edge for cost, edge in reversed(ways) if cost == least}
 
     def distances(self, number: int, action: str) -> dict[str, int]:
-        """Location -> the number of events that lead the automaton from there to one where it can execute
-        required."""
+        """Location -> the number of events that lead the automaton from there to a location where it can execute
+        `action`."""
         edges = self.automata[number].edges
         distances: dict[str, int] = {}
         queue = [(0, source) for source in dict.fromkeys(e.source for e in edges if e.action == action)]
@@ -257,7 +258,7 @@ class _Chain:
     # ------------------------------------------------------------------ in words
 
     def is_shown(self, number: int) -> bool:
-        """Whether to show an automaton; one that only passes events on is left out."""
+        """Whether to show an automaton. Automata that only pass events on are not shown."""
         automaton = self.automata[number]
         if automaton.name.startswith(TREE_ROOT_PREFIX) or all(not link.others for link in self.links[number]):
             return True
@@ -287,7 +288,7 @@ class _Chain:
         return automaton_role(self.automata[number].name)
 
     def shown_from(self, number: int, event: str) -> tuple[int, str]:
-        """The automaton whose event another one passes on, and the event that is awaited there."""
+        """The automaton whose event another automaton passes on, and the event for which it waits."""
         seen = set()
         while number not in seen and number in self.links and not self.is_shown(number):
             seen.add(number)
@@ -329,7 +330,7 @@ class _Chain:
         return Wait(who, text, origin, self.automata[number].name, here, role, them, unanswered, for_timer)
 
     def place_in_tree(self, answer: str) -> Origin | None:
-        """The place in the tree of the node that sends an answer: the node that ticks it is there."""
+        """The place in the tree of the node that sends an answer. The node that ticks it has this place."""
         called = _ANSWER.sub(lambda answered: f"_{HALT if answered[1] else TICK}", answer)
         return self.automata[self.index[called]].origin if called in self.index else None
 

@@ -37,7 +37,7 @@ _SOUND_TAG = re.compile(
 )
 _SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
-# Any other tag: text that was meant as a name, as white space, as a value.
+# The general patterns. They also match invalid names, white space and values, which are then reported.
 _NAME = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
 _TAG_OPEN = re.compile(rf"<((?=[^\W\d]|:){_NAME})")
 _END_TAG = re.compile(rf"</(\s*)({_NAME})?\s*(>)?")
@@ -261,7 +261,8 @@ class _Parser:
         return Attribute(name, unescape(raw), name_span, Span(start, end), Span(name_span.start, end))
 
     def swallowing(self, value: Span) -> int | None:
-        """The end of a value whose closing quote is the opening one of the next attribute."""
+        """The end of a value without a closing quote, if `value` ends at the opening quote of the next attribute;
+        `None` if the quote at the end of `value` closes it."""
         text = self.text
         if text[value.end - 1] != "=" and not text[value.end - 1].isspace():
             return None
@@ -272,7 +273,8 @@ class _Parser:
         return next_attribute.start() if on_next_line or not _AFTER_VALUE.match(text, value.end + 1) else None
 
     def is_plausible_value(self, start: int, close: int) -> bool:
-        """Whether the quote at `close` ends the value that begins at `start`, or is part of the next attribute."""
+        """Whether the quote at `close` ends the value that begins at `start`. Otherwise it probably belongs to a later
+        attribute, and the value has no closing quote."""
         text = self.text
         if text[close - 1] == "=" and close - 1 >= start:
             return False
@@ -280,7 +282,7 @@ class _Parser:
             return False
         less = text.find("<", start, close)
         while less >= 0:
-            # A tag on a line of its own, or `</`, was not meant as "less than".
+            # A `<` that begins a line, or that begins `</`, `<!` or `<?`, is a tag and not "less than".
             before = text.rfind("\n", start, less)
             if text[less + 1 : less + 2] in ("/", "!", "?") or (before >= 0 and not text[before:less].strip()):
                 return False
@@ -349,8 +351,11 @@ class _Parser:
         return end
 
     def is_misnamed(self, name: str, at: int) -> bool:
-        """Whether the indentation shows that the end tag `name` at `at` closes the innermost element, which has another
-        name: both are alike, those of the element around it and of the innermost element `name` are not."""
+        """Whether the end tag `name` at `at` closes the innermost element although the names differ.
+
+        This is so if the end tag is indented like the innermost element, but not like the innermost open element that
+        is called `name`, or, if there is none, the parent of the innermost element.
+        """
         if self.names[-1] == name or len(self.stack) < 2:
             return False
         indentation = self.indentation(at)
@@ -646,12 +651,12 @@ def document_type_end(text: str, at: int) -> int:
 
 
 def resemble(name: str, open_name: str) -> bool:
-    """Whether the end tag `name` was probably meant to close `open_name`."""
+    """Whether the end tag `name` is probably intended to close the element `open_name`."""
     if name.rpartition(":")[2] == open_name.rpartition(":")[2]:
         return True
     return are_similar(name, open_name)
 
 
 def shown(name: str) -> str:
-    """`name` as a message shows it."""
+    """`name` for a message, shortened to 60 characters."""
     return name if len(name) <= 60 else f"{name[:59]}…"

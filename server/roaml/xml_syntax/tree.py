@@ -4,8 +4,8 @@
 - Lossless: the spans of a node's children and tags cover the node's text, including comments and white space. (Only
   elements nested too deeply are left out.)
 - The parser creates it, and it is never changed afterwards.
-- No links to parents: functions that walk the tree keep what they need (`Document.path_at` returns the ancestors of a
-  position).
+- Elements have no links to their parents. A function that needs ancestors records them while it traverses the tree;
+  `Document.path_at` returns the elements around a position.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from roaml.xml_syntax.escapes import decoded
 
 
 class Attribute(NamedTuple):
-    """`name` is as written, including the prefix. `value` has its references resolved; it is empty if it is missing.
+    """An attribute. `name` is as written, including the prefix. `value` has its references resolved; it is empty if the
+    attribute has no value.
 
     `value_span` is between the quotes; `span` is the whole attribute. `has_value` is false in `<a name>`.
     """
@@ -34,7 +35,8 @@ class Attribute(NamedTuple):
 
 
 class Text(NamedTuple):
-    """Character data between tags; `value` has its references resolved. Empty for an end tag that closes nothing."""
+    """Character data between tags. `value` has its references resolved; it is empty for an end tag that closes
+    nothing, which the tree also represents as text."""
 
     value: str
     span: Span
@@ -121,7 +123,7 @@ class Element:
         return None
 
     def walk(self) -> Iterator[Element]:
-        """This element and all below it, in document order."""
+        """This element and all its descendants, in document order."""
         stack = [self]
         while stack:
             element = stack.pop()
@@ -130,7 +132,7 @@ class Element:
 
     @property
     def content_span(self) -> Span:
-        """The span of the children: between start tag and end tag."""
+        """The span between the start tag and the end tag."""
         return Span(self.open_span.end, self.close_span.start if self.close_span else self.span.end)
 
     def __repr__(self) -> str:
@@ -147,8 +149,8 @@ def children_text(element: Element) -> str:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Document:
-    """A parsed text. `root` is the first element; `None` only if there is none. In an invalid file, others may follow
-    it."""
+    """A parsed text. `root` is the first element outside of all others, or `None` if there is no element. An invalid
+    file may have several; `nodes` contains all of them."""
 
     text: str
     root: Element | None

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view of what can happen next while a run is stopped. A click makes it happen. */
+/** The view of the possible next steps while a run is stopped. A click on a step takes it. */
 
 import * as vscode from "vscode";
 import type { DebugSessions } from "./debugSessions";
@@ -23,7 +23,7 @@ interface Choice {
     readonly line?: number;
 }
 
-/** An event that can be sent by hand, of the answer to the request `events`. */
+/** An event that can be sent by hand, as in the answer to the request `events`. */
 interface Sendable {
     readonly event: string;
     readonly text: string;
@@ -90,7 +90,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         return item;
     }
 
-    /** `reveal` needs it. */
+    /** `TreeView.reveal` requires this method. */
     getParent({ choice, outcome }: Entry): Entry | undefined {
         return outcome && this.entries.find((entry) => entry.choice === choice);
     }
@@ -155,7 +155,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         if (text !== undefined) await this.sessions.request("goToStep", { step: Number(text) });
     }
 
-    /** Asks for an event and its fields, and sends it by hand. */
+    /** Let the user choose an event and its fields, and send it by hand. */
     private async publish(): Promise<void> {
         const answer = (await this.sessions.request("events", {})) as
             { readonly events: readonly Sendable[] } | undefined;

@@ -32,7 +32,7 @@ const SELECTOR: DocumentSelector = [
     { scheme: "file", pattern: "**/{as2fm,pyproject}.toml" },
 ];
 
-/** The command with which lenses of the server show locations; its arguments are types of LSP. */
+/** The command with which lenses of the server show locations. Its arguments have the types of LSP. */
 export const SHOW_REFERENCES = "as2fm.showReferences";
 
 /** The command with which lenses show why a property fails. Arguments: the URI of a system, the name of a property. */
@@ -47,7 +47,7 @@ const MAX_LOGGED_CHARACTERS = 4000;
 /** Handles the results of lenses and commands of the server. */
 export interface Listener {
     onTranslated(translated: Translated): unknown;
-    /** Replaces the command of the server, so that the Test Explorer shows the results. No names means all. */
+    /** Executes a command instead of the server, so that the Test Explorer shows the results. No names means all. */
     onVerify(system: string, names: readonly string[]): unknown;
 }
 

@@ -74,7 +74,7 @@ export function registerCommands(parts: Parts): void {
         }),
     );
     context.subscriptions.push(
-        // Called from a lens or a message, or from the menu of a test.
+        // Also called from a lens, from a message, and from the menu of a test.
         vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, (of: string | vscode.TestItem, property: string) => {
             const asked = parts.tests.asked(of, property);
             return asked && parts.counterexamples.show(asked.system, asked.property);
@@ -107,7 +107,7 @@ export function registerCommands(parts: Parts): void {
     }
 }
 
-/** A command that writes files or starts programs. */
+/** Allow a command that writes files or starts programs only in a trusted workspace. */
 function trusted(run: () => unknown): () => unknown {
     return () => (isTrusted() ? run() : undefined);
 }
@@ -121,7 +121,7 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     const uri = system && server.client?.code2ProtocolConverter.asUri(system);
     if (uri === undefined) return;
-    // Focus the view first: the verification may go to an error, which must keep the focus.
+    // Focus the view first: the verification may open the place of an error, which must then keep the focus.
     await vscode.commands.executeCommand("workbench.view.testing.focus");
     if (await tests.verify(uri, [])) return;
     const name = vscode.workspace.asRelativePath(vscode.Uri.parse(uri));

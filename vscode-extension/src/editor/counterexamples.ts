@@ -13,7 +13,7 @@ import { TraceStateView } from "./traceState";
 const VIEW = "as2fm.counterexample";
 const SHOW_STEP = "as2fm.showStep";
 
-/** An effect of a step. An object, because VS Code compares entries by identity and several effects may be equal. */
+/** An effect of a step. It is an object, because VS Code compares entries by identity and effects may be equal. */
 interface Detail {
     readonly of: Step;
     readonly text: string;
@@ -47,7 +47,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         ];
     }
 
-    /** Show the trace that contradicts a property, or a witness: one that speaks for it. */
+    /** Show the trace that contradicts a property or, as a witness, one that supports it. */
     async show(system: string, property: string, witness = false): Promise<void> {
         const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
         if (!found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Debugging runs of a system: the debug type `as2fm`, whose adapter is the installation that the editor uses. */
+/** Debugging runs of a system: the debug type `as2fm`, whose adapter is part of the server's installation. */
 
 import * as vscode from "vscode";
 import { safeVariables } from "../server/surroundings";
@@ -67,7 +67,7 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
         const { state } = this.server;
         if (state.kind !== "running") throw new Error(vscode.l10n.t("The language server is not running."));
         const { command, args } = state.server;
-        // Its Python imports no modules from the workspace.
+        // The adapter's Python imports no modules from the workspace.
         return new vscode.DebugAdapterExecutable(command, [...args, "debug"], { env: safeVariables(process.env) });
     }
 }

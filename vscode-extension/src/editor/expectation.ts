@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Asks what is expected of a property, and writes it beside the property or into the configuration. */
+/** Lets the user choose what is expected of a property, and writes it beside the property or into the configuration. */
 
 import * as vscode from "vscode";
 import { expectations, setExpectation } from "../protocol";
@@ -7,7 +7,7 @@ import type { LanguageServer } from "./server";
 
 const COMPARISON = /^\s*(>=|<=|==|≥|≤|>|<|=)\s*-?\d*\.?\d+(e-?\d+)?\s*$/;
 
-/** Returns whether an expectation was set. */
+/** Let the user choose an expectation; return whether one was set. */
 export async function chooseExpectation(server: LanguageServer, system: string, property: string): Promise<boolean> {
     const of = { textDocument: { uri: system }, property };
     const known = await server.ask(expectations, of);
@@ -28,7 +28,7 @@ export async function chooseExpectation(server: LanguageServer, system: string, 
         (each) => each.uri.toString() === uri.toString() && each.isDirty,
     );
     if (!(await vscode.workspace.applyEdit(edit))) return false;
-    // The configuration is read from the disk. Other changes of the user are not saved.
+    // The server reads the configuration from the disk, so it is saved. Other changes of the user are not saved.
     if (!isEdited) await (await vscode.workspace.openTextDocument(uri)).save();
     return true;
 }

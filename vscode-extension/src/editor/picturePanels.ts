@@ -51,7 +51,7 @@ export class PicturePanels implements vscode.Disposable {
         await panel.show(uri);
     }
 
-    /** Highlight nodes in all open pictures and in those that are opened later, instead of earlier ones. */
+    /** Highlight nodes in all open pictures and in those that are opened later. Earlier highlights are removed. */
     async highlight(highlights: readonly Highlight[]): Promise<void> {
         this.highlights = highlights;
         for (const [kind, panel] of this.panels) await panel.highlight(highlights.find((each) => each.kind === kind));
@@ -95,7 +95,7 @@ class PicturePanel implements vscode.Disposable {
     private uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
-    /** The highlighted nodes of the last step, in all files. */
+    /** The highlighted nodes of the step that was selected last, in all files. */
     highlighted: Highlight | undefined;
     private lit: readonly LitNode[] = [];
     private litEdges: Lit["edges"] = [];
@@ -199,7 +199,7 @@ class PicturePanel implements vscode.Disposable {
         return partAt(this.picture, this.asServerSays(editor.document.uri), editor.selection.active);
     }
 
-    /** A URI as the client writes it to the server, because the server returns URIs in this form. */
+    /** A URI in the form in which the client sends it to the server, because the server returns URIs in this form. */
     private asServerSays(uri: vscode.Uri): string {
         return this.server.client?.code2ProtocolConverter.asUri(uri) ?? uri.toString();
     }
@@ -237,7 +237,7 @@ class PicturePanel implements vscode.Disposable {
         }
     }
 
-    /** Ask the server for the file; the view converts it to PNG. */
+    /** Request the file from the server. The view converts it to PNG. */
     private async save({ format, direction, theme }: Extract<FromView, { type: "save" }>): Promise<void> {
         if (!this.uri) return;
         const textDocument = { uri: this.uri.toString() };

@@ -4,7 +4,7 @@
 import type { PlainLine } from "../protocol";
 import type { Position } from "../pictures/contract";
 
-/** The line of the plain form for a position in the source: that of the smallest place that contains the position. */
+/** The line of the plain form that comes from a position in the source: from the smallest place that contains it. */
 export function lineOf(lines: readonly PlainLine[], uri: string, position: Position): number | undefined {
     const around = lines.filter((line) => line.uri === uri && contains(line, position));
     if (around.length === 0) {
@@ -14,7 +14,7 @@ export function lineOf(lines: readonly PlainLine[], uri: string, position: Posit
     return around.reduce((best, line) => (height(line) < height(best) ? line : best)).line;
 }
 
-/** The place in the source of a line of the plain form: its own, or that of the nearest line above. */
+/** The place in the source from which a line of the plain form comes. A line without one has that of a line above. */
 export function placeOf(lines: readonly PlainLine[], line: number): PlainLine | undefined {
     return lines.filter((each) => each.line <= line).at(-1);
 }

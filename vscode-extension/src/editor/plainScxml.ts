@@ -15,7 +15,7 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
     private readonly shown = new Map<string, PlainScxml>();
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
-    /** The place to which this class moved a caret, to ignore the event that results from that. */
+    /** The place to which this class has moved a caret. The event that results from this is ignored. */
     private moved: { readonly editor: vscode.TextEditor; readonly caret: vscode.Position } | undefined;
 
     constructor(private readonly server: LanguageServer) {

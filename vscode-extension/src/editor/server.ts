@@ -75,7 +75,7 @@ export class LanguageServer implements vscode.Disposable {
         return this.connection?.client;
     }
 
-    /** Start the server of a new window; the server that ran last is started before the search ends. */
+    /** Start the server of a new window. The server that ran last is started before the search ends. */
     open(): Promise<void> {
         const recalled = this.recall.server(this.searchSettings());
         const expected = vscode.workspace.isTrusted || recalled?.origin === "private" ? recalled : undefined;
@@ -86,7 +86,7 @@ export class LanguageServer implements vscode.Disposable {
         return this.supervisor.start();
     }
 
-    /** Search again after a change of settings or interpreters; a running server continues if it is found again. */
+    /** Search again after a change of settings or interpreters. A running server continues if the search returns it. */
     look(): Promise<void> {
         return this.supervisor.look();
     }
@@ -104,7 +104,7 @@ export class LanguageServer implements vscode.Disposable {
         void this.client?.sendNotification(DidChangeConfigurationNotification.type, { settings: null });
     }
 
-    /** Send a request; undefined if no server runs or it returns no result. */
+    /** Send a request; return undefined if no server runs, or if the server returns no result. */
     async ask<P, R>(type: RequestType<P, R, void>, params: P): Promise<R | undefined> {
         try {
             return await this.client?.sendRequest(type, params);
@@ -119,7 +119,7 @@ export class LanguageServer implements vscode.Disposable {
         void this.supervisor.stop();
     }
 
-    /** The settings that determine which server is found, without other extensions and the machine. */
+    /** The settings on which the search depends. Other extensions and installed programs are not included. */
     private searchSettings(): readonly unknown[] {
         return [path("server.path"), path("interpreter"), vscode.workspace.isTrusted, this.wheel];
     }
@@ -134,7 +134,7 @@ export class LanguageServer implements vscode.Disposable {
         return usable;
     }
 
-    /** Runs in the background: a running server uses the compiled kernel from its next verification on. */
+    /** Compile the kernel in the background. A running server uses the compiled kernel from its next verification on. */
     private compileKernel(): void {
         const onOutput = (text: string) => {
             this.log.append(text);
@@ -154,7 +154,7 @@ export class LanguageServer implements vscode.Disposable {
         return Promise.race([asked, late]);
     }
 
-    /** If an earlier version is installed, install the new one without asking; if that fails, use the old one. */
+    /** If an earlier version is installed, install the new one without asking. If that fails, use the earlier one. */
     private async renewed(failure: Failure): Promise<Server | Failure> {
         const older = await this.environment.older();
         if (older === undefined) return failure;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Completes the steps of the walkthrough that depend on the result of a command, not on its call. */
+/** Completes the steps of the walkthrough that depend on the result of a command, not only on its call. */
 
 import * as vscode from "vscode";
 
-export type Step = "mended" | "translated" | "verified";
+export type Step = "fixed" | "translated" | "verified";
 
 /** Set the context key of a step, to which the `completionEvents` of the walkthrough refer. */
 export function done(step: Step): void {
     void vscode.commands.executeCommand("setContext", `as2fm.${step}`, true);
 }
 
-/** Completes the step `mended` when models had errors and no longer have any. */
-export function watchMending(): vscode.Disposable {
+/** Complete the step `fixed` when models had errors and no longer have any. */
+export function watchErrors(): vscode.Disposable {
     let broken = false;
     return vscode.languages.onDidChangeDiagnostics(() => {
         const found = vscode.languages.getDiagnostics().some(([, diagnostics]) => diagnostics.some(isError));
-        if (broken && !found) done("mended");
+        if (broken && !found) done("fixed");
         broken = found;
     });
 }

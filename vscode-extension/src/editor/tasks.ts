@@ -27,7 +27,7 @@ export class Tasks implements vscode.TaskProvider {
         return folder && this.task(definition, folder);
     }
 
-    /** Undefined while no server runs, and in an untrusted workspace. */
+    /** The task of a definition; undefined while no server runs, and in an untrusted workspace. */
     task(definition: Definition, folder: vscode.WorkspaceFolder): vscode.Task | undefined {
         const { state } = this.server;
         if (state.kind !== "running" || !["check", "translate"].includes(definition.command)) return undefined;
@@ -37,7 +37,7 @@ export class Tasks implements vscode.TaskProvider {
         if (path === undefined) return undefined;
         const args = [...state.server.args, ...what, path, ...(definition.arguments ?? [])];
         const execution = new vscode.ProcessExecution(state.server.command, args, {
-            // The task shows paths relative to the folder. Its Python imports no modules from there.
+            // The task shows paths relative to the folder. The server's Python imports no modules from there.
             cwd: folder.uri.fsPath,
             env: safeVariables(process.env),
         });

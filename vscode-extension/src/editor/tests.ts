@@ -35,7 +35,7 @@ export class PropertyTests implements vscode.Disposable {
     private readonly controller: vscode.TestController;
     private readonly subscriptions: { dispose(): unknown }[];
     private readonly askedBy = new WeakMap<vscode.TestItem, Asked>();
-    /** What was expected of the results that are shown, by the id of the test. */
+    /** What is expected of the results that are shown, by the id of the test. */
     private readonly judged = new Map<string, string>();
     private readonly running = new Set<string>();
     private readonly stale = new Set<string>();
@@ -75,7 +75,7 @@ export class PropertyTests implements vscode.Disposable {
         ];
     }
 
-    /** Verify properties of a system, all if `names` is empty; returns whether there are any. */
+    /** Verify properties of a system, all if `names` is empty. Returns whether there are any. */
     async verify(system: string, names: readonly string[]): Promise<boolean> {
         await this.refresh();
         const suite = this.controller.items.get(system);
@@ -87,12 +87,12 @@ export class PropertyTests implements vscode.Disposable {
         const none = new vscode.CancellationTokenSource();
         await this.run(new vscode.TestRunRequest(named.length > 0 ? named : [suite]), none.token);
         none.dispose();
-        // If the system has errors, this goes to the first one, in whichever file; otherwise it does nothing.
+        // If the system has errors, the command opens the first one, in any of its files; otherwise it does nothing.
         await vscode.commands.executeCommand(SHOW_FIRST_ERROR, system);
         return true;
     }
 
-    /** The property that a lens or message names, or that of a test. */
+    /** The property that a lens, a message or a test denotes. */
     asked(of: string | vscode.TestItem, property: string): Asked | undefined {
         return typeof of === "string" ? { system: of, property } : this.askedBy.get(of);
     }
@@ -109,7 +109,7 @@ export class PropertyTests implements vscode.Disposable {
         this.timer = setTimeout(() => void this.refresh(), DELAY_MS);
     }
 
-    /** Show the properties as they are now. */
+    /** Update the systems and their properties. */
     async refresh(): Promise<void> {
         const found = await this.server.ask(properties, null);
         if (found === undefined) return;
@@ -151,11 +151,11 @@ export class PropertyTests implements vscode.Disposable {
             this.stale.add(id);
             this.controller.invalidateTestResults(item);
         } else if (!property.stale) this.stale.delete(id);
-        if (property.result && property.stale === false) this.judgeAgain(item, property.result);
+        if (property.result && property.stale === false) this.compareAgain(item, property.result);
     }
 
-    /** Show a known result again if another expectation judges it. */
-    private judgeAgain(item: vscode.TestItem, result: Verified): void {
+    /** Show a known result again after a change of its expectations. */
+    private compareAgain(item: vscode.TestItem, result: Verified): void {
         const asked = this.askedBy.get(item);
         const before = this.judged.get(item.id);
         if (!asked || before === undefined || before === expectedOf(result) || this.running.has(item.id)) return;
@@ -232,7 +232,7 @@ export class PropertyTests implements vscode.Disposable {
             for (const result of answer?.results ?? []) {
                 take(result);
                 const item = all.get(result.property);
-                // Only the whole answer says whether the system gets stuck.
+                // Only the complete answer contains whether the system gets stuck.
                 if (item && answer?.stuck?.example)
                     this.show(run, item, { system, property: result.property }, result, answer.stuck);
             }
@@ -304,7 +304,8 @@ export class PropertyTests implements vscode.Disposable {
             return;
         }
         if (outcome.kind === "passed") {
-            // The Test Explorer has only passed and failed: the description beside the name contains the details.
+            // The Test Explorer distinguishes only passed and failed, so the description beside the name contains the
+            // details.
             if (outcome.uniform.length > 0) {
                 const expected = outcome.uniform.join(", ");
                 item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
@@ -333,11 +334,11 @@ export class PropertyTests implements vscode.Disposable {
             text.appendMarkdown(`\n\n${links.join(" · ")}`);
             text.isTrusted = { enabledCommands: [SHOW_COUNTEREXAMPLE, SHOW_WITNESS] };
         }
-        // Without a location: the lens and the inlay hint show the same on that line.
+        // The message has no location, because the lens and the inlay hint show the same text on that line.
         run.failed(item, new vscode.TestMessage(text), outcome.milliseconds);
     }
 
-    /** Warn once in each run that a system gets stuck, which makes its numbers doubtful and a passed test hides. */
+    /** Warn once in each run that a system gets stuck: its results are then doubtful, which a passed test does not show. */
     private tellStuck(run: vscode.TestRun, system: string): void {
         const told = this.toldStuck.get(run) ?? new Set<string>();
         this.toldStuck.set(run, told);

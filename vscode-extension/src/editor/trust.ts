@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Restricted Mode disables everything that writes files or starts programs depending on files of the workspace. */
+/** In Restricted Mode, everything is disabled that writes files, or starts programs depending on the workspace. */
 
 import * as vscode from "vscode";
 
-/** Whether the workspace is trusted; if not, a message says why nothing happens and how to grant trust. */
+/** Whether the workspace is trusted. If not, a message states that the action is disabled, and how to grant trust. */
 export function isTrusted(): boolean {
     if (!vscode.workspace.isTrusted) void tellRestricted();
     return vscode.workspace.isTrusted;

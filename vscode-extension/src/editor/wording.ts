@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The texts about the server: each state and each failure, with the possible actions. */
+/** The texts about the server: for each state and each failure, a description and the possible actions. */
 
 import { l10n } from "vscode";
 import { OLDEST } from "../server/python";

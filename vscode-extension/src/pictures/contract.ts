@@ -80,7 +80,7 @@ export interface Drawing {
     readonly nodes: readonly DrawnNode[];
 }
 
-/** `parent` is the id of the node that contains it in the drawing, "" if none. */
+/** A node. `parent` is the id of the node that contains it in the drawing; "" if there is none. */
 export interface PictureNode {
     readonly id: string;
     readonly kind: NodeKind;
@@ -142,11 +142,11 @@ export type ToView =
     | { readonly type: "words"; readonly words: Words }
     | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly highlighted: string }
     | { readonly type: "here"; readonly here: Part | null }
-    /** Highlight a node by its id; "" for none. */
+    /** Highlight the node with an id; "" removes the highlight. */
     | { readonly type: "highlight"; readonly node: string }
     /** Light what a run does, instead of what was lit before. */
     | { readonly type: "light"; readonly lit: Lit }
-    /** Ask for the text of an SVG file as PNG. */
+    /** Convert the text of an SVG file to PNG. */
     | { readonly type: "rasterize"; readonly svg: string }
     | { readonly type: "none"; readonly reason: string };
 
@@ -154,7 +154,7 @@ export type FromView =
     | { readonly type: "ready" }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
     | { readonly type: "save"; readonly format: "svg" | "png"; readonly direction: Direction; readonly theme: Theme }
-    /** The answer to `rasterize`: base64. */
+    /** The answer to `rasterize`: the PNG file in base64. */
     | { readonly type: "png"; readonly data: string }
-    /** Sent when the picture is drawn. */
+    /** Sent after the picture has been drawn. */
     | { readonly type: "drawn"; readonly nodes: number; readonly edges: number };

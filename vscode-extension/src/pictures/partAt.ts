@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Part, Picture, Place, Position } from "./contract";
 
-/** The part of a picture whose source contains the caret: the innermost one; an edge rather than an equal node. */
+/** The part of a picture whose source contains the caret. The innermost part is used; of equal parts, the edge. */
 export function partAt(picture: Picture, uri: string, position: Position): Part | null {
     let best: Part | null = null;
     let narrowest: Place | undefined;

@@ -27,7 +27,7 @@ export interface InstallOptions {
     readonly signal?: AbortSignal;
     readonly onStep?: (step: Step) => void;
     readonly onOutput?: (text: string) => void;
-    /** Folders from which no program is started: those of an untrusted workspace. */
+    /** The folders from which no program is started: those of an untrusted workspace. */
     readonly avoid?: readonly string[];
 }
 
@@ -157,7 +157,7 @@ function versionIn(mark: string): string | undefined {
     }
 }
 
-/** The last lines of the output of a program, which usually contain the reason. */
+/** The last lines of the output of a program, which usually contain the reason of a failure. */
 function words(...texts: readonly string[]): string {
     const said = texts.map((text) => text.trim()).filter((text) => text !== "");
     return (said[0] ?? "").split("\n").slice(-8).join("\n");

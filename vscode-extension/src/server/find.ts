@@ -3,7 +3,7 @@
  * Finds the server: in the user's setting, else in the active Python environment, else on PATH, else in the private
  * environment of the extension.
  *
- * - A setting that does not work is a failure: using another server instead would hide that.
+ * - A setting that does not work is a failure. Another server would hide the problem.
  * - In an untrusted workspace, only the server of the private environment is started: settings, interpreters and PATH
  *   may refer to files of the workspace.
  */

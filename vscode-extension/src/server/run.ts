@@ -10,7 +10,7 @@ export interface Ended {
 }
 
 export interface RunOptions {
-    /** In ms. */
+    /** The time limit in ms. */
     readonly timeout?: number;
     readonly signal?: AbortSignal;
     readonly onOutput?: (text: string) => void;

@@ -4,7 +4,7 @@
  *
  * - There is one state at a time, and each change is reported; the user sees nothing else.
  * - A server that crashes is restarted with a message; one that crashes repeatedly is not.
- * - A newer request makes the results of older ones irrelevant: they change nothing any more.
+ * - A new request makes older ones irrelevant: their results change nothing any more.
  */
 
 import { isDeepStrictEqual } from "node:util";
@@ -35,12 +35,12 @@ export interface Session {
 }
 
 export interface Ports {
-    /** `hurry`: no server runs yet, so sources that do not answer soon are skipped. */
+    /** Searches for a server. `hurry`: no server runs yet, so sources that do not answer soon are skipped. */
     find(hurry: boolean): Promise<Server | Failure>;
     install(onStep: (step: Step) => void): Promise<Server | Failure>;
     /** Start a server and wait for the handshake. */
     launch(server: Server): Promise<Session>;
-    /** In ms. */
+    /** Waits for a time in ms. */
     now(): number;
     changed(state: State): void;
     /** Called when a server has crashed and runs again. */
@@ -54,7 +54,7 @@ export const CRASH_WINDOW = 180_000;
 export class Supervisor {
     private current: State = { kind: "stopped" };
     private session: Session | undefined;
-    private wish = 0;
+    private request = 0;
     private crashes: number[] = [];
 
     constructor(private readonly ports: Ports) {}
@@ -63,118 +63,118 @@ export class Supervisor {
         return this.current;
     }
 
-    /** Search a server and start it; a running one is stopped first. */
+    /** Search for a server and start it. A running one is stopped first. */
     async start(): Promise<void> {
-        const wish = await this.begin();
-        this.set(wish, { kind: "searching" });
-        await this.use(wish, () => this.ports.find(true));
+        const request = await this.begin();
+        this.set(request, { kind: "searching" });
+        await this.use(request, () => this.ports.find(true));
     }
 
-    /** Like `start`, but starts the server that will probably be found first: a search may take longer than a start. */
+    /** Like `start`, but first start the server that the search will probably return, because a search may take longer. */
     async expect(server: Server): Promise<void> {
-        const wish = await this.begin();
-        await this.launch(wish, server);
-        if (wish === this.wish) await this.look();
+        const request = await this.begin();
+        await this.launch(request, server);
+        if (request === this.request) await this.look();
     }
 
-    /** Search a server again; the running one continues, unless the search returns another one. */
+    /** Search for a server again. The running one continues, unless the search returns another one. */
     async look(): Promise<void> {
         if (this.current.kind === "running") {
-            const [wish, { server }] = [this.wish, this.current];
-            // If the search fails, `start` repeats it and reports what is wrong.
+            const [request, { server }] = [this.request, this.current];
+            // If the search fails, `start` repeats it and reports the reason.
             const found = await this.ports.find(false).catch(() => undefined);
-            if (wish !== this.wish || isDeepStrictEqual(found, server)) return;
+            if (request !== this.request || isDeepStrictEqual(found, server)) return;
         }
         await this.start();
     }
 
     /** Create the private environment and start the server in it. */
     async install(): Promise<void> {
-        const wish = await this.begin();
-        this.set(wish, { kind: "installing", step: "python" });
-        await this.use(wish, () =>
+        const request = await this.begin();
+        this.set(request, { kind: "installing", step: "python" });
+        await this.use(request, () =>
             this.ports.install((step) => {
-                this.set(wish, { kind: "installing", step });
+                this.set(request, { kind: "installing", step });
             }),
         );
     }
 
     async stop(): Promise<void> {
-        const wish = await this.begin();
-        this.set(wish, { kind: "stopped" });
+        const request = await this.begin();
+        this.set(request, { kind: "stopped" });
     }
 
     private async begin(): Promise<number> {
-        const wish = ++this.wish;
+        const request = ++this.request;
         this.crashes = [];
         const session = this.session;
         this.session = undefined;
         await session?.stop();
-        return wish;
+        return request;
     }
 
-    private async use(wish: number, get: () => Promise<Server | Failure>): Promise<void> {
+    private async use(request: number, get: () => Promise<Server | Failure>): Promise<void> {
         try {
             const found = await get();
-            if (wish !== this.wish) return;
-            if (isFailure(found)) this.set(wish, { kind: "failed", failure: found });
+            if (request !== this.request) return;
+            if (isFailure(found)) this.set(request, { kind: "failed", failure: found });
             else {
-                const error = await this.launch(wish, found);
+                const error = await this.launch(request, found);
                 if (error !== undefined) {
-                    this.set(wish, { kind: "failed", failure: { kind: "start", server: found, detail: error } });
+                    this.set(request, { kind: "failed", failure: { kind: "start", server: found, detail: error } });
                 }
             }
         } catch (error) {
-            this.set(wish, { kind: "failed", failure: { kind: "internal", detail: said(error) } });
+            this.set(request, { kind: "failed", failure: { kind: "internal", detail: said(error) } });
         }
     }
 
-    /** Start a server; returns why it has not started, or undefined if it runs or is no longer needed. */
-    private async launch(wish: number, server: Server): Promise<string | undefined> {
-        this.set(wish, { kind: "starting", server });
+    /** Start a server. Returns why it has not started; undefined if it runs or is no longer needed. */
+    private async launch(request: number, server: Server): Promise<string | undefined> {
+        this.set(request, { kind: "starting", server });
         let session: Session;
         try {
             session = await this.ports.launch(server);
         } catch (error) {
             return said(error);
         }
-        if (wish !== this.wish) {
+        if (request !== this.request) {
             await session.stop();
             return undefined;
         }
         this.session = session;
-        this.set(wish, { kind: "running", server });
-        void session.ended.then((exit) => this.ended(wish, server, session, exit));
+        this.set(request, { kind: "running", server });
+        void session.ended.then((exit) => this.ended(request, server, session, exit));
         return undefined;
     }
 
-    private async ended(wish: number, server: Server, session: Session, exit: Exit): Promise<void> {
-        if (wish !== this.wish || session !== this.session) return;
+    private async ended(request: number, server: Server, session: Session, exit: Exit): Promise<void> {
+        if (request !== this.request || session !== this.session) return;
         this.session = undefined;
-        for (let last = exit; this.mayGoOn(wish, server, last);) {
-            const error = await this.launch(wish, server);
-            if (wish !== this.wish) return;
+        for (let last = exit; this.mayGoOn(request, server, last);) {
+            const error = await this.launch(request, server);
+            if (request !== this.request) return;
             if (error === undefined) {
                 this.ports.restarted(exit);
                 return;
             }
-            // A server that ends before the handshake has crashed, too.
+            // A server that ends before the handshake has also crashed.
             last = { status: null, signal: null, detail: error };
         }
     }
 
-    /** Count a crash of the server; returns whether to restart it. */
-    private mayGoOn(wish: number, server: Server, { detail }: Exit): boolean {
+    /** Count a crash of the server. Returns whether to restart it. */
+    private mayGoOn(request: number, server: Server, { detail }: Exit): boolean {
         const now = this.ports.now();
         this.crashes = [...this.crashes.filter((time) => now - time < CRASH_WINDOW), now];
         const count = this.crashes.length;
         if (count <= MAX_CRASHES) return true;
-        this.set(wish, { kind: "failed", failure: { kind: "crashes", server, count, detail } });
+        this.set(request, { kind: "failed", failure: { kind: "crashes", server, count, detail } });
         return false;
     }
 
-    private set(wish: number, state: State): void {
-        if (wish !== this.wish) return;
+    private set(request: number, state: State): void {
+        if (request !== this.request) return;
         this.current = state;
         this.ports.changed(state);
     }

@@ -2,9 +2,9 @@
 /**
  * The working folder and environment variables of started programs, so that they never execute code of the workspace.
  *
- * - Python searches modules in the working folder, unless started with `-I`, and in the entries of PYTHONPATH: an empty
- *   or relative entry also refers to the working folder.
- * - Windows searches programs and libraries in the working folder.
+ * - Python searches for modules in the working folder, unless started with `-I`, and in the entries of PYTHONPATH. An
+ *   empty or relative entry also refers to the working folder.
+ * - Windows searches for programs and libraries in the working folder.
  */
 
 import * as path from "node:path";

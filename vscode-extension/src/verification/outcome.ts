@@ -14,7 +14,7 @@ export type Outcome =
           readonly uniform: readonly string[];
           /** The number of traces, if none of them contradicts an expected 0 or 1 that the interval leaves open. */
           readonly unanimous: number;
-          /** Why the number is doubtful, or differs from what the property asks for. */
+          /** Why the number is doubtful, or is not the value that the property asks for. */
           readonly warning?: string;
           /** Which automaton waits for which, if the system gets stuck. */
           readonly stuck?: string;
@@ -30,7 +30,7 @@ export type Outcome =
           readonly stuck?: string;
       }
     | {
-          /** Neither passed nor failed: no expectation is set. */
+          /** The test has neither passed nor failed, because no expectation is set. */
           readonly kind: "unjudged";
           readonly short: string;
           readonly warning?: string;
@@ -38,7 +38,7 @@ export type Outcome =
       }
     | { readonly kind: "errored"; readonly message: string };
 
-/** If the system gets stuck, the result contains this; if that is an error, the test fails. */
+/** The outcome of a test. If the system gets stuck, it contains this; if that is an error, the test fails. */
 export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome {
     if (verified.error) return { kind: "errored", message: verified.error.message };
     const { short = "", seconds = 0 } = verified;

@@ -8,7 +8,7 @@ export interface Test<T> {
     readonly children: Iterable<[string, T]>;
 }
 
-/** The selected properties in their order, without duplicates; all if nothing is selected. */
+/** The selected properties in their order, without duplicates. If nothing is selected, all properties. */
 export function chosen<T extends Test<T>>(
     all: Iterable<[string, T]>,
     include: readonly T[] | undefined,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The formats in which diagnostics are written. Each is a module with a function `render`, made from `CheckReport`."""
+"""The formats in which diagnostics are written. Each format is a module with a function `render` that takes a
+`CheckReport`."""
 
 from __future__ import annotations
 

@@ -83,10 +83,12 @@ class Entry:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """Attributes:
-    checked: the number of checked files.
-    limit: the least severity that makes the check fail.
-    color: whether the output goes to a terminal with colors.
+    """The result of a check, for all formats.
+
+    Attributes:
+        checked: the number of checked files.
+        limit: the least severity that makes the check fail.
+        color: whether the output goes to a terminal with colors.
     """
 
     entries: Sequence[Entry]

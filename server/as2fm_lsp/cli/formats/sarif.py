@@ -80,5 +80,5 @@ def _location(file: str, place: LineRange) -> dict[str, Any]:
         "endLine": place.end_line,
         "endColumn": place.end_column,
     }
-    uri = urllib.parse.quote(os.fsencode(slashed(file)))  # of bytes: a name may not be valid text
+    uri = urllib.parse.quote(os.fsencode(slashed(file)))  # quotes bytes, because a name may not be valid text
     return {"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}

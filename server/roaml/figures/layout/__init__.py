@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Layouts: layered graphs with orthogonal lines, and trees.
 
-The layered layout has the classic steps (Sugiyama, Tagawa, Toda 1981): links that close cycles are turned (`cycles`),
+The layered layout has the classic steps (Sugiyama, Tagawa, Toda 1981): links that close cycles are reversed (`cycles`),
 nodes are assigned to layers (`layers`), ordered within them (`order`), placed (`positions`), and connected by
-orthogonal lines on tracks between the layers (`tracks`). A label is a node on its link. Therefore no line crosses a
-node or a label, and no label overlaps another, by construction.
+orthogonal lines on tracks between the layers (`tracks`). A label is treated as a node on its link. So no line crosses a
+node or a label, and no label overlaps another one, by construction.
 """
 
 from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route

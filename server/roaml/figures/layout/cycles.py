@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The links to turn so that no cycle remains."""
+"""The links that are reversed so that the graph has no cycles."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from roaml.figures.geometry import Box, Extent, Point
 
 
 class LayoutDirection(enum.Enum):
-    """The direction in which links lead, apart from those that close cycles."""
+    """The direction in which links lead, except those that close cycles."""
 
     DOWN = "down"
     RIGHT = "right"
@@ -19,7 +19,7 @@ class LayoutDirection(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A line from one node to another, with the size of its label, if it has one."""
+    """A line from one node to another, and the size of its label if it has one."""
 
     source: str
     target: str
@@ -31,7 +31,7 @@ class Route:
     """The line of a link from its source to its target.
 
     Attributes:
-        parts: one polyline; two if the label interrupts it.
+        parts: one polyline, or two if the label interrupts it.
         label: the place of the label, if the link has one.
     """
 

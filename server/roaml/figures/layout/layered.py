@@ -20,14 +20,14 @@ from roaml.figures.layout.vertices import Vertex, VertexKind
 LAYER_DISTANCE = 30.0
 TRACK_MARGIN = 18.0
 TRACK_DISTANCE = 10.0
-"""Between layers: the least distance; the distance of tracks from layers, and of tracks from each other."""
+"""Distances between layers: the minimum distance of two layers; of a track from a layer; of two tracks."""
 
 
 def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:
-    """The layout of a graph; links between a node and itself are not possible.
+    """The layout of a graph. Links between a node and itself are not supported.
 
-    Nodes are drawn in their order as far as links allow it: the first one comes first. A node grows if it has too many
-    links for its size. Parts of the graph that are not connected are packed.
+    Nodes are drawn in their order if links allow it, the first one first. A node grows if it has too many links for its
+    size. Parts of the graph that are not connected are packed side by side.
 
     Args:
         aspect: the desired ratio of width to height, for packing.
@@ -87,7 +87,7 @@ class _Component:
             self.edges += [_Edge(index, source, self.labels[index]), _Edge(index, self.labels[index], target)]
 
     def _split_long_edges(self) -> None:
-        """Add a vertex in each layer that a link passes."""
+        """Add a vertex to each layer that a link passes."""
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
         self.layers = assign_layers(self.vertices, pairs)
         short: list[_Edge] = []
@@ -165,7 +165,7 @@ class _Component:
 
 
 def _simplified(points: Sequence[Point]) -> tuple[Point, ...]:
-    """The line without points between equal directions."""
+    """The line without the points at which its direction does not change."""
     kept: list[Point] = []
     for point in points:
         while len(kept) >= 2 and (kept[-2].x == kept[-1].x == point.x or kept[-2].y == kept[-1].y == point.y):

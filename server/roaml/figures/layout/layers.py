@@ -9,8 +9,8 @@ from roaml.figures.layout.vertices import Vertex, VertexKind
 
 
 def assign_layers(vertices: Sequence[Vertex], edges: Sequence[tuple[int, int]]) -> list[int]:
-    """The layer of each vertex, from 0. A node is in the first possible layer, a node without predecessors right before
-    its first successor, and a label near the middle of its link.
+    """The layer of each vertex, from 0. A node is in the first possible layer, a node without predecessors is directly
+    before its first successor, and a label is near the middle of its link.
 
     Args:
         edges: the pairs (from, to) of an acyclic graph.
@@ -49,7 +49,7 @@ def _balance_labels(
     successors: Sequence[Sequence[int]],
     layers: list[int],
 ) -> None:
-    """Move labels of long links to the layers that are least filled, with labels rather than with nodes."""
+    """Move the labels of long links to the least filled layers, if possible to layers that contain no nodes."""
     filled: dict[int, float] = {}
     with_nodes: set[int] = set()
     for vertex, layer in zip(vertices, layers, strict=True):

@@ -13,7 +13,7 @@ MAX_SWEEPS = 12
 def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> list[list[int]]:
     """The vertices of each layer from left to right.
 
-    The search begins with the order of the vertices, and keeps it where crossings do not speak against it.
+    The search begins with the order of the vertices, and changes it only to avoid crossings.
 
     Args:
         layers: the layer of each vertex.
@@ -72,7 +72,8 @@ def _by_depth(layers: Sequence[int], below: Sequence[Sequence[int]], above: Sequ
 
 
 def _by_barycenter(row: list[int], fixed: Sequence[int], neighbours: Sequence[Sequence[int]]) -> list[int]:
-    """The row, ordered by the mean of the places of neighbours; vertices without neighbours keep their places."""
+    """The vertices of a row, ordered by the mean of the places of their neighbours. Vertices without neighbours keep
+    their places."""
     place = {vertex: index for index, vertex in enumerate(fixed)}
     means = {
         vertex: sum(place[other] for other in neighbours[vertex]) / len(neighbours[vertex])
@@ -84,7 +85,7 @@ def _by_barycenter(row: list[int], fixed: Sequence[int], neighbours: Sequence[Se
 
 
 def _exchange(rows: list[list[int]], above: Sequence[Sequence[int]], below: Sequence[Sequence[int]]) -> None:
-    """Exchange neighbours where this removes crossings."""
+    """Exchange adjacent vertices of a row where this removes crossings."""
     place = {vertex: index for row in rows for index, vertex in enumerate(row)}
     for row in rows:
         improved = True
@@ -101,5 +102,5 @@ def _exchange(rows: list[list[int]], above: Sequence[Sequence[int]], below: Sequ
 
 
 def _pair(neighbours: Sequence[Sequence[int]], left: int, right: int, place: dict[int, int]) -> int:
-    """The crossings of the links of two vertices, if `left` is left of `right`."""
+    """The number of crossings of the links of two vertices, if `left` is left of `right`."""
     return sum(place[a] > place[b] for a in neighbours[left] for b in neighbours[right])

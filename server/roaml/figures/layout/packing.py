@@ -43,7 +43,7 @@ def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[li
 
 
 def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Extent]:
-    """The place of each box in rows, in their order, and the size of the whole."""
+    """Place boxes in rows, in their order. Return the place of each box, and the size of the whole."""
     area = sum((size.width + distance) * (size.height + distance) for size in sizes)
     limit = max([size.width for size in sizes] + [math.sqrt(area * aspect)])
     places: list[Point] = []
@@ -58,7 +58,7 @@ def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) 
 
 
 def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: float) -> Layout:
-    """One layout of several; each comes with the indexes of its links among all `links`."""
+    """Several layouts side by side, as one layout. Each comes with the indexes of its links among all `links`."""
     places, size = shelves([layout.size for layout, _ in parts], aspect)
     boxes: dict[str, Box] = {}
     routes: dict[int, Route] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The points where lines leave and enter nodes: as straight as possible, at a distance from each other."""
+"""The points where lines leave and enter nodes. Lines are as straight as possible, at a distance from each other."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ _SWEEPS = 6
 
 
 class Ports:
-    """
+    """The ports of all edges.
+
     Attributes:
-        leaving: where each edge leaves its upper vertex.
-        entering: where each edge enters its lower vertex.
+        leaving: the place where each edge leaves its upper vertex.
+        entering: the place where each edge enters its lower vertex.
     """
 
     def __init__(
@@ -52,7 +53,7 @@ class Ports:
             self._align(index, (upper, outgoing[upper]), (lower, incoming[lower]))
 
     def _place(self, vertex: int, edges: Sequence[int], own: list[float], other: Sequence[float]) -> None:
-        """Place the lines of one side of a vertex opposite to their other ends."""
+        """Place the lines at one side of a vertex so that each is opposite to its other end, if possible."""
         if not edges or self._vertices[vertex].kind is VertexKind.PASSING:
             return
         low, high = self._limits(vertex)
@@ -66,7 +67,7 @@ class Ports:
         return self._middles[vertex] - half, self._middles[vertex] + half
 
     def _align(self, index: int, upper: tuple[int, Sequence[int]], lower: tuple[int, Sequence[int]]) -> None:
-        """Remove the bend of a line whose ends are nearly opposite."""
+        """Remove the bend of a line whose ends are nearly opposite to each other."""
         if abs(self.leaving[index] - self.entering[index]) >= CLEARANCE:
             return
         if self._is_free(*lower, index, self.entering, self.leaving[index]):

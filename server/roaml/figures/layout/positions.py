@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The places of vertices within their layers: near their neighbours, at a distance from each other."""
+"""The places of vertices within their layers: near their neighbours in other layers, at a distance from each other."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from roaml.figures.layout.vertices import Vertex, VertexKind, distance
 
 SWEEPS = 16
 _STRAIGHTNESS = {0: 1.0, 1: 3.0, 2: 10.0}
-"""The weight of a link by the number of its ends that only pass a layer."""
+"""The weight of a link, by the number of its ends at which a line only passes a layer."""
 
 
 def place_vertices(
     vertices: Sequence[Vertex], rows: Sequence[Sequence[int]], edges: Sequence[tuple[int, int]]
 ) -> list[float]:
-    """The middle of each vertex within its layer."""
+    """The place of the middle of each vertex within its layer."""
     gaps = [
         [
             (vertices[a].size.width + vertices[b].size.width) / 2 + distance(vertices[a], vertices[b])
@@ -58,7 +58,7 @@ def _straighten(
     edges: Sequence[tuple[int, int]],
     places: list[float],
 ) -> None:
-    """Give the vertices of one line the same place, as far as their neighbours leave space for it."""
+    """Give the vertices of one line the same place, if their neighbours leave enough space for it."""
     where = {vertex: (index, column) for index, row in enumerate(rows) for column, vertex in enumerate(row)}
 
     def limits(vertex: int) -> tuple[float, float]:
@@ -87,7 +87,7 @@ def _straighten(
 
 
 def _lines(vertices: Sequence[Vertex], edges: Sequence[tuple[int, int]]) -> list[list[int]]:
-    """The vertices between the ends of each long link, the longest first."""
+    """The vertices on each long link, without its ends. The longest link is first."""
     following = {a: b for a, b in edges if VertexKind.NODE not in (vertices[a].kind, vertices[b].kind)}
     inner = set(following.values())
     lines = []

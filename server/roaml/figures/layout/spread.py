@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers in a given order and with given distances, as near as possible to what is desired."""
+"""Numbers in a given order, with given minimum distances, as near as possible to desired numbers."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ def spread(
     low: float = float("-inf"),
     high: float = float("inf"),
 ) -> list[float]:
-    """The numbers x with x[i] + distances[i] <= x[i + 1] that minimise the weighted squares of x - desired.
+    """The numbers x with x[i] + distances[i] <= x[i + 1] that minimise the weighted sum of the squares of x - desired.
 
-    Algorithm: pool adjacent violators. The distances take precedence over `high`, `high` over `low`.
+    Algorithm: pool adjacent violators. The distances take precedence over `high`, and `high` over `low`.
 
     Args:
-        distances: the least difference of each number to the next one, one less than `desired`.
+        distances: the minimum difference between each number and the next one; one element less than `desired`.
         low, high: the limits of the numbers.
     """
     offsets = [0.0]
     for gap in distances:
         offsets.append(offsets[-1] + gap)
-    blocks: list[tuple[float, float, int]] = []  # mean, weight, number of members
+    blocks: list[tuple[float, float, int]] = []  # mean, weight, and count of the numbers of each block
     for index, value in enumerate(desired):
         block = (value - offsets[index], weights[index] if weights else 1.0, 1)
         while blocks and blocks[-1][0] > block[0]:

@@ -13,14 +13,14 @@ SIBLING_DISTANCE = 20.0
 COUSIN_DISTANCE = 30.0
 LEVEL_DISTANCE = 40.0
 NEARLY_STRAIGHT = 8.0
-"""A line with a smaller bend is straight, beside the middle of the parent."""
+"""A line with a bend of less than this is drawn straight, beside the middle of the parent."""
 
 
 def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], direction: LayoutDirection) -> Layout:
     """The layout of a forest. The routes lead from each parent to each child, in the order of `children`.
 
     Args:
-        children: the children of each node in their order; leaves may be missing.
+        children: the children of each node in their order; nodes without children may be omitted.
     """
     if direction is LayoutDirection.RIGHT:
         turned = {name: size.turned for name, size in nodes.items()}
@@ -79,7 +79,7 @@ class _Outline:
 
 
 def _join(width: float, parts: Sequence[_Outline], offsets: dict[str, float], names: Sequence[str]) -> _Outline:
-    """The outline of a node with its subtrees, whose offsets are recorded."""
+    """The outline of a node with its subtrees. The offsets of the subtrees are stored in `offsets`."""
     left: list[float] = []
     right: list[float] = []
     places: list[float] = []

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tracks between two layers: each line leaves the upper layer, goes along a track, and enters the lower layer.
+"""Tracks between two layers: each line leaves the upper layer, follows a track, and enters the lower layer.
 
-Lines that would run on top of each other get different tracks, ordered so that vertical parts do not overlap and few
-lines cross. Where two lines exchange their places, one of them changes its track on the way.
+Lines that would lie on top of each other get different tracks, ordered so that vertical parts do not overlap and few
+lines cross. Where two lines exchange their places, one of them changes its track between the layers.
 """
 
 from __future__ import annotations
@@ -11,21 +11,21 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 CLEARANCE = 9.0
-"""The least distance of two parallel lines between layers."""
+"""The minimum distance of two parallel lines between layers, in pixels."""
 
 
 class TrackTurn(NamedTuple):
-    """A line goes along `track` to `to`."""
+    """A part of a line that follows `track` until the place `to`."""
 
     track: int
     to: float
 
 
 def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[TrackTurn]], int]:
-    """The turns of each line, and the number of tracks.
+    """The parts of each line, and the number of tracks.
 
     Args:
-        lines: where each line leaves the upper layer, and where it enters the lower one.
+        lines: the place where each line leaves the upper layer, and where it enters the lower one.
     """
     segments: Sequence[_Segment] = [
         _Segment(index, start, end) for index, (start, end) in enumerate(lines) if start != end
@@ -35,7 +35,7 @@ def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[Track
     while isinstance(order, _Segment) and len(segments) < limit:
         segments = [part for segment in segments for part in _split(segment, order, segments, lines)]
         order = _ordered(segments)
-    if isinstance(order, _Segment):  # Each segment was split once; the new ends are at a distance from all others.
+    if isinstance(order, _Segment):  # each segment is split at most once; new ends keep a distance from all others
         order = segments
     tracks: dict[_Segment, int] = {}
     for segment in order:
@@ -48,7 +48,7 @@ def assign_tracks(lines: Sequence[tuple[float, float]]) -> tuple[list[list[Track
 
 
 class _Segment(NamedTuple):
-    """The part of a line along one track; `part` counts the parts of a line from above."""
+    """The part of a line along one track. `part` numbers the parts of a line from above."""
 
     line: int
     start: float
@@ -69,19 +69,19 @@ def _meet(a: _Segment, b: _Segment) -> bool:
 
 
 def _must_not_be_above(a: _Segment, b: _Segment) -> bool:
-    """Whether the lower vertical part of `a` would lie on the upper one of `b`."""
+    """Whether the lower vertical part of `a` would overlap the upper one of `b`."""
     if a.line == b.line:
         return a.part > b.part
     return abs(a.end - b.start) < CLEARANCE
 
 
 def _crossings(a: _Segment, b: _Segment) -> int:
-    """The crossings of two segments if `a` is above `b`."""
+    """The number of crossings of two segments if `a` is above `b`."""
     return (a.left < b.start < a.right) + (b.left < a.end < b.right)
 
 
 def _ordered(segments: Sequence[_Segment]) -> Sequence[_Segment] | _Segment:
-    """The segments from above to below; a segment to split if there is no such order."""
+    """The segments ordered from top to bottom. If there is no valid order, the result is a segment to split."""
     above: dict[_Segment, set[_Segment]] = {segment: set() for segment in segments}
     cost: dict[_Segment, dict[_Segment, int]] = {segment: {} for segment in segments}
     for a, b in _pairs(segments):
@@ -110,7 +110,7 @@ def _ordered(segments: Sequence[_Segment]) -> Sequence[_Segment] | _Segment:
 
 
 def _on_cycle(remaining: Sequence[_Segment], above: dict[_Segment, set[_Segment]]) -> list[_Segment]:
-    """Segments each of which must be above the next one and below the previous one."""
+    """Segments that form a cycle: each must be above the next one and below the previous one."""
     path = [remaining[0]]
     while True:
         following = min(above[path[-1]], key=lambda segment: (segment.line, segment.part))
@@ -129,7 +129,8 @@ def _pairs(segments: Sequence[_Segment]) -> Iterator[tuple[_Segment, _Segment]]:
 def _split(
     segment: _Segment, chosen: _Segment, segments: Sequence[_Segment], lines: Sequence[tuple[float, float]]
 ) -> Iterator[_Segment]:
-    """The segment, in two parts if it is the chosen one; they meet at a distance from all other lines."""
+    """The parts of a segment: itself, or two parts if it is the chosen one. The parts meet at a distance from all other
+    lines."""
     if segment != chosen:
         yield segment._replace(part=segment.part + (segment.line == chosen.line and segment.part > chosen.part))
         return

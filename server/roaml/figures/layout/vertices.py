@@ -17,7 +17,7 @@ class VertexKind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Vertex:
-    """`size.width` is its extent within the layer, `size.height` across."""
+    """A vertex. `size.width` is its extent along the layer, `size.height` across it."""
 
     kind: VertexKind
     size: Extent
@@ -26,11 +26,11 @@ class Vertex:
 NODE_DISTANCE = 28.0
 LABEL_DISTANCE = 18.0
 LINE_DISTANCE = 14.0
-"""Distances of neighbours in a layer: of two nodes, of a label to others, of two lines."""
+"""Distances between neighbours in a layer, in pixels: of two nodes, of a label from others, of two lines."""
 
 
 def distance(left: Vertex, right: Vertex) -> float:
-    """The distance of the borders of two neighbours in a layer."""
+    """The minimum distance between the borders of two neighbours in a layer."""
     kinds = {left.kind, right.kind}
     if kinds == {VertexKind.PASSING}:
         return LINE_DISTANCE

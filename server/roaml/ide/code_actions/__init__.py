@@ -15,25 +15,25 @@ from roaml.project.workspace import Snapshot
 from roaml.text import Span
 
 
-def actions(snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]) -> Iterator[CodeAction]:
+def actions(snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[str], bool]) -> Iterator[CodeAction]:
     """All code actions at a place, of the requested kinds.
 
     Args:
         snapshot: the state of the workspace.
         path: the file.
         place: the selection, or the caret as an empty span.
-        is_wanted: whether a kind of action is requested.
+        is_requested: whether a kind of action is requested.
     """
-    if is_wanted(QUICK_FIX):
+    if is_requested(QUICK_FIX):
         everything = snapshot.checker.diagnostics(path)
         diagnostics = [d for d in everything if d.span.start <= place.end and place.start <= d.span.end]
         for diagnostic in diagnostics:
             yield from quick_fixes(snapshot, path, diagnostic)
         for code in dict.fromkeys(diagnostic.code for diagnostic in diagnostics):
             yield from _fix_all_of(snapshot, path, everything, code)
-    if is_wanted(EXTRACT) or is_wanted(REWRITE):
-        yield from (action for action in refactorings(snapshot, path, place) if is_wanted(action.kind))
-    if is_wanted(FIX_ALL):
+    if is_requested(EXTRACT) or is_requested(REWRITE):
+        yield from (action for action in refactorings(snapshot, path, place) if is_requested(action.kind))
+    if is_requested(FIX_ALL):
         yield from _fix_file(snapshot, path)
 
 
@@ -52,7 +52,7 @@ def _made(path: str, fix: Fix) -> WorkspaceEdit:
 
 
 def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
-    """A fix of all findings of a rule in the file, if more than one has an obvious fix."""
+    """An action that fixes all findings of a rule in the file, if more than one of them has a preferred fix."""
     mendable = [diagnostic for diagnostic in diagnostics if diagnostic.code == code and preferred_fix(diagnostic)]
     if len(mendable) > 1:
 
@@ -68,7 +68,7 @@ def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic]
 
 
 def _fix_file(snapshot: Snapshot, path: str) -> Iterator[CodeAction]:
-    """All safe fixes of the file."""
+    """An action that applies all safe fixes of the file, if there are any."""
     if any(safe_fix(diagnostic) for diagnostic in snapshot.checker.diagnostics(path)):
         title = "Apply all safe fixes in this file"
         yield CodeAction(title, FIX_ALL, lambda: _all(snapshot, path, safe_fix, careful=True))

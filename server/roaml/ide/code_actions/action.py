@@ -19,10 +19,12 @@ KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
 
 @dataclass(frozen=True, slots=True)
 class WorkspaceEdit:
-    """Attributes:
-    edits: the edits of existing files, by path; those of one file do not overlap.
-    created: the text of new files, by path.
-    renamed: files with their new paths. They are edited before they are renamed.
+    """Changes to the files of a workspace.
+
+    Attributes:
+        edits: the edits of existing files, by path; the edits of one file do not overlap.
+        created: the text of new files, by path.
+        renamed: old path -> new path. Files are edited before they are renamed.
     """
 
     edits: Mapping[str, tuple[TextEdit, ...]] = field(default_factory=dict)
@@ -38,23 +40,23 @@ class CodeAction:
     """A code action at a place.
 
     Attributes:
-        title: a phrase in the imperative; unique among those of one kind and place.
+        title: a phrase in the imperative; unique among the actions of one kind at one place.
         make: computes the change when it is requested.
-        mends: the diagnostic that a quick fix removes.
-        preferred: whether it is the one obvious action.
-        resources: `create` or `rename`, if it creates or renames files.
+        diagnostic: the diagnostic that a quick fix removes.
+        preferred: whether the action is the obvious one, as in LSP's `isPreferred`.
+        resources: contains `create` if the action creates files, and `rename` if it renames files.
     """
 
     title: str
     kind: str
     make: Callable[[], WorkspaceEdit]
-    mends: Diagnostic | None = None
+    diagnostic: Diagnostic | None = None
     preferred: bool = False
     resources: tuple[str, ...] = ()
 
 
 def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
-    """A change that has been computed already, in the form of `CodeAction.make`."""
+    """A function for `CodeAction.make` that returns a change that is already known."""
     return lambda: change
 
 

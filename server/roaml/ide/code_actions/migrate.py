@@ -14,7 +14,7 @@ TITLE = "Convert the system to the current dialect"
 
 
 def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """Offered at spellings of the older dialect, in a file of a system of that dialect."""
+    """The action, which is offered at spellings of the older dialect in files of systems in that dialect."""
     analysis = snapshot.analysis
     systems = analysis.memberships.get(path, ())
     if not any((system := analysis.system(owner)) is not None and system.older for owner in systems):
@@ -25,7 +25,8 @@ def actions(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
 
 
 def _convert(snapshot: Snapshot, path: str) -> WorkspaceEdit:
-    """Migrates all systems that share a file with those of `path`, because a file cannot be in two dialects."""
+    """The edits that migrate the systems of `path` and all systems that share files with them, because a file cannot
+    be in two dialects."""
     analysis = snapshot.analysis
     systems = list(analysis.memberships.get(path, ()))
     for system in systems:

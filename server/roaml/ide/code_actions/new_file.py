@@ -34,7 +34,7 @@ def file_name(machine: str) -> str:
 
 
 def free_path(analysis: Analysis, folder: str, name: str) -> str:
-    """A path in a folder at which there is no file."""
+    """A path of a new file in a folder: `name`, with a number if there is a file with this name."""
     stem, extension = split_name(name)
     path, number = full(folder, name), 2
     while isinstance(analysis.files.read(path), SourceFile):
@@ -43,7 +43,7 @@ def free_path(analysis: Analysis, folder: str, name: str) -> str:
 
 
 def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
-    """A path as `src` of a system file writes it: like the others there, with or without `./`."""
+    """A path for the attribute `src` in a system file. It begins with `./` if the paths `written` in the file do."""
     src = seen_from(path, system)
     others = [other for other in written if not other.startswith("..")]
     dotted = bool(others) and all(other.startswith("./") for other in others)
@@ -59,11 +59,12 @@ def node(name: str) -> str:
 
 
 def plugin(name: str, ports: Iterable[tuple[Direction, str, str]] = (), *, child: bool = False) -> str:
-    """A plugin that reads and sets its ports and returns SUCCESS at once or, with a child, the status of the child.
+    """A plugin that reads its input ports, sets its output ports and returns SUCCESS, or, if it has a child, the status
+    of the child.
 
     Args:
         name: the name of the plugin.
-        ports: direction, key and type of each.
+        ports: the direction, key and type of each port.
         child: whether the node has a child.
     """
     ports = tuple(ports)

@@ -17,7 +17,8 @@ from roaml.scxml.names import safe_name
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:
-    """The title and the change, if a new plugin is possible: the generated plugin cannot tick several children."""
+    """The title of the action and its change. There is none for a node with several children, which the generated
+    plugin cannot tick."""
     systems = analysis.memberships.get(path, ())
     if (
         not systems
@@ -53,8 +54,8 @@ def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target
 
 
 def port_of(system: System | None, setting: PortSetting) -> tuple[Direction, str, str]:
-    """The direction, key and type that a setting suggests: a variable that another node sets is read, others are
-    set."""
+    """The probable direction, key and type of a port that a node sets. A port with a constant, or with a variable that
+    another node writes, is an input; a port with any other variable is an output."""
     variable = setting.variable
     if variable is None:
         return Direction.IN, setting.key.value, _type_of(setting.value.value)

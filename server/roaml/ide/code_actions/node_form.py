@@ -14,7 +14,7 @@ from roaml.text import Span, TextEdit, computed
 
 
 def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[CodeAction]:
-    """Convert a node to the other form."""
+    """An action that converts a node to the other form."""
     edits = _other_form(analysis, path, node)
     if edits:
         title = "Write the node in its explicit form" if node.compact else "Write the node in its compact form"
@@ -22,7 +22,7 @@ def one_node(analysis: Analysis, path: str, node: TreeNode) -> Iterator[CodeActi
 
 
 def whole_file(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
-    """Convert all nodes to one form, offered at the start tags of the file and its trees."""
+    """Actions that convert all nodes to one form, offered at the start tags of the root and of the trees."""
     file = analysis.tree(path)
     if file is None:
         return
@@ -69,7 +69,8 @@ def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]
 
 
 def _category(analysis: Analysis, path: str, node: TreeNode) -> str:
-    """The category of the node: as `<TreeNodesModel>` declares, otherwise by the number of its children."""
+    """The category of the node: the one that `<TreeNodesModel>` declares, otherwise one that fits the number of its
+    children."""
     name = node.plugin.value if node.plugin else ""
     for tree_path in analysis.trees_from(path):
         file = analysis.tree(tree_path)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quick fixes that a rule cannot offer, because they change other files or create new ones.
 
-Each is a function from a diagnostic to actions; other files are read when the fix is requested, so it is always up to
-date.
+A function for each rule takes a diagnostic and returns actions. Other files are read when the fixes are requested, so
+that the fixes are always up to date.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from roaml.edit.elements import after, first_in, removal
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import QUICK_FIX, CodeAction, WorkspaceEdit, known
 from roaml.ide.code_actions.inputs import add_input, move_input
+from roaml.ide.code_actions.move_expectation import movable_expectations, moved
 from roaml.ide.code_actions.new_plugin import port_of, skeletons
 from roaml.ide.rename import Renaming, rename
 from roaml.language import SYSTEM
@@ -39,7 +40,7 @@ from roaml.suggest import close_names
 from roaml.text import SourceFile, Span, TextEdit
 
 _MAX_FILES = 3
-"""The maximum number of files that are offered instead of a missing one."""
+"""The maximum number of files that are offered instead of a missing file."""
 
 _Edits = dict[str, tuple[TextEdit, ...]]
 
@@ -66,7 +67,7 @@ def _action(
 
 
 def _missing_file(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Use a file with a similar name, or create a new one."""
+    """Actions that use a file with a similar name, or that create the missing file."""
     analysis, system = snapshot.analysis, diagnostic.path
     listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
     if listed is None:
@@ -111,7 +112,8 @@ def _missing_include(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Cod
 
 
 def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: Iterable[str]) -> Iterator[CodeAction]:
-    """Files that are probably meant instead of `path`: with the same name elsewhere, or with a similar name."""
+    """Actions that replace `path` by a file that was probably intended: one with the same name in another folder, or
+    one with a similar name."""
     written = _text_at(analysis, diagnostic)
     by_name: dict[str, list[str]] = {}
     for other in others:
@@ -130,7 +132,7 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
 
 
 def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """List the file that contains the plugin, or create one."""
+    """Actions that list the file of the plugin in the system, or that create a new plugin."""
     analysis = snapshot.analysis
     node = _node_at(analysis, diagnostic)
     if node is None or node.plugin is None or (node.type is not None and not node.type.translated):
@@ -169,11 +171,11 @@ def _list(analysis: Analysis, systems: Iterable[str], path: str) -> WorkspaceEdi
 
 
 def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Move a plugin that is listed as a node to the right section."""
+    """An action that lists a machine as a plugin instead of as a ROS node."""
     analysis = snapshot.analysis
     for system in analysis.memberships.get(diagnostic.path, ()):
         if not analysis.tree_paths(system):
-            continue  # there would be plugins and no tree
+            continue  # the system would have plugins but no tree
         for listed in analysis.listed(system):
             if listed.path == diagnostic.path and listed.input.section == "node_models":
                 yield _move(analysis, diagnostic, system, listed)
@@ -196,7 +198,7 @@ def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """List a property file from the folder in a system without properties."""
+    """Actions that list a property file from the folder in a system without properties."""
     facts = diagnostic.facts
     if isinstance(facts, MissingChild) and facts.parent in SYSTEM.roots and facts.name == "properties":
         yield from _list_file(snapshot, diagnostic, "properties", "jani", FileKind.PROPERTIES)
@@ -205,7 +207,7 @@ def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeActi
 def _list_file(
     snapshot: Snapshot, diagnostic: Diagnostic, section: str, type_: str, kind: FileKind
 ) -> Iterator[CodeAction]:
-    """List a file from the folder of the system file, or below it."""
+    """Actions that list a file from the folder of the system file, or from a folder below it."""
     analysis, system = snapshot.analysis, diagnostic.path
     folder = folder_of(system)
     for number, path in enumerate(p for p in snapshot.listed if is_below(p, folder) and analysis.kind(p) is kind):
@@ -221,7 +223,7 @@ def _list_file(
 
 
 def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Remove a port, and its settings in the trees."""
+    """An action that removes a port, and the attributes that set it in the trees."""
     if diagnostic.fixes:
         return
     machine = snapshot.analysis.machine(diagnostic.path)
@@ -241,8 +243,8 @@ def _unused_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAct
 
 
 def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
-    """Whether an output port of a plugin is bound to a variable that other ports read: then it is the output that is
-    missing."""
+    """Whether an output port of a plugin is bound to a variable that other ports read. If so, the missing statement
+    that writes the port is probably the error, and not the declaration of the port."""
     systems = (analysis.system(system) for system in analysis.memberships.get(path, ()))
     for variable in (ports for system in systems if system for ports in system.blackboard.values()):
         own = [bound for bound in variable if bound.automaton.path == path and bound.port.key == key]
@@ -274,7 +276,7 @@ def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edi
 
 
 def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Declare a port in the plugin, if all its nodes set it."""
+    """An action that declares a port in the plugin, if all nodes of the plugin set it."""
     if any(fix.preferred for fix in diagnostic.fixes):
         return
     analysis = snapshot.analysis
@@ -314,7 +316,7 @@ def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAc
 
 
 def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Remove an unused plugin, unless a tree that is not executed uses it."""
+    """An action that removes an unused plugin from the system, unless a tree that is not executed uses it."""
     analysis, system = snapshot.analysis, diagnostic.path
     source = analysis.source(system)
     listed = next((f for f in analysis.listed(system) if f.input.src and f.input.src.span == diagnostic.span), None)
@@ -328,7 +330,7 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeA
 
 
 def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Declare a port with the type that the other port of the same variable has."""
+    """An action that declares a port with the type of another port that is bound to the same variable."""
     analysis = snapshot.analysis
     facts, node = diagnostic.facts, _node_at(analysis, diagnostic)
     if not isinstance(facts, TypeConflict) or node is None or node.plugin is None:
@@ -348,7 +350,7 @@ def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeA
 
 
 def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Rename something with an invalid name, in all its places."""
+    """An action that replaces an invalid name at the definition and at all uses of its symbol."""
     if diagnostic.fixes or not isinstance(diagnostic.facts, WrongName):
         return
     analysis = snapshot.analysis
@@ -363,6 +365,20 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     if isinstance(renaming, Renaming):
         change = WorkspaceEdit(renaming.edits)
         yield _action(diagnostic, f"Rename to `{new}`", known(change), preferred=True)
+
+
+# ---------------------------------------------------------------- expectations
+
+
+def _move_expectations(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+    """Move the expectations of the property file to the configuration."""
+    analysis, path = snapshot.analysis, diagnostic.path
+    expectations = movable_expectations(analysis, path)
+    for system in analysis.memberships.get(path, ())[:1] if expectations else ():
+        file = snapshot.configuration_of(system)
+        what = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
+        make = partial(moved, analysis, path, expectations, file)
+        yield _action(diagnostic, f"Move {what} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
 
 
 # -------------------------------------------------------------------- helpers
@@ -413,6 +429,7 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "tree-element-in-node": _element_in_node,
     "unknown-plugin": _unknown_plugin,
     "unknown-port": _unknown_port,
+    "unportable-expectation": _move_expectations,
     "unused-plugin": _unused_plugin,
     "unused-port": _unused_port,
 }

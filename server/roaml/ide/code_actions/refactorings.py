@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Refactorings: changes without a diagnostic, offered where the caret suggests them."""
+"""Refactorings: changes that do not fix a diagnostic. They are offered at the elements that they change."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _edited(analysis: Analysis, path: str, *edits: Edit) -> WorkspaceEdit:
 
 
 def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """Add a `<bt_halt>` to the state at the caret, or to all states."""
+    """Actions that add a `<bt_halt>` to the state at the caret, or to all states that handle ticks."""
     document, root = analysis.document(path), machine.element
     state = _state_at(machine, place)
     if document is None or state is None:
@@ -59,7 +59,7 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
 
 
 def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """Add handlers for all results of an action to the state at the caret."""
+    """Actions that add handlers for all results of a ROS action to the state at the caret."""
     document, state = analysis.document(path), _state_at(machine, place)
     if document is None or state is None or state.id is None or not state.element.complete:
         return

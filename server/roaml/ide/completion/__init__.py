@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Completion at a caret.
 
-- Works on incomplete files: the place comes from the tree, or from the text where the tree has none.
+- Works on incomplete files: the place of the caret is determined from the tree, or from the text if the tree does not
+  contain it.
 - The schemas are the source of elements, attributes and values, so a new element needs no change here.
 - Documentation is created only when an item is selected (`roaml.ide.completion.document`).
 """
@@ -36,7 +37,7 @@ def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> C
     """The completions at a caret; `None` if there are none.
 
     Args:
-        trigger: the character after which the editor asks automatically, "" if the user asked.
+        trigger: the character after which the editor requests completion automatically; "" if the user requested it.
     """
     file = xml_file(snapshot.analysis, path)
     if file is None:
@@ -121,7 +122,7 @@ def _content(request: Request, place: Content) -> tuple[Span, Iterable[Completio
 
 
 def _tags(request: Request, place: Content) -> list[CompletionItem]:
-    """The completions where not even the `<` has been typed: whole elements."""
+    """The completions at a place where no `<` has been typed: whole elements with their `<`."""
     items = [
         CompletionItem(i.label, i.kind, _tag(i), i.detail, i.about, i.rank, i.filter or i.label, i.deprecated)
         for i in elements(request, place.parents, bare=True)
@@ -133,7 +134,7 @@ def _tags(request: Request, place: Content) -> list[CompletionItem]:
 
 
 def _tag(item: CompletionItem) -> str:
-    """Skeletons of several elements and of fields, which include their `<`."""
+    """The text of an item with its `<`, which skeletons of several elements already include."""
     return item.snippet if item.snippet.startswith("<") else f"<{item.snippet}"
 
 
@@ -146,7 +147,7 @@ def _new_document(snapshot: Snapshot, path: str) -> Completions | None:
 
 
 def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionItem]) -> Completions:
-    """The items that match the typed text, the best first; at most as many as an editor can show at once."""
+    """The items that match the typed text, the best first; at most `MAX_ITEMS`."""
     before, after = text[span.start : offset], text[offset : span.end]
     span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
     unique = {(item.label, item.insert): item for item in items}.values()

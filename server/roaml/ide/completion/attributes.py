@@ -22,7 +22,8 @@ def attributes(request: Request, parents: tuple[Typed, ...], typed: Typed, *, ba
     """The attributes that may be inserted in a start tag.
 
     Args:
-        bare: insert the name with `=` and a value; otherwise only the name.
+        bare: whether nothing of the attribute follows the caret, so that the name is inserted with `=` and a value.
+            Otherwise, only the name is inserted.
     """
     element, type_ = typed
     is_node = request.file.grammar is BEHAVIOR_TREE and any(p.element.name == "BehaviorTree" for p in parents)
@@ -67,7 +68,7 @@ def _item(request: Request, subject: CompletionSubject, attribute: AttributeType
 
 
 def _remappings(request: Request, subject: CompletionSubject, given: set[str]) -> Iterator[CompletionItem]:
-    """The variables of the tree of a subtree node."""
+    """Attributes that remap the variables of a subtree, for a node that executes it."""
     id_ = subject.element.get("ID") if subject.element else None
     path, tree = request.trees.trees.get(id_.value if id_ else "", ("", None))
     if tree is None or id_ is None:

@@ -14,17 +14,16 @@ from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
 
 _GRAMMARS: Mapping[str, Grammar] = {
-    each.schema: each for each in (HL_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE)
+    grammar.schema: grammar for grammar in (HL_SCXML, SYSTEM, STRUCTS, XML_PROPERTIES, BEHAVIOR_TREE)
 }
 
 
 def document(analysis: Analysis, about: Symbol) -> str:
     """The documentation of the subject of an item, as Markdown; "" if there is none.
 
-    In addition to the symbols of `describe`, there are `element` (its path is the parent's name, its scope the schema),
-    `attribute` (path `PARENT/ELEMENT`), `choice` (path `PARENT/ELEMENT/ATTRIBUTE`), `function`,
-    `event-variable`, `base-type` and `json`
-    (scope is the text).
+    In addition to the symbols that `describe` supports, `about` may be a part of the languages. The kinds are `element`
+    (`path` is the name of the parent, `scope` the schema), `attribute` (`path` is `PARENT/ELEMENT`), `choice` (`path`
+    is `PARENT/ELEMENT/ATTRIBUTE`), `function`, `event-variable`, `base-type` and `json` (`scope` is the documentation).
     """
     grammar = _GRAMMARS.get(about.scope)
     match about.kind:
@@ -54,7 +53,7 @@ def document(analysis: Analysis, about: Symbol) -> str:
 
 
 def _element(grammar: Grammar, parent: str, name: str) -> ElementType | None:
-    """The element as a child of a parent; otherwise as a child of any parent."""
+    """The type of the element as a child of `parent`; if it is not allowed there, its type in any other parent."""
     outer = grammar.find(parent) if parent else None
     inner = grammar.child(outer, name) if outer else None
     return inner or grammar.find(name)

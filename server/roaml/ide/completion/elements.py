@@ -30,7 +30,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     """The elements that are allowed inside the last of `parents`.
 
     Args:
-        bare: complete the element with attributes and end; otherwise only its name.
+        bare: whether nothing of the tag follows the caret, so that the element is inserted with attributes and end tag.
+            Otherwise, only its name is inserted.
     """
     if not parents:
         for name in request.file.grammar.roots:
@@ -41,7 +42,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     parent = parents[-1]
     if parent.type is None:
         if request.forest is not None and any(typed.element.name == "BehaviorTree" for typed in parents):
-            yield from _tree_nodes(request, parents, bare=bare)  # in a node that only a library or a model knows
+            # A library or a model declares the type of the parent, not the schema.
+            yield from _tree_nodes(request, parents, bare=bare)
         return
     if bare and "field" in parent.type.children:
         yield from fields_to_add(request, parent.element)
@@ -64,8 +66,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
 
 
 def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool:
-    """Whether no rule reports the element immediately, although the schema allows it (`tree-element-in-node`,
-    `thread-element-outside-thread`)."""
+    """Whether the rules `tree-element-in-node` and `thread-element-outside-thread` allow the element, which the schema
+    allows."""
     if name.startswith("bt_"):
         sections = request.sections
         return "node_models" not in sections or "behavior_tree" in sections
@@ -80,10 +82,10 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
     subject = CompletionSubject(None, type_, parents)
     for attribute in type_.attributes.values():
         if request.file.grammar is XML_PROPERTIES:
-            is_wanted = property_files.is_wanted(parents, type_, attribute)
+            is_usual = property_files.is_usual(parents, type_, attribute)
         else:
-            is_wanted = _is_wanted(type_, attribute)
-        if not is_wanted:
+            is_usual = _is_usual(type_, attribute)
+        if not is_usual:
             continue
         choices = attribute.simple.choices
         if len(choices) == 1:
@@ -95,15 +97,15 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
 
 
 def likely(request: Request, subject: CompletionSubject, attribute: AttributeType) -> list[str]:
-    """The likely value of an attribute, if it has only a few choices."""
+    """The likely values of an attribute; empty if there are many."""
     if attribute.value is ValueRole.ROS_TYPE:
         return []
     labels = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
     return labels if len(labels) <= _MAX_CHOICES else []
 
 
-def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
-    """Whether an element is seldom written without an attribute, although the schema may not require it."""
+def _is_usual(type_: ElementType, attribute: AttributeType) -> bool:
+    """Whether an element is usually written with an attribute, even if the schema does not require it."""
     if attribute.use or attribute.ignored is not None:
         return False
     if attribute.required:
@@ -119,7 +121,7 @@ def _is_wanted(type_: ElementType, attribute: AttributeType) -> bool:
 
 
 def _close(made: Snippet, name: str, type_: ElementType | None) -> None:
-    """The end of a start tag, and the end tag if the element usually has content."""
+    """Add the end of a start tag, and an end tag if the element usually has content."""
     if type_ is not None and type_.text and not type_.attributes:
         made.text(">").end().text(f"</{name}>")
     elif type_ is not None and type_.node in (NodeKind.ACTION, NodeKind.CONDITION, NodeKind.SUBTREE):
@@ -139,7 +141,7 @@ def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
 
 
 def _has_no_handle(request: Request, type_: ElementType) -> bool:
-    """Whether an element uses a ROS interface or timer and the machine declares none."""
+    """Whether an element uses a kind of ROS interface, or a timer, that the machine does not declare."""
     name = type_.attributes.get("name")
     required_kinds = set(name.refers) & HANDLES if name else set()
     declared = {declaration.kind for declaration in request.machine.declarations} if request.machine else set()

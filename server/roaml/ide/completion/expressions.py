@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Completion in an expression: names, members of what precedes a dot, functions.
+"""Completion in an expression: names, functions, and after a dot the members of the value before it.
 
 The text before the caret is read as text, not as a tree, because it is usually incomplete.
 """
@@ -14,7 +14,21 @@ from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
-from roaml.expr.types import BOOL, INT, UNKNOWN, Array, Scalar, ScalarKind, Struct, StructKind, Type, fits, unwrap, wrap
+from roaml.expr.types import (
+    BOOL,
+    INT,
+    UNKNOWN,
+    Array,
+    Scalar,
+    ScalarKind,
+    Struct,
+    StructKind,
+    Type,
+    fits,
+    member_type,
+    unwrap,
+    wrap,
+)
 from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
@@ -28,31 +42,33 @@ from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
 
 _NAME = re.compile(r"[A-Za-z_$][\w$]*\Z|\Z", re.ASCII)
-_BEHIND = re.compile(r"[\w$]*", re.ASCII)
+_NAME_AFTER = re.compile(r"[\w$]*", re.ASCII)
 _CLOSERS = {"]": "[", ")": "("}
 
 
 class Beginning(NamedTuple):
-    """The typed beginning of a name: `object` is the text before the dot in front of it; `None` if there is no dot."""
+    """The part of a name that has been typed. `object` is the text before the dot that precedes the name; `None` if
+    there is no dot."""
 
     span: Span
     object: str | None
 
 
 def beginning(text: str, start: int, offset: int) -> Beginning | None:
-    """
+    """The beginning of the name at the caret `offset`.
+
     Args:
         text: the text of the file.
-        start: where the expression begins in it.
+        start: the offset at which the expression begins.
 
     Returns:
-        `None` where no name is possible: in a string or a number, or after the `&` of an entity.
+        The beginning, or `None` where no name is possible: in a string or a number, or after the `&` of an entity.
     """
     before = text[start:offset]
     if _in_string(before):
         return None
     last_name = _NAME.search(before)
-    behind = _BEHIND.match(text, offset)
+    behind = _NAME_AFTER.match(text, offset)
     assert behind is not None
     if (
         last_name is None
@@ -102,7 +118,7 @@ def in_expression(
         part: the name of the attribute or element that contains the expression.
 
     Returns:
-        The items and what they replace; `None` if there are none.
+        The span that the items replace, and the items; `None` if there are none.
     """
     begun = beginning(request.file.document.text, start, request.offset)
     if begun is None:
@@ -114,7 +130,7 @@ def in_expression(
         return begun.span, list(_members(request, begun.object, scope))
     if part == "location":
         return begun.span, [_variable(request, name, type_, None) for name, type_ in variables.items()]
-    required_type = _wanted(request, subject, part)
+    required_type = _required_type(request, subject, part)
     items = [_variable(request, name, type_, required_type) for name, type_ in variables.items()]
     if property_files.is_property_file(request):
         items += property_files.compared_values(request, start)
@@ -199,7 +215,7 @@ def _variable(request: Request, name: str, type_: Type, required_type: Type | No
 
 
 def _fitting(type_: Type, required_type: Type | None) -> Rank:
-    """Values of the required type first; those that contain it, or can be compared, keep their order."""
+    """The rank of a value of type `type_`: the best one if it has the required type."""
     if required_type is None or UNKNOWN in (required_type, type_):
         return Rank.USUAL
     return Rank.BEST if fits(type_, required_type) else Rank.USUAL
@@ -240,37 +256,38 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
 # ----------------------------------------------------------------- required types
 
 
-def _wanted(request: Request, subject: CompletionSubject, part: str) -> Type | None:
-    """The required type of the value, if it is known."""
+def _required_type(request: Request, subject: CompletionSubject, part: str) -> Type | None:
+    """The required type of the expression; `None` if it is not known."""
     known = subject.type.attributes.get(part)
     if known is not None and known.value_type in ("bool", "int"):
         return BOOL if known.value_type == "bool" else INT
     around = [typed.element for typed in subject.parents]
     if known is not None and subject.element is not None:
-        around.append(subject.element)  # otherwise the `<expr>` inside of the element is meant
+        # If the expression is the text of `<expr>`, the last parent is its element.
+        around.append(subject.element)
     if not around:
         return None
     element = around[-1]
     match element.name:
         case "field" if len(around) > 1:
-            return _wanted_field(request, element, around[-2])
+            return _required_field_type(request, element, around[-2])
         case "assign":
             location = element.get("location")
             return infer(parse(Decoded(location.value, 0))[0], _variables(request).get)[0] if location else None
         case "bt_set_output":
-            return _wanted_output(request, element)
+            return _required_output_type(request, element)
     return None
 
 
-def _wanted_field(request: Request, element: Element, holder: Element) -> Type | None:
-    name, statement = element.get("name"), request.communicate(holder)
+def _required_field_type(request: Request, element: Element, holder: Element) -> Type | None:
+    name, statement = element.get("name"), request.ros_send_of(holder)
     if statement is None or name is None or request.machine is None:
         return None
     declaration = find_handle(request.machine, statement)
     return _at(interface_part(statement.part, declaration, request.environment), name.value)
 
 
-def _wanted_output(request: Request, element: Element) -> Type | None:
+def _required_output_type(request: Request, element: Element) -> Type | None:
     key = element.get("key")
     for port in request.machine.ports if request.machine else ():
         if key is not None and port.key is not None and port.key.value == key.value and request.machine:
@@ -280,8 +297,5 @@ def _wanted_output(request: Request, element: Element) -> Type | None:
 
 def _at(type_: Type, path: str) -> Type:
     for name in path.split("."):
-        member = type_.member(name) if isinstance(type_, Struct) else None
-        if member is None:
-            return UNKNOWN
-        type_ = member
+        type_ = member_type(type_, name) or UNKNOWN
     return type_

@@ -19,9 +19,9 @@ from roaml.xml_syntax import Element
 
 
 def field_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The names that a `<field>` may have: first the fields that are not set yet."""
+    """The names that a `<field>` may have. Fields that are not set yet come first."""
     holder = subject.parents[-1].element if subject.parents else None
-    statement = request.communicate(holder) if holder is not None else None
+    statement = request.ros_send_of(holder) if holder is not None else None
     if statement is None:
         return
     given = {field.name.value for field in statement.fields if field.name and field.element is not subject.element}
@@ -36,7 +36,7 @@ def field_names(request: Request, subject: CompletionSubject) -> Iterator[Comple
 
 def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem]:
     """The `<field>` elements for a sending element: each missing field, and all of them at once."""
-    statement = request.communicate(element)
+    statement = request.ros_send_of(element)
     if statement is None:
         return
     known = _fields(request, statement)
@@ -56,7 +56,7 @@ def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem
 
 
 def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
-    """An item for each handle that an element may use: the element with all fields of the message."""
+    """Items for a sending element with a handle and all fields of its message, one for each handle that it may use."""
     name = type_.attributes.get("name")
     if name is None or "field" not in type_.children:
         return

@@ -71,7 +71,8 @@ class CompletionItem:
 
 @dataclass(frozen=True, slots=True)
 class Completions:
-    """`span` is what the items replace. `incomplete` means that there are more: request again after more typing."""
+    """The completions at a caret. The items replace the text in `span`. `incomplete` means that some items are left
+    out, so that the editor requests the list again after more typing."""
 
     span: Span
     items: tuple[CompletionItem, ...]

@@ -23,7 +23,8 @@ _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCT
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[CompletionItem]] | None:
-    """The completions at a caret, and what they replace; `None` in other files, or if there are none."""
+    """The span that the completions at a caret replace, and the completions; `None` in other files, or if there are
+    none."""
     kind = next(analysis.kind_in(path, system) for system in analysis.systems_of(path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
@@ -38,11 +39,13 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Comp
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Place:
-    """Attributes:
-    schema: the schema of the object whose key is being written, or of the value.
-    inside: the enclosing object or list.
-    span: the part that has been written, including quotes.
-    bare: whether there is no value after the key.
+    """The place of a caret in a JSON document.
+
+    Attributes:
+        schema: the schema of the object whose key is being written, or of the value that is being written.
+        inside: the enclosing object or list.
+        span: the part of the key or value that has been written, including quotes.
+        bare: whether there is no value after the key.
     """
 
     grammar: JsonGrammar
@@ -83,7 +86,7 @@ def _place(grammar: JsonGrammar, value: JsonValue, text: str, offset: int) -> _P
 
 
 def _end(member: Member, text: str) -> int:
-    """The end of a member; one without a value extends to the next line or bracket."""
+    """The end of a member. A member without a value extends to the next comma, closing bracket or end of line."""
     if member.value is not None and member.value.end > member.key_end:
         return member.value.end
     end = member.key_end
@@ -232,7 +235,7 @@ _ALIASES = {
     "<=": "≤",
     ">=": "≥",
 }
-"""Spellings that are read as others."""
+"""Alternative spellings of operators -> the spelling in JANI."""
 
 _SELDOM = frozenset(
     (
@@ -257,22 +260,22 @@ def _property(label: str, detail: str, path: Callable[[Snippet], Snippet]) -> Co
 _SKELETONS = (
     _property(
         "property: eventually",
-        "the probability that something happens",
+        "the probability that a condition becomes true",
         lambda made: made.text('{"op": "F", "exp": ').stop().text("}"),
     ),
     _property(
         "property: always",
-        "the probability that something holds for ever",
+        "the probability that a condition always holds",
         lambda made: made.text('{"op": "G", "exp": ').stop().text("}"),
     ),
     _property(
         "property: until",
-        "the probability that one thing holds until another does",
+        "the probability that one condition holds until another one holds",
         lambda made: made.text('{"op": "U", "left": ').stop().text(', "right": ').stop().text("}"),
     ),
     _property(
         "property: never before",
-        "the probability that one thing does not happen before another",
+        "the probability that one condition does not hold before another one holds",
         lambda made: made.text('{"op": "W", "left": {"op": "¬", "exp": ').stop().text('}, "right": ').stop().text("}"),
     ),
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that an attribute may refer to, and names that are used but not defined."""
+"""The names to which an attribute may refer, and names that are used but not defined."""
 
 from __future__ import annotations
 
@@ -83,7 +83,8 @@ def _declared(declaration: Declaration) -> str:
 
 
 def _ports(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """Ports of a plugin that can be read or written there; in a tree file, those of the plugin that is described."""
+    """The ports of a plugin that its element can read or write; in a tree file, the ports of the plugin that a model
+    describes."""
     if request.machine is None:
         id_ = subject.parents[-1].element.get("ID") if subject.parents else None
         path, outline = plugins(request).get(id_.value if id_ else "", ("", None))
@@ -119,7 +120,7 @@ def _unknown_plugins(system: System) -> Iterator[str]:
 
 
 def _missing_ports(request: Request) -> Iterator[CompletionItem]:
-    """Ports that trees set for this plugin and that it does not declare."""
+    """The ports that trees set for this plugin, but that it does not declare."""
     machine = request.machine
     if machine is None or machine.name is None:
         return
@@ -137,7 +138,7 @@ def _missing_ports(request: Request) -> Iterator[CompletionItem]:
 
 
 def _events_received(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """Events to wait for: those that a machine sends."""
+    """Events that a handler can wait for: the events that machines send."""
     for system in request.systems:
         for event in system.events.values():
             senders = dict.fromkeys(automaton.name for automaton, _ in event.senders)
@@ -150,7 +151,7 @@ def _events_received(request: Request, subject: CompletionSubject) -> Iterator[C
 
 
 def _events_to_send(request: Request) -> Iterator[CompletionItem]:
-    """Events to send; those that a machine waits for come first."""
+    """Events that a machine can send. Events for which a machine waits come first."""
     for system in request.systems:
         for event in system.events.values():
             receivers = dict.fromkeys(automaton.name for automaton, _ in event.receivers)
@@ -172,8 +173,8 @@ def _event(owner: str, name: str, detail: str, *, sound: bool) -> CompletionItem
 
 
 def channels(request: Request, kind: SymbolKind, type_: str = "") -> Iterator[CompletionItem]:
-    """The topics, services or actions of the workspace; those of ROS type `type_` first, the file's own system before
-    others."""
+    """The topics, services or actions of the workspace. Those with the ROS type `type_` come first; among them, those
+    of the file's own systems come first."""
     seen = set()
     for system in request.all_systems:
         for name, channel in system.channels(kind).items():
@@ -207,7 +208,7 @@ def _of_kind(kind: SymbolKind) -> Callable[[Request, CompletionSubject], Iterato
 
 
 def plugins(request: Request) -> dict[str, tuple[str, MachineOutline]]:
-    """The plugins that the systems of a tree file list: name -> file and outline."""
+    """The plugins that the systems of a tree file list: name -> path of the file and outline of the machine."""
     by_name: dict[str, tuple[str, MachineOutline]] = {}
     for system in request.systems:
         for path, outline in system.plugins:

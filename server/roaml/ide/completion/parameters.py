@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of an event: those that receivers read or other senders send."""
+"""Completion of the parameters of an event: the parameters that receivers read, or that other senders send."""
 
 from __future__ import annotations
 

@@ -30,9 +30,9 @@ _BY_TYPE = {
 
 
 def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The files that the attribute may name: first those that this file does not refer to yet."""
+    """The files that the attribute may name. Files to which this file does not refer yet come first."""
     analysis = request.analysis
-    kinds, plugin = _wanted(subject)
+    kinds, plugin = _expected_kinds(subject)
     named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}
     for path in request.snapshot.candidates():
         if path == request.path or analysis.kind(path) not in kinds:
@@ -45,8 +45,8 @@ def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionIt
         yield CompletionItem(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
 
 
-def _wanted(subject: CompletionSubject) -> tuple[tuple[FileKind, ...], bool | None]:
-    """The expected kind of the file, and whether a machine must be a plugin (`None`: either)."""
+def _expected_kinds(subject: CompletionSubject) -> tuple[tuple[FileKind, ...], bool | None]:
+    """The expected kinds of the file, and whether a machine must be a plugin; `None` if it may be a plugin or not."""
     if subject.type.name == "include":
         return (FileKind.TREE,), None
     section = subject.parents[-1].element.name if subject.parents else ""

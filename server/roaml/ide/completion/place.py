@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The place of a caret in an XML document: a tag, an attribute, a value or content.
 
-The tree contains the places; only a lone `<` or `</`, to which the parser assigns no place, is searched for in the
-text.
+The place is determined from the tree. Only `<` and `</` without a name, which the tree does not contain, are searched
+for in the text.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StartTag:
-    """The name of a start tag; `span` may be empty. `bare` means that nothing of the tag follows the name."""
+    """The name of a start tag; `span` may be empty. `bare` is true if nothing of the tag follows the name."""
 
     parents: tuple[Typed, ...]
     span: Span
@@ -32,7 +32,7 @@ class StartTag:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EndTag:
-    """The name of an end tag; `name` is the element that is open there, "" if there is none."""
+    """The name of an end tag. `name` is the name of the innermost open element, "" if there is none."""
 
     name: str
     span: Span
@@ -41,7 +41,8 @@ class EndTag:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttributeName:
-    """The name of an attribute of the element `typed`; `attribute` is the attribute that is already there."""
+    """The name of an attribute of the element `typed`. `attribute` is the attribute at the caret; `None` if a new one
+    would be inserted."""
 
     parents: tuple[Typed, ...]
     typed: Typed
@@ -51,7 +52,7 @@ class AttributeName:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttributeValue:
-    """The value of an attribute; `quote` is "" if it has none yet."""
+    """The value of an attribute. `quote` is its quotation mark, "" if it does not have one yet."""
 
     parents: tuple[Typed, ...]
     typed: Typed
@@ -62,7 +63,7 @@ class AttributeValue:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Content:
-    """Between tags: the word at the caret, and all the text around it up to the next tags."""
+    """A place between tags. `span` is the word at the caret, `text` all character data around it."""
 
     parents: tuple[Typed, ...]
     span: Span

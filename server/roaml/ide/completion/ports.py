@@ -79,7 +79,7 @@ def _of_library(known: Node) -> Iterator[SettablePort]:
 
 
 def node_name(element: Element) -> str:
-    """The plugin of a node."""
+    """The name of the plugin of a node."""
     if element.name in (*EXPLICIT, *SUBTREES):
         id_ = element.get("ID")
         return id_.value if id_ else ""
@@ -155,7 +155,7 @@ def _constants(request: Request, name: str, port: SettablePort) -> Iterator[Comp
 
 
 def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[CompletionItem]:
-    """The topics, services or actions of the workspace, if the port names one."""
+    """The topics, services or actions of the workspace, if the port contains the name of one."""
     for use in outline.interfaces if outline else ():
         if use.port == key and use.kind in CHANNEL_KINDS:
             yield from channels(request, CHANNEL_KINDS[use.kind], use.type)
@@ -184,7 +184,8 @@ def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[Compl
 
 
 def add_port(snippet: Snippet, port: SettablePort) -> None:
-    """`key="…"`; the default of an output is a variable with its own name."""
+    """Add an attribute `key="…"` to a snippet. The suggested value of an output is a variable with the name of the
+    port."""
     snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction is Direction.OUT else [port.default]).text(
         '"'
     )

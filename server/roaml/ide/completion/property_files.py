@@ -25,8 +25,8 @@ from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
-_NEVER_ADDED = ("origin", "target", "time", "after", "logic", "expect")
-"""Attributes that are seldom wanted in a new element."""
+_RARE_ATTRIBUTES = ("origin", "target", "time", "after", "logic", "expect")
+"""Attributes that new elements rarely need."""
 
 _COMPARED = re.compile(r"([A-Za-z_]\w*)\s*(?:[=!]==?|&lt;=?|&gt;=?|>=?)\s*\Z", re.ASCII)
 _FORMULA_OPERATORS = {
@@ -48,7 +48,7 @@ def is_property_file(request: Request) -> bool:
 
 
 def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[CompletionItem]:
-    """Whole ports for what the system sends, and whole properties for each pattern."""
+    """Complete ports for the messages and events of the system, and complete properties for each pattern."""
     if not is_property_file(request) or not parents:
         return
     match parents[-1].element.name:
@@ -62,7 +62,8 @@ def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[Completi
 
 
 def _properties() -> Iterator[CompletionItem]:
-    """Each pattern by its name, and by what it says in each scope, with and without a time."""
+    """Items that insert properties: for each pattern one with its name as label, and one with its sentence as label for
+    each scope, with and without a time."""
     texts = {choice.value: choice.documentation for choice in _attribute("property", "pattern").simple.choices}
     for pattern in Pattern:
         insert = _property(pattern, ScopeKind.GLOBALLY, is_timed=pattern is Pattern.RECURRENCE)
@@ -82,7 +83,7 @@ def _properties() -> Iterator[CompletionItem]:
 
 
 def _property(pattern: Pattern, scope: ScopeKind, *, is_timed: bool) -> str:
-    """A whole property, in snippet syntax."""
+    """A complete property, in snippet syntax."""
     snippet = Snippet().text('property id="').stop(["name"]).text(f'" pattern="{pattern.value}">\n\t')
     if pattern.is_binary:
         snippet.text("<events>\n\t\t<event>").stop().text("</event>\n\t\t<event>").stop()
@@ -134,15 +135,15 @@ def _ports(system: System) -> Iterator[CompletionItem]:
 
 
 def _channels(system: System) -> Iterator[tuple[PortKind, str, Channel]]:
-    """Kind of port, name as written, channel."""
+    """The kind of port, the name as written in a machine, and the channel, for each channel of a system."""
     for kind, symbol_kind in SYMBOL_KINDS.items():
         for channel in system.channels(symbol_kind).values():
             names = (endpoint.automaton.interface_name(endpoint.use) for endpoint in channel.endpoints)
             yield kind, next(filter(None, names), channel.name), channel
 
 
-def is_wanted(parents: tuple[Typed, ...], type_: ElementType, attribute: AttributeType) -> bool:
-    """Whether a new element gets an attribute."""
+def is_usual(parents: tuple[Typed, ...], type_: ElementType, attribute: AttributeType) -> bool:
+    """Whether a completion that inserts an element includes an attribute."""
     if type_.name == PortVariableKind.STATE.value and attribute.name in ("field", "param"):
         in_plain = bool(parents) and parents[-1].element.name == PortKind.PLAIN.value
         return (attribute.name == "param") == in_plain
@@ -150,11 +151,11 @@ def is_wanted(parents: tuple[Typed, ...], type_: ElementType, attribute: Attribu
 
 
 def has_effect(parents: tuple[Typed, ...], type_: ElementType, attribute: AttributeType) -> bool:
-    """Whether an attribute says anything where it is written."""
+    """Whether an attribute has an effect in an element with these parents."""
     return (
         type_.name != PortVariableKind.STATE.value
         or attribute.name not in ("field", "param")
-        or is_wanted(parents, type_, attribute)
+        or is_usual(parents, type_, attribute)
     )
 
 
@@ -162,14 +163,14 @@ def has_effect(parents: tuple[Typed, ...], type_: ElementType, attribute: Attrib
 
 
 def port_at(request: Request, subject: CompletionSubject) -> Port | None:
-    """The port that an element is or is in."""
+    """The port that the element of `subject` declares, or inside which the element is."""
     elements = [*(parent.element for parent in subject.parents), *([subject.element] if subject.element else [])]
     ports = request.property_file.ports if request.property_file is not None else ()
     return next((port for port in ports if any(port.element is element for element in elements)), None)
 
 
 def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """What the system has of a kind of symbol that ports name."""
+    """The symbols of a kind that ports of a property file can name."""
     system, port = next(iter(request.systems), None), port_at(request, subject)
     if system is None:
         return
@@ -194,7 +195,7 @@ def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> 
 
 
 def _ends(system: System, port: Port | None) -> Iterator[CompletionItem]:
-    """The machines that take part in what a port names."""
+    """The machines that use the topic, service, action or event that a port names."""
     kind = SYMBOL_KINDS.get(port.kind) if port is not None else None
     channels = system.channels(kind).values() if kind is not None else ()
     named = [channel for channel in channels if port is not None and _is_named(channel, port)]
@@ -214,7 +215,7 @@ def _is_named(channel: Channel, port: Port) -> bool:
 
 
 def fields(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The fields of what a port carries."""
+    """The fields of the message or event to which a port listens."""
     for path, type_, owner in _fields(request, port_at(request, subject)):
         symbol = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner) if owner else None
         yield CompletionItem(path, ItemKind.MEMBER, detail=str(type_), about=symbol)
@@ -233,7 +234,7 @@ def _fields(request: Request, port: Port | None) -> Iterator[tuple[str, Type, st
 
 
 def port_types(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The types that the machines declare for what a port names."""
+    """The types that the machines declare for the topic, service or action that a port names."""
     port = port_at(request, subject)
     kind = SYMBOL_KINDS.get(port.kind) if port is not None else None
     for system in request.systems:
@@ -244,7 +245,7 @@ def port_types(request: Request, subject: CompletionSubject) -> Iterator[Complet
 
 
 def variable_type(request: Request, subject: CompletionSubject) -> Type:
-    """The type of the value of a variable, as far as it is known."""
+    """The type of the value of a variable; `UNKNOWN` if it is not known."""
     match subject.type.name:
         case "goal_id" | "result_code":
             return BASE_TYPES["int32"]
@@ -265,13 +266,13 @@ def field_type(request: Request, subject: CompletionSubject) -> Iterator[Complet
 
 
 def new_ids(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """A name for a variable: that of its field, or of its port."""
+    """A name for a new variable: the name of its field, or of its port."""
     field = subject.element.get("field") if subject.element is not None else None
     port = port_at(request, subject)
     text = field.value if field is not None else port.name.value if port is not None and port.name is not None else ""
     name = re.sub(r"\W+", "_", text.strip("/"), flags=re.ASCII).strip("_")
     if name and not name[0].isdigit():
-        yield CompletionItem(name, ItemKind.VARIABLE, detail="the name of what it listens to", rank=Rank.LATE)
+        yield CompletionItem(name, ItemKind.VARIABLE, detail="the name of its field or port", rank=Rank.LATE)
 
 
 # ----------------------------------------------------------------- expressions
@@ -322,7 +323,8 @@ def compared_values(request: Request, start: int) -> Iterator[CompletionItem]:
 
 
 def in_formula(request: Request, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """Outside of braces in a formula: its operators. `None` in braces."""
+    """The completions outside of the braces of a formula: a new condition, and the operators of formulas. `None` inside
+    of braces."""
     before = request.file.document.text[span.start : request.offset]
     if before.count("{") > before.count("}"):
         return None
@@ -335,5 +337,5 @@ def in_formula(request: Request, span: Span) -> tuple[Span, list[CompletionItem]
 
 
 def formula_start(request: Request, span: Span) -> int:
-    """Where the condition around the caret begins."""
+    """The offset at which the condition around the caret begins."""
     return span.start + request.file.document.text[span.start : request.offset].rfind("{") + 1

@@ -22,7 +22,8 @@ from roaml.xml_syntax import Element
 
 
 class CompletionSubject(NamedTuple):
-    """The element whose attribute or content is completed; `element` is `None` while it is only being proposed."""
+    """The element whose attribute or content is completed. `element` is `None` if a completion that inserts the element
+    is being prepared."""
 
     element: Element | None
     type: ElementType
@@ -30,7 +31,7 @@ class CompletionSubject(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The element of the grammar, as `roaml.ide.completion.document` reads it."""
+        """The path of the element in symbols of attributes, which `roaml.ide.completion.document` reads."""
         return f"{self.parents[-1].element.name if self.parents else ''}/{self.type.name}"
 
 
@@ -47,7 +48,7 @@ class Request:
 
     @cached_property
     def system_path(self) -> str | None:
-        """The system in which types are resolved; if there are several, the first."""
+        """The path of the system in which types are resolved: the first of the systems of the file."""
         return self.analysis.systems_of(self.path)[0]
 
     @cached_property
@@ -87,12 +88,12 @@ class Request:
 
     @cached_property
     def forest(self) -> Forest | None:
-        """The declarations of the nodes of a tree that belongs to no system."""
+        """The trees and the declarations of their nodes, for a tree that belongs to no system; otherwise `None`."""
         return None if self.system_path else self.analysis.forest(self.path)
 
     @cached_property
     def chart(self) -> Chart | None:
-        """The states and data around the caret: a thread's or the machine's."""
+        """The innermost chart around the caret: that of a thread, or that of the machine."""
         charts = self.machine.charts if self.machine else ()
         around = [chart for chart in charts if chart.element.span.start <= self.offset <= chart.element.span.end]
         return around[-1] if around else None
@@ -104,8 +105,8 @@ class Request:
         handlers = (handler for state in states for handler in state.handlers)
         return next((handler for handler in handlers if _is_around(handler.element, self.offset)), None)
 
-    def communicate(self, element: Element) -> RosSend | None:
-        """The sending statement that an element is."""
+    def ros_send_of(self, element: Element) -> RosSend | None:
+        """The sending statement of an element; `None` if the element does not send."""
         statements = self.chart.statements if self.chart else ()
         return next(
             (statement for statement in statements if isinstance(statement, RosSend) and statement.element is element),

@@ -15,7 +15,8 @@ from roaml.text import Span
 def in_script(
     request: Request, subject: CompletionSubject, name: str, span: Span
 ) -> tuple[Span, list[CompletionItem]] | None:
-    """The completions at the caret if the attribute `name` is a script; `None` if it is not."""
+    """The span that the completions at the caret replace, and the completions; `None` if the attribute `name` does not
+    contain a script."""
     forest, element = request.forest, subject.element
     if forest is None or element is None or not any(typed.element.name == "BehaviorTree" for typed in subject.parents):
         return None

@@ -31,7 +31,8 @@ _OF_ROS = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 def in_attribute(
     request: Request, subject: CompletionSubject, name: str, span: Span
 ) -> tuple[Span, list[CompletionItem]] | None:
-    """The possible values of the attribute `name`, and the part of `span`, the value, that is replaced."""
+    """The span that the items replace, and the possible values of the attribute `name`. `span` is the span of its
+    value."""
     known = subject.type.attributes.get(name)
     if property_files.is_property_file(request) and (subject.type.name, name) == ("property", "expr"):
         in_formula = property_files.in_formula(request, span)
@@ -48,7 +49,7 @@ def in_attribute(
 
 
 def candidates(request: Request, subject: CompletionSubject, attribute: AttributeType) -> Iterator[CompletionItem]:
-    """The possible whole values of an attribute."""
+    """The possible values of an attribute, each for the whole value."""
     for choice in attribute.simple.choices:
         about = Symbol(
             f"{subject.key}/{attribute.name}", SymbolKind.ENUMERATION_VALUE, choice.value, request.file.grammar.schema
@@ -71,7 +72,7 @@ def candidates(request: Request, subject: CompletionSubject, attribute: Attribut
 
 
 def in_text(request: Request, subject: CompletionSubject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """The possible texts of an element."""
+    """The span that the items replace, and the possible texts of an element."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
         return in_expression(request, subject, type_.name, span.start)
@@ -126,7 +127,7 @@ def types(request: Request) -> Iterator[CompletionItem]:
 
 
 def ros_types(request: Request, kind: str) -> Iterator[CompletionItem]:
-    """All ROS types of a kind that can be found; those that the file's systems use, first."""
+    """All ROS types of a kind. The types that the systems of the file use come first."""
     if kind not in ("msg", "srv", "action"):
         return
     ros_kind: Kind = kind  # type: ignore[assignment]
@@ -155,7 +156,7 @@ def _bounds(request: Request, subject: CompletionSubject) -> Iterator[Completion
 
 
 def _data_type(request: Request, subject: CompletionSubject) -> Type:
-    """The declared type of the variable of a value."""
+    """The declared type of the variable whose value is completed."""
     element = subject.element
     if subject.type.name != "data" and subject.parents:
         element = subject.parents[-1].element  # `<expr>` is inside of the variable
@@ -187,7 +188,7 @@ def _children(request: Request) -> Iterator[CompletionItem]:
 
 
 def _remaining_probability(subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The remaining probability to 1."""
+    """The difference between 1 and the sum of the other probabilities."""
     if not subject.parents:
         return
     others = [child for child in subject.parents[-1].element.elements if child is not subject.element]

@@ -20,7 +20,7 @@ def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
     Args:
         symbol: as in occurrences (`roaml.ide.names.occurrence`).
-        written: its spelling at the requested place, if that matters (a topic may begin with a slash).
+        written: its spelling at the requested place, if it may differ from the name: a topic may begin with a slash.
     """
     match symbol.kind:
         case SymbolKind.VARIABLE:

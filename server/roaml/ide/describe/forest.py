@@ -9,7 +9,7 @@ from roaml.roles import NodeKind
 
 
 def node(known: Node) -> str:
-    """A node: its ports, its behaviour, and the source of its declaration."""
+    """The description of a node: its ports, its behavior, and the source of its declaration."""
     ports = "".join(f"\n  {_line(port)}" for port in known.ports if not port.alias_of)
     kind = (
         str(known.kind)
@@ -25,7 +25,7 @@ def node(known: Node) -> str:
 
 
 def port(known: Node, described: Port) -> str:
-    """A port: type, default and meaning."""
+    """The description of a port: type, default and meaning."""
     must = "must be set" if described.required else ""
     default = f"{name(described.default)} if not set" if described.default is not None else ""
     return paragraphs(code(_line(described)), lines(_text(described.text, known.library), must, default))
@@ -38,5 +38,5 @@ def _line(described: Port) -> str:
 
 
 def _text(text: str, library: str) -> str:
-    """The words of libraries are Markdown, those of a user's model are not."""
+    """A description as Markdown. Descriptions in libraries are Markdown; descriptions in a user's model are not."""
     return text if library else prose(text)

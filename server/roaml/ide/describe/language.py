@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Descriptions of parts of the languages, as Markdown: elements, attributes, values, functions, operators.
 
-All are pure functions of an entry of a grammar or of a table, so completion, hover and signature help show the same
-text.
+All are pure functions of an entry in a grammar or in a table, so that completion, hover and signature help show the
+same text.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from roaml.ide.describe.markdown import code, lines, name, names, paragraphs
 from roaml.language import AttributeType, ElementType, PortType, ValueChoice
 from roaml.roles import NodeKind, ValueRole
 
-_WANTED = {
+_VALUE_PHRASES = {
     ValueRole.EXPRESSION: "an expression",
     ValueRole.CONSTANT: "a constant expression",
     ValueRole.LOCATION: "the target that is written",
@@ -24,7 +24,7 @@ _ROS = {"msg": "a message type", "srv": "a service type", "action": "an action t
 
 
 def element(type_: ElementType) -> str:
-    """An element: its syntax, its meaning, the event variables in it."""
+    """The description of an element: its syntax, its meaning, and the event variables that are available in it."""
     if type_.node and type_.node is not NodeKind.SUBTREE:
         return builtin_node(type_)
     required = "".join(f' {a.name}="…"' for a in type_.attributes.values() if a.required)
@@ -32,12 +32,12 @@ def element(type_: ElementType) -> str:
     return paragraphs(
         code(f"<{type_.name}{required}>", "xml"),
         type_.documentation,
-        lines(_successor(type_.use), f"Available in it: {known}" if known else ""),
+        lines(_successor(type_.use), f"Available in this element: {known}" if known else ""),
     )
 
 
 def builtin_node(type_: ElementType) -> str:
-    """A node of BehaviorTree.CPP: its ports and its behaviour."""
+    """The description of a node of BehaviorTree.CPP: its ports and its behavior."""
     ports = "".join(f"\n  {port(setting.name, setting.port)}" for setting in type_.ports if setting.port)
     cannot = "" if type_.translated else "It cannot be translated."
     kind = "node" if type_.node in (None, NodeKind.SUBTREE) else f"{type_.node} node"
@@ -50,13 +50,13 @@ def builtin_node(type_: ElementType) -> str:
 
 
 def port(key: str, type_: PortType) -> str:
-    """A port of a node of BehaviorTree.CPP, in one line of code."""
+    """The signature of a port of a node of BehaviorTree.CPP, in one line: direction, name, type and default."""
     default = f" = {type_.default}" if type_.default else ""
     return f"{type_.direction} {key} : {type_.type}{default}"
 
 
 def attribute(type_: AttributeType) -> str:
-    """An attribute: the kind of its value, its meaning, its values if there are few."""
+    """The description of an attribute: the kind of its value, its meaning, and its values if there are few."""
     if type_.port:
         must = "must be set" if type_.port.required else ""
         constant = "must be a constant" if type_.port.constant else ""
@@ -65,7 +65,7 @@ def attribute(type_: AttributeType) -> str:
             type_.documentation,
             " · ".join(filter(None, (must, constant))),
         )
-    facts = [f"{phrase}" if (phrase := _wanted(type_)) else "", "required" if type_.required else ""]
+    facts = [f"{phrase}" if (phrase := _value_phrase(type_)) else "", "required" if type_.required else ""]
     shown = " · ".join(filter(None, facts))
     return paragraphs(
         code(f'{type_.name}="…"', "xml"),
@@ -78,11 +78,11 @@ def attribute(type_: AttributeType) -> str:
     )
 
 
-def _wanted(type_: AttributeType) -> str:
+def _value_phrase(type_: AttributeType) -> str:
     """A phrase for the value of an attribute."""
     if type_.value is ValueRole.ROS_TYPE:
         return _ROS.get(type_.value_type, "")
-    phrase = _WANTED.get(type_.value, "") if type_.value else ""
+    phrase = _VALUE_PHRASES.get(type_.value, "") if type_.value else ""
     if type_.value is ValueRole.EXPRESSION and type_.value_type not in ("", "any"):
         phrase = f"{phrase} of type {name(type_.value_type)}"
     simple = type_.simple
@@ -94,7 +94,7 @@ def _wanted(type_: AttributeType) -> str:
 
 
 def choice(value: ValueChoice) -> str:
-    """One of the few values that an attribute may have."""
+    """The description of one of the values of an attribute with an enumeration type."""
     return paragraphs(code(value.value), value.documentation, _successor(value.use))
 
 
@@ -106,19 +106,19 @@ def _successor(use: str) -> str:
 
 
 def function(math_function: Function) -> str:
-    """A function of `Math`."""
+    """The description of a function of `Math`."""
     return paragraphs(code(signature(math_function)), math_function.documentation)
 
 
 def signature(math_function: Function) -> str:
-    """A function of `Math` with its parameters, `?` after the optional ones, and its result."""
+    """The signature of a function of `Math`: its parameters, with `?` after the optional ones, and its result."""
     needed = len(math_function.parameters) - math_function.optional
     parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
     return f"Math.{math_function.name}({', '.join(parameters)}) : {math_function.result}"
 
 
 def math() -> str:
-    """`Math` itself."""
+    """The description of the object `Math`: a list of its functions."""
     return paragraphs(code("Math"), f"Functions: {names(FUNCTIONS, len(FUNCTIONS))}")
 
 
@@ -149,13 +149,13 @@ _OPERATORS: Mapping[Operator | UnaryOperator, tuple[str, str]] = {
 
 
 def operator(token: Operator | UnaryOperator) -> str:
-    """An operator of expressions: its operands and its result."""
+    """The description of an operator of expressions: its operands and its result."""
     head, text = _OPERATORS[token]
     return paragraphs(code(head), text)
 
 
 def conditional() -> str:
-    """`? :`"""
+    """The description of the operator `? :`."""
     return paragraphs(code("bool ? x : y"), "The first value if the condition holds, otherwise the second.")
 
 
@@ -173,7 +173,7 @@ EVENT_VARIABLES = {
 
 
 def event_variable(called: str, type_: Type) -> str:
-    """An event variable, such as `_msg`, with its content at the place of its use."""
+    """The description of an event variable, such as `_msg`. `type_` is its type at the place of its use."""
     inner, _ = unwrap(type_)
     of = f" : {inner.name}" if isinstance(inner, Struct) and inner.name else ""
     rows = _rows(inner) if isinstance(inner, Struct) else []
@@ -181,17 +181,17 @@ def event_variable(called: str, type_: Type) -> str:
 
 
 def event_data(struct: Struct) -> str:
-    """`_event.data` with the parameters of the event."""
+    """The description of `_event.data`, with the parameters of the event."""
     return paragraphs(code("\n".join(("_event.data", *_rows(struct)))), "The parameters of the event.")
 
 
 def status(called: str, value: int) -> str:
-    """A status of a tree node, as the meaning of a number."""
+    """The description of a name for the status of a tree node, such as `SUCCESS`, and its numeric value."""
     return paragraphs(code(f"{called} = {value}"), "The status of a tree node.")
 
 
 def length(of: str) -> str:
-    """`.length`"""
+    """The description of the member `length` of the array `of`."""
     return paragraphs(
         code("length : int"),
         f"The current number of elements of {name(of)}. Assigning a smaller number shortens it, 0 empties it.",
@@ -202,7 +202,7 @@ def length(of: str) -> str:
 
 
 def value_range(type_: Type) -> str:
-    """The smallest and greatest value of the numbers in a type, as a clause; "" if it has none."""
+    """The smallest and greatest value of the numbers in a type, as a clause; "" if the type has no range."""
     inner, _ = unwrap(type_)
     if not isinstance(inner, Scalar) or inner.name not in INTEGER_RANGES:
         return ""
@@ -216,7 +216,7 @@ def number(value: int) -> str:
 
 
 def type_(type_: Type) -> str:
-    """A type of values: its range, its members."""
+    """The description of a type: its range, its size, or its members."""
     inner, bounds = unwrap(type_)
     if isinstance(inner, Struct):
         return code(members(inner))
@@ -245,6 +245,6 @@ def _rows(struct: Struct, most: int = 24) -> list[str]:
 
 
 def base_type(written: str) -> str:
-    """A base type by its name; "" if it is none."""
+    """The description of the base type with the name `written`; "" if there is no such type."""
     known = BASE_TYPES.get(written)
     return type_(known) if known is not None else ""

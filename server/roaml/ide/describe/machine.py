@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that are local to one state machine, as Markdown: variables, states, handles, ports, the machine itself."""
+"""Descriptions, as Markdown, of the names that are local to one state machine: variables, states, handles, ports, and
+the machine itself."""
 
 from __future__ import annotations
 
@@ -100,7 +101,8 @@ def _sentence(text: str) -> str:
 
 
 def variable(analysis: Analysis, symbol: Symbol) -> str:
-    """A variable: type, range, initial value, assigned values, number of uses, names in the translation."""
+    """The description of a variable: type, range, initial value, assigned values, number of uses, and names in the
+    translation."""
     machine = analysis.machine(symbol.path)
     data_by_name = {
         (c.scope, d.id.value): d for c in reversed(machine.charts if machine else ()) for d in c.data if d.id
@@ -133,7 +135,8 @@ def _variable(analysis: Analysis, symbol: Symbol, data: Data | None, typed: Type
 
 
 def inferred_type(typed: TypedMachine, scope: str, name: str) -> Type:
-    """The type that the values assigned to a variable have; unknown if there are none or they differ."""
+    """The common type of the values that are assigned to a variable; `UNKNOWN` if there are no values, or if they have
+    no common type."""
     result: Type = UNKNOWN
     for value in typed.values:
         if value.use is ValueUse.ASSIGNED and value.place.chart.scope == scope and value.target == name:
@@ -216,7 +219,7 @@ def _becomes(analysis: Analysis, symbol: Symbol, type_: Type) -> str:
 
 
 def state(analysis: Analysis, symbol: Symbol) -> str:
-    """A state: the transitions to it and from it, with their triggers."""
+    """The description of a state: the transitions to it and from it, with their triggers."""
     machine = analysis.machine(symbol.path)
     chart = next((chart for chart in machine.charts if chart.scope == symbol.scope), None) if machine else None
     if machine is None or chart is None:
@@ -239,7 +242,8 @@ def state(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _edges(chart: Chart, of: str, *, into: bool) -> str:
-    """The other ends of a state's transitions, each with the triggers."""
+    """The states that are connected with the state `of` by transitions, each with the triggers. `into` selects the
+    transitions that lead to the state; otherwise, those that start in it."""
     ends: dict[str, dict[str, None]] = {}
     for state in chart.states:
         source = state.id.value if state.id else ""
@@ -280,11 +284,12 @@ _PROTOCOL = {
     ProtocolPart.BT_STATUS: "response",
     ProtocolPart.BT_HALTED: "halt_response",
 }
-"""The events between a plugin and its parent -> the end of the event's name."""
+"""The parts of the tree protocol between a plugin and its parent -> the end of the event's name in plain SCXML."""
 
 
 def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
-    """The events of plain SCXML that an element of the tree protocol becomes; "" for other elements."""
+    """The events of plain SCXML into which an element of the tree protocol is translated, as a sentence; "" for other
+    elements."""
     part = type_.receives or type_.sends
     end = _PROTOCOL.get(part) if part else None
     nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
@@ -296,7 +301,7 @@ def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
 
 
 def handle(analysis: Analysis, symbol: Symbol) -> str:
-    """A declared ROS interface or timer, and its connections in the systems of its machine."""
+    """The description of a declared ROS interface or timer, and its connections in the systems of its machine."""
     declared = declaration(analysis, symbol)
     if declared is None:
         return ""
@@ -308,7 +313,7 @@ def handle(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def declaration(analysis: Analysis, symbol: Symbol) -> Declaration | None:
-    """The declaration of a handle."""
+    """The declaration of a handle; `None` if there is none."""
     machine = analysis.machine(symbol.path)
     of_kind = (
         (candidate for candidate in machine.declarations if candidate.kind == symbol.kind) if machine else iter(())
@@ -344,7 +349,7 @@ def _from_port(value: Name | PortRead | None, subject: str) -> str:
 
 
 def rate(text: str) -> str:
-    """The period of a timer in a model, from its rate in Hz as written."""
+    """The rate and the period of a timer, for a message; "" if `text`, its rate in Hz, is not a positive number."""
     hertz = exact_number(text)
     if hertz is None or hertz <= 0:
         return ""
@@ -360,7 +365,7 @@ def duration(seconds: float) -> str:
 
 
 def port(analysis: Analysis, symbol: Symbol) -> str:
-    """A port of a plugin: type, default, and its values in the nodes of the tree."""
+    """The description of a port of a plugin: type, default, and its values in the nodes of the tree."""
     machine = analysis.machine(symbol.path)
     declared = next((p for p in machine.ports if p.key and p.key.value == symbol.name), None) if machine else None
     if declared is None:
@@ -391,13 +396,13 @@ _MAX_VALUES = 5
 
 
 def node_id(automaton: SystemAutomaton) -> str:
-    """A node of the executed tree as its events name it, with its name."""
+    """The identifier of a node of the executed tree in the names of its events."""
     assert automaton.instance is not None
     return f"bt_{automaton.instance.number}"
 
 
 def machine(analysis: Analysis, symbol: Symbol) -> str:
-    """A machine: its ports and interfaces, its automata in its systems, its file."""
+    """The description of a machine: its ports and interfaces, its automata in its systems, and its file."""
     model = analysis.machine(symbol.path)
     if model is None:
         return ""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Building blocks of Markdown, and Markdown as plain text.
 
-Names and comments may contain any text, so they are escaped and cannot affect the text around them. Some
-editors show HTML in Markdown, load images and follow links; no text of a file becomes a tag, an image or a link.
+Names and comments may contain any text, so they are escaped and cannot affect the text around them. Some editors show
+HTML in Markdown, load images and follow links. Therefore no text of a file becomes a tag, an image or a link.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def code(text: str, language: str = "") -> str:
 
 
 def name(text: str) -> str:
-    """A name in a sentence."""
+    """A name as code in a sentence."""
     text = " ".join(text.split())
     if not text:
         return "` `"
@@ -55,19 +55,21 @@ def names(texts: Iterable[str], most: int = _MAX_NAMES) -> str:
 
 
 def file(path: str) -> str:
-    """The name of a file."""
+    """The name of a file without its folder, in italics."""
     shown = path.replace("\\", "/").rpartition("/")[2]
     return f"*{_without_tags(_NAME_MARKS.sub(_ESCAPE, shown))}*"
 
 
 def prose(text: str) -> str:
-    """Text that a user wrote, as paragraphs with its code and emphasis. Nothing in it is a tag, an image or a link."""
+    """Text that a user wrote, as paragraphs. Its code and emphasis are kept; its tags, images and links become plain
+    text."""
     paragraphs = re.split(r"\n\s*\n", text.strip())
     return "\n\n".join(_tame(" ".join(paragraph.split())) for paragraph in paragraphs)
 
 
 def _tame(paragraph: str) -> str:
-    """A paragraph of a user. Escapes would be visible in code, so code that needs them is shown as text."""
+    """A paragraph that a user wrote, with escapes. They would be visible in code, so code that needs escapes becomes
+    plain text."""
     parts: list[str] = []
     text = ""
     done = 0
@@ -88,17 +90,18 @@ def _without_marks_of_users(text: str) -> str:
 
 
 def _without_tags(text: str) -> str:
-    """`<` as an entity: not all readers of Markdown support a backslash before it."""
+    """`text` with `<` as an entity. A backslash would not be enough: not all programs that show Markdown support it
+    before `<`."""
     return _ENTITY.sub("&amp;", text).replace("<", "&lt;")
 
 
 def lines(*parts: str) -> str:
-    """Lines one below the other; empty lines are omitted."""
+    """The parts as separate lines of one paragraph; empty parts are omitted."""
     return "  \n".join(filter(None, parts))
 
 
 def paragraphs(*parts: str) -> str:
-    """Paragraphs separated by empty lines; empty paragraphs are omitted."""
+    """The parts as paragraphs, separated by empty lines; empty parts are omitted."""
     return "\n\n".join(filter(None, parts))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions for property files, as Markdown: operators, members, formulas in the usual notation, global
+"""Descriptions, as Markdown, for property files in JANI: operators, keys, formulas in the usual notation, and global
 variables."""
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _SAYS: Mapping[str, str] = {
 
 
 def operator(symbol: str) -> str:
-    """An operator as it is written after `op`; "" if it is unknown."""
+    """The description of an operator as it is written after `op`; "" if it is unknown."""
     described = dict(PROPERTIES.operators("formula")).get(symbol)
     if described is None:
         return ""
@@ -77,7 +77,7 @@ def operator(symbol: str) -> str:
 
 
 def member(key: Key) -> str:
-    """A key of a JSON object."""
+    """The description of a key of a JSON object."""
     title = PROPERTIES.title(key.schema)
     head = (f"**{title}**" if title else "", name(key.name), "required" if key.required else "")
     return paragraphs(" · ".join(filter(None, head)), PROPERTIES.text(key.schema))
@@ -99,7 +99,7 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
 
 
 def global_variable(variable: GlobalVariable) -> str:
-    """A global variable of the translated system, as properties name it."""
+    """The description of a global variable of the translated system."""
     if variable.parameter == "valid" and variable.name.endswith(".valid"):
         meaning = f"Whether event {name(variable.event)} has been sent"
     elif variable.name.endswith("_len"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS 2 definitions as Markdown: the definition with its comments, as in its file."""
+"""ROS 2 definitions, with their comments, as Markdown."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def ros_type(registry: Registry, kind: Kind, type_name: str) -> str:
 
 
 def definition(ros_definition: Definition) -> str:
-    """A message, service or action: its fields and constants with their comments."""
+    """The description of a message, service or action: its fields and constants with their comments."""
     rows: list[str] = [f"# {ros_definition.full_name}"]
     for title, section in zip(SECTION_NAMES[ros_definition.kind], ros_definition.sections, strict=True):
         if title != SECTION_NAMES[ros_definition.kind][0]:
@@ -63,12 +63,12 @@ def _declared(member: Field | Constant) -> str:
 
 
 def field(registry: Registry, struct: str, field_name: str) -> str:
-    """A field of a message or of a part of a service or action.
+    """The description of a field of a message, or of a part of a service or action.
 
     Args:
         registry: resolves definitions.
-        struct: the name in `roaml.model.ros`: `package/Name`, or `package/Name request`.
-        field_name: its name or dotted path.
+        struct: the name of the struct in `roaml.model.ros`: `package/Name`, or `package/Name request`.
+        field_name: the name of the field, or its dotted path.
     """
     head, _, rest = field_name.partition(".")
     owner, section = section_of(registry, struct)

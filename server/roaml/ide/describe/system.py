@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that several files share, as Markdown: events, topics, services, actions, blackboard, trees, structs."""
+"""Descriptions, as Markdown, of names that several files share: events, topics, services, actions, blackboard
+variables, trees and structs."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe.language import builtin_node, members, value_range
 from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
-from roaml.ide.names.lookup import thing
+from roaml.ide.names.lookup import symbol_group
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import trees_of
 from roaml.ide.names.translated import global_variables
@@ -28,7 +29,7 @@ _NODE = re.compile(r"bt_(\d{1,9})_")
 
 
 def node_of(system: System, variable: str) -> SystemAutomaton | None:
-    """The node of the tree of a global variable."""
+    """The node of the tree whose event a global variable belongs to; `None` if it belongs to another event."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
 
@@ -39,7 +40,7 @@ def _system(analysis: Analysis, symbol: Symbol) -> System | None:
 
 
 def _who(automata: Iterable[SystemAutomaton]) -> str:
-    """Nodes by their names, nodes of the tree by their plugins."""
+    """The names of automata: of a ROS node its name, of a node of the tree that of its plugin."""
     return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
 
 
@@ -56,7 +57,7 @@ def _in_properties(variables: Iterable[GlobalVariable]) -> str:
 
 
 def event(analysis: Analysis, symbol: Symbol) -> str:
-    """A plain event: its parameters, its senders and receivers, the variables for properties."""
+    """The description of a plain event: its parameters, its senders and receivers, and its variables in properties."""
     system = _system(analysis, symbol)
     system_event = system.events.get(symbol.name) if system else None
     if system_event is None:
@@ -73,8 +74,8 @@ def event(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _in_files(analysis: Analysis, symbol: Symbol) -> str:
-    """The uses of an event in the file itself."""
-    uses = thing(analysis, (symbol,)).uses
+    """The number of uses of an event in a file that belongs to no system."""
+    uses = symbol_group(analysis, (symbol,)).uses
     counts = [
         f"{verb} {count} times" if count != 1 else f"{verb} once"
         for verb, access in (("sent", Access.WRITE), ("received", Access.READ))
@@ -84,7 +85,7 @@ def _in_files(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def parameter(analysis: Analysis, symbol: Symbol) -> str:
-    """A parameter of an event; `symbol.scope` is the event."""
+    """The description of a parameter of an event; `symbol.scope` is the event."""
     system = _system(analysis, symbol)
     system_event = system.events.get(symbol.scope) if system else None
     type_ = system_event.data.member(symbol.name) if system_event else None
@@ -109,14 +110,15 @@ def parameter(analysis: Analysis, symbol: Symbol) -> str:
 # -------------------------------------------------------------------- interfaces
 
 _VERBS = {
-    SymbolKind.TOPIC: ("published by", "heard by"),
+    SymbolKind.TOPIC: ("published by", "subscribed to by"),
     SymbolKind.SERVICE: ("served by", "called by"),
-    SymbolKind.ACTION: ("offered by", "pursued by"),
+    SymbolKind.ACTION: ("served by", "goals sent by"),
 }
 
 
 def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
-    """A topic, service or action, with the name as `written`: its type, both sides, its names in the translation."""
+    """The description of a topic, service or action, with the name as `written`: its type, the automata that provide
+    and use it, and its names in the translation."""
     system = _system(analysis, symbol)
     connected = find_channel(system, symbol) if system else None
     shown = written or symbol.name
@@ -127,7 +129,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
-    """A short description of a topic, service or action, for the automata that use it."""
+    """A description of a topic, service or action without its type, for descriptions of the machines that use it."""
     connected = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
@@ -148,7 +150,7 @@ def _sides(analysis: Analysis, symbol: Symbol, connected: Channel, system: Syste
 
 
 def is_clock(system: System, symbol: Symbol) -> bool:
-    """Whether a topic is that of the simulated time, which the translation publishes."""
+    """Whether a topic is the clock: the topic of the simulated time, which the translation publishes."""
     return symbol.kind is SymbolKind.TOPIC and symbol.name == CLOCK_TOPIC and system.has_timer
 
 
@@ -171,7 +173,7 @@ def _plain_events(symbol: Symbol, connected: Channel) -> str:
 
 
 def blackboard(analysis: Analysis, symbol: Symbol) -> str:
-    """A blackboard variable: its type, and the ports that write and read it."""
+    """The description of a blackboard variable: its type, and the ports that write and read it."""
     variables = global_variables(analysis, symbol)
     full = dict.fromkeys(_full_name(variable) for variable in variables)
     bound: list[BoundPort] = []
@@ -197,7 +199,7 @@ def blackboard(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _full_name(variable: GlobalVariable) -> str:
-    """The name on the whole blackboard, extracted from that of a global variable."""
+    """The full name of a blackboard variable, from the name of its global variable."""
     return (
         variable.event.removeprefix(BLACKBOARD_WRITE_PREFIX)
         if variable.event != BLACKBOARD_ANSWER
@@ -214,7 +216,8 @@ def _ports(bound: Iterable[BoundPort], direction: Direction) -> str:
 
 
 def plugin(symbol: Symbol) -> str:
-    """A node that no machine of the system declares: either of BehaviorTree.CPP or unknown."""
+    """The description of a type of node that no machine of the system declares: a node of BehaviorTree.CPP, or an
+    unknown name."""
     known = BEHAVIOR_TREE.elements.get(symbol.name)
     if known is not None and known.node:
         return builtin_node(known)
@@ -222,8 +225,8 @@ def plugin(symbol: Symbol) -> str:
 
 
 def tree(analysis: Analysis, symbol: Symbol) -> str:
-    """A behavior tree: its size, the trees that use it."""
-    for place in thing(analysis, (symbol,)).definitions:
+    """The description of a behavior tree: its size, its file, and how often it is used."""
+    for place in symbol_group(analysis, (symbol,)).definitions:
         trees = analysis.tree(place.path)
         for candidate in trees.trees if trees else ():
             if candidate.id is not None and candidate.id.span == place.span:
@@ -238,39 +241,40 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
 
 def _use(analysis: Analysis, symbol: Symbol) -> str:
     if is_main(analysis, symbol):
-        return "The tree that is executed"
-    uses = [use for use in thing(analysis, (symbol,)).uses if use.occurrence.symbol.kind is SymbolKind.TREE]
+        return "The main tree"
+    uses = [use for use in symbol_group(analysis, (symbol,)).uses if use.occurrence.symbol.kind is SymbolKind.TREE]
     count = sum(not use.occurrence.defines and analysis.tree(use.path) is not None for use in uses)
-    return f"Named {count} times" if count > 1 else "Named once" if count else "Never named"
+    return f"Used {count} times" if count > 1 else "Used once" if count else "Never used"
 
 
 def is_main(analysis: Analysis, symbol: Symbol) -> bool:
-    """Whether a tree is the one that is executed."""
+    """Whether a tree is the main tree, which is executed."""
     system = symbol.path if symbol.path in analysis.system_paths else None
     main = trees_of(analysis, symbol.path, system).main
     return main is not None and (main[1].id.value if main[1].id else "") == symbol.name
 
 
 def tree_node(analysis: Analysis, symbol: Symbol) -> str:
-    """A named node of a tree: its names in the translation."""
+    """The description of a node of a tree that has a name: its names in the translation."""
     inside, _, position = symbol.scope.rpartition(":")
     return paragraphs(code(f"node {symbol.name}"), becomes(analysis, symbol.path, inside, int(position or 0)))
 
 
 def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
-    """The names in the translation of a node of a file, where its tree is executed."""
-    told = list(
+    """The names of a node in the translation, for each instance of its tree. The node is identified by the path of its
+    file, the ID of its tree, and its position in the tree."""
+    descriptions = list(
         dict.fromkeys(node(system, automaton) for system, automaton in instances(analysis, path, tree, position))
     )
-    rest = f"… and {len(told) - _MAX_USES} more times" if len(told) > _MAX_USES else ""
-    return paragraphs(*told[:_MAX_USES], rest)
+    rest = f"… and {len(descriptions) - _MAX_USES} more times" if len(descriptions) > _MAX_USES else ""
+    return paragraphs(*descriptions[:_MAX_USES], rest)
 
 
 _MAX_USES = 3
 
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, SystemAutomaton]]:
-    """The nodes of executed trees for a node of a file, in all systems of the file."""
+    """The instances of a node of a file in the executed trees of all systems of the file."""
     for owner in analysis.systems_of(path):
         system = analysis.system(owner) if owner else None
         for automaton in system.automata if system else ():
@@ -280,7 +284,7 @@ def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterat
 
 
 def node(system: System, automaton: SystemAutomaton) -> str:
-    """A node of the executed tree: its names, the bindings of its ports."""
+    """The description of a node of the executed tree: its name in the translation, and the values of its ports."""
     instance = automaton.instance
     assert instance is not None
     ports = [(key, value) for key, value in instance.ports if automaton.outline.port(key) is not None]
@@ -292,16 +296,16 @@ def node(system: System, automaton: SystemAutomaton) -> str:
 
 
 def struct(analysis: Analysis, symbol: Symbol) -> str:
-    """A struct with its members, and its file."""
+    """The description of a struct: its members, and its file."""
     type_ = _struct(analysis, symbol, symbol.name)
     if type_ is None:
         return ""
-    files = dict.fromkeys(file(place.path) for place in thing(analysis, (symbol,)).definitions)
+    files = dict.fromkeys(file(place.path) for place in symbol_group(analysis, (symbol,)).definitions)
     return paragraphs(code(members(type_)), ", ".join(files))
 
 
 def member(analysis: Analysis, symbol: Symbol) -> str:
-    """A member of a struct; `symbol.scope` is the struct."""
+    """The description of a member of a struct; `symbol.scope` is the struct."""
     owner = _struct(analysis, symbol, symbol.scope)
     type_: Type | None = owner.member(symbol.name) if owner else None
     if type_ is None:
@@ -315,7 +319,7 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _struct(analysis: Analysis, symbol: Symbol, struct_name: str) -> Struct | None:
-    """The struct in the system of a symbol, or in the file itself."""
+    """The struct with a name in the system of a symbol, or in the symbol's file if it belongs to no system."""
     if symbol.path in analysis.system_paths:
         struct = analysis.structs(symbol.path).types.get(struct_name)
         return struct if isinstance(struct, Struct) else None

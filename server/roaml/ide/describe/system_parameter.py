@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of a system in readable units."""
+"""Descriptions of the parameters of a system, with readable units."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roaml.xml_syntax import Attribute, Element
 
 
 def parameter(element: Element, attribute: Attribute) -> str:
-    """The meaning of a parameter of the translation; "" if it is obvious."""
+    """The meaning of the value of a parameter; "" if the value is clear without an explanation."""
     if attribute.name not in ("value", "unit"):
         return ""
     written = element.get("value")

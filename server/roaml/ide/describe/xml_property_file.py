@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions for property files in XML, as Markdown: properties as sentences, and the variables of ports."""
+"""Descriptions, as Markdown, for property files in XML: properties as sentences, and the variables of ports."""
 
 from __future__ import annotations
 
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.markdown import code, name, paragraphs
-from roaml.ide.names.lookup import thing
+from roaml.ide.names.lookup import symbol_group
 from roaml.model.property_file import Port, PortVariable, PortVariableKind, PropertyFile, WrittenProperty
 from roaml.model.property_sentences import event_clause, formula, quoted, sentence
 from roaml.project.analysis import Analysis
 
 
 def property_(analysis: Analysis, symbol: Symbol) -> str:
-    """A property by its symbol: its sentence, with the formula below."""
-    for place in thing(analysis, (symbol,)).definitions:
+    """The description of a property: its sentence, with the formula below; "" if there is no definition."""
+    for place in symbol_group(analysis, (symbol,)).definitions:
         file = analysis.property_file(place.path)
         for written in file.properties if file is not None else ():
             if file is not None and written.id is not None and written.id.span == place.span:
@@ -27,7 +27,7 @@ def described(file: PropertyFile, written: WrittenProperty) -> str:
 
 
 def variable(analysis: Analysis, symbol: Symbol) -> str:
-    """A variable of a port: its type, and when it has which value."""
+    """The description of a variable of a port: its type, and its value at each step."""
     file = analysis.property_file(symbol.path)
     for port, declared in file.variables if file is not None else ():
         if declared.id is not None and declared.id.value == symbol.name:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Triggers and statements of machines in the short words of a diagram."""
+"""Short texts for the triggers and statements of machines in diagrams."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _TRIGGERS: Mapping[ProtocolPart, str] = {
     ProtocolPart.THREAD_START: "{} thread start",
     ProtocolPart.THREAD_FREE: "{} thread free",
 }
-"""The words for a trigger; others are named by the interface and the part."""
+"""The texts for triggers. The text for any other trigger consists of the interface and the name of the part."""
 
 _SENDS: Mapping[ProtocolPart, str] = {
     ProtocolPart.MESSAGE: "publish {}",
@@ -50,7 +50,7 @@ _SENDS: Mapping[ProtocolPart, str] = {
 
 
 class Wording:
-    """The words for parts of one machine, which names the interfaces of its declarations."""
+    """The texts for the parts of one machine. They contain the names of interfaces instead of the handles."""
 
     def __init__(self, machine: Machine) -> None:
         self._interfaces = {
@@ -61,7 +61,7 @@ class Wording:
         }
 
     def trigger(self, handler: Handler) -> str:
-        """ "" for a transition without an event."""
+        """The text for the trigger of a transition; "" if the transition has none."""
         part = handler.trigger
         if part is None:
             return ""
@@ -71,7 +71,7 @@ class Wording:
         return _TRIGGERS.get(part, f"{{}} {part.value.replace('-', ' ')}").format(subject).strip()
 
     def actions(self, body: Sequence[Statement]) -> tuple[str, ...]:
-        """One text for each statement that has an effect."""
+        """The texts for the statements that have an effect, one for each."""
         return tuple(text for statement in body for text in self._statement(statement))
 
     def _statement(self, statement: Statement) -> Iterator[str]:
@@ -112,12 +112,13 @@ class Wording:
 
 
 def guard(handler: Handler) -> str:
-    """The condition in brackets; "" if there is none."""
+    """The condition of a transition in brackets; "" if there is none."""
     return f"[{_text(handler.cond)}]" if handler.cond else ""
 
 
 def outcome(handler: Handler, target: Target) -> str:
-    """The probability of one of several targets, or the answer to a goal; "" for other targets."""
+    """The text for the target of a transition with several targets: its probability, or whether the goal was accepted;
+    "" for other targets."""
     if handler.trigger is ProtocolPart.GOAL_RESPONSE:
         return "accepted" if target is handler.targets[0] else "rejected"
     if not handler.is_probabilistic:
@@ -126,7 +127,7 @@ def outcome(handler: Handler, target: Target) -> str:
 
 
 def _arguments(params: Sequence[Param]) -> str:
-    """The fields of a message; the name of a single field `data` is omitted."""
+    """The fields of a message in parentheses. If `data` is the only field, its name is omitted."""
     if len(params) == 1 and params[0].name and params[0].name.value == "data":
         return f" ({_text(params[0].value)})"
     fields = ", ".join(f"{_name(param.name)} = {_text(param.value)}" for param in params)

@@ -2,7 +2,7 @@
 """The content of a diagram, independent of its rendering.
 
 - The ids of nodes are unique; the ends of every edge, and every parent, are nodes of the diagram.
-- The values of the enumerations are part of the interface to the renderer.
+- The values of the enumerations are part of the protocol between server and client.
 """
 
 from __future__ import annotations
@@ -59,11 +59,13 @@ class EdgeKind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class DiagramNode:
-    """
+    """A node of a diagram.
+
     Attributes:
         details: lines below the label.
         parent: the id of the enclosing node; "" if there is none.
-        place: the place in the files that it represents; `None` if there is none.
+        initial: whether it is an initial state.
+        place: the place in a file that the node represents; `None` if there is none.
     """
 
     id: str
@@ -77,12 +79,13 @@ class DiagramNode:
 
 @dataclass(frozen=True, slots=True)
 class DiagramEdge:
-    """
+    """An edge of a diagram.
+
     Attributes:
-        labels: lines of text: of a transition, the trigger, the condition in brackets, and the probability.
-        actions: what a transition executes.
-        probabilistic: whether it is one of several randomly chosen edges; such edges leave a choice.
-        internal: whether it is a transition without a target, which does not leave its state.
+        labels: lines of text. Those of a transition are the trigger, the condition in brackets, and the probability.
+        actions: the texts for the statements that a transition executes.
+        probabilistic: whether it is one of several edges of a choice, of which one is chosen at random.
+        internal: whether it represents a transition without a target, which does not leave its state.
     """
 
     source: str
@@ -97,6 +100,8 @@ class DiagramEdge:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
+    """A diagram: its title, nodes and edges."""
+
     title: str
     nodes: tuple[DiagramNode, ...]
     edges: tuple[DiagramEdge, ...]

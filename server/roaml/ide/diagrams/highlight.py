@@ -13,7 +13,8 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class DiagramHighlight:
-    """A node of a diagram: `picture` is "machine" or "tree", `path` the file that it shows, `node` its id there."""
+    """A node to highlight. `picture` is the kind of diagram, "machine" or "tree"; `path` is the file that the diagram
+    shows; `node` is the id of the node in the diagram."""
 
     picture: str
     path: str
@@ -23,17 +24,19 @@ class DiagramHighlight:
 def highlights(
     analysis: Analysis, system: str, automaton: str, origin: Location, location: str
 ) -> tuple[DiagramHighlight, ...]:
-    """
+    """The nodes to highlight after a step of an automaton.
+
     Args:
-        automaton: its name in the translation.
-        origin: the place in the models of its last step.
-        location: its location after the step: a state, or a location between two states.
+        system: the path of the system file.
+        automaton: the name of the automaton in the translation.
+        origin: the place in the models to which the step belongs.
+        location: the location of the automaton after the step: a state, or a location between two states.
     """
     return (*_state(analysis, origin, location), *_tree_node(analysis, system, automaton))
 
 
 def _state(analysis: Analysis, origin: Location, location: str) -> Iterator[DiagramHighlight]:
-    """The state of the machine; between two states, the state that it leaves."""
+    """The state of the machine. In a location between two states, this is the state that the machine leaves."""
     machine = analysis.machine(origin.path)
     for chart in machine.charts if machine else ():
         named = [state for state in chart.states if state.id]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagram of a state machine: its states and transitions; each action thread in a separate frame.
+"""The diagram of a state machine: its states and transitions, with a separate frame for each action thread.
 
-A transition by chance leads to a choice, from which an edge leads to each target.
+A probabilistic transition leads to a choice, from which an edge leads to each target.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _BT = ("bt-", "child-")
 
 
 def machine_picture(analysis: Analysis, path: str) -> Picture | None:
-    """The diagram; `None` if the file is not a machine."""
+    """The diagram of a state machine; `None` if the file is not a state machine."""
     machine = analysis.machine(path)
     if machine is None:
         return None
@@ -50,8 +50,8 @@ def _frame(thread: Thread, path: str) -> DiagramNode:
 
 
 class _Chart:
-    """The nodes and edges of a chart. If states have the same name, transitions lead to the first, and only it is
-    drawn."""
+    """The nodes and edges of a chart. If several states have the same name, only the first is drawn, and all
+    transitions to this name lead to it."""
 
     def __init__(self, machine: Machine, chart: Chart, frame: str, path: str) -> None:
         self._wording = Wording(machine)

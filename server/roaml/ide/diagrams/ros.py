@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS graph of a system: its nodes and plugins, and what they publish, serve, call and send.
+"""The ROS graph of a system: its nodes and plugins, their topics, services and actions, and plain events.
 
-A plugin is drawn once, however often the tree uses it.
+A plugin is drawn once, even if the tree uses it several times.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _TO_CHANNEL = (EdgeKind.PUBLISHES, EdgeKind.CALLS)
 
 
 def ros_picture(analysis: Analysis, path: str) -> Picture | None:
-    """The diagram; `None` if `path` is not a system file."""
+    """The ROS graph of a system; `None` if `path` is not a system file."""
     system = analysis.system(path)
     if system is None:
         return None
@@ -92,7 +92,7 @@ def _declared(analysis: Analysis, end: ChannelEndpoint) -> Location | None:
 
 
 def _events(system: System, nodes: Mapping[str, DiagramNode]) -> Iterator[DiagramEdge]:
-    """Plain events from one machine to another, with one edge for each pair of machines."""
+    """The edges for plain events, one for each pair of a sender and a receiver."""
     between: dict[tuple[str, str], dict[str, None]] = {}
     for event in system.events.values():
         for sender, _ in event.senders:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executed behavior tree with its ports and subtrees, and the variables of the blackboard that connect them.
 
-A tree file that no system lists is drawn alone; only a system determines which ports are written.
+A tree file that belongs to no system is drawn as well, but the directions of the ports of its plugins are not known.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 
 def tree_picture(analysis: Analysis, path: str) -> Picture | None:
-    """The tree of a system, given by its system file or any other of its files; `None` if there is none."""
+    """The diagram of a system's tree; `path` is the system file or any other file of the system. `None` if there is no
+    tree."""
     system = next((owner for s in analysis.systems_of(path) if s and (owner := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances, uses = system.tree_paths, system.instances, system.tree_uses
@@ -114,14 +115,14 @@ class _Tree:
                 yield DiagramEdge(name, node, EdgeKind.READS, (key,), place=place)
 
     def bound(self) -> Iterator[tuple[Instance, str, str]]:
-        """Every port that is bound to a variable: instance, port, variable."""
+        """All ports that are bound to variables, as instance, key of the port, and name of the variable."""
         for instance in self.instances:
             for key, value in instance.ports:
                 if isinstance(value, Reference):
                     yield instance, key, value.variable
 
     def place(self, instance: Instance, key: str) -> Location | None:
-        """The place where a port is set; `None` for a default, which is written elsewhere."""
+        """The place where the node sets a port; `None` if the port has its default value."""
         node = self.written[instance.number]
         setting = next((port for port in node.ports if port.key.value == key), None) if node else None
         return Location(instance.source.path, setting.attribute.span) if setting else None

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The formatter of supported files, which returns edits.
 
-- Changes only white space between tokens, so never the model; formatting the result again changes nothing.
+- Only white space between tokens is changed, so the meaning of a file stays the same. Formatting the result again
+  changes nothing.
 - A file with syntax errors is not changed.
 """
 
@@ -27,7 +28,7 @@ def can_format(analysis: Analysis, path: str) -> bool:
     return next(_gaps(analysis, path, DEFAULT), None) is not None
 
 
-def is_ours(analysis: Analysis, path: str) -> bool:
+def has_formatter(analysis: Analysis, path: str) -> bool:
     """Whether a file is of a kind that is formatted."""
     return analysis.kind(path) in (*_XML, *_JSON)
 
@@ -41,7 +42,7 @@ def format_edits(
         analysis: the state of the workspace.
         path: the file.
         layout: the layout; a property file keeps its width of two or four columns.
-        within: only edits inside of the lines that this span touches.
+        within: if given, only edits in the lines that this span touches are returned.
     """
     source = analysis.source(path)
     if source is None:
@@ -65,7 +66,7 @@ def _gaps(analysis: Analysis, path: str, layout: FileLayout) -> Iterator[Spacing
 
 
 def _lines_around(source: SourceFile, span: Span) -> Span:
-    """The whole lines that a span touches; a span that ends where a line begins does not touch it."""
+    """The span of the lines that `span` touches. A line is not included if `span` ends at its beginning."""
     lines = source.lines
     end = max(span.start, span.end - 1)
     return Span(lines.line_start(lines.position(span.start).line), lines.line_end(lines.position(end).line))

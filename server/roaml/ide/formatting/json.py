@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The layout of JSON: one member or item per line, two or four columns per level, as the file has it.
+"""The layout of JSON: one member or item per line, and two or four columns per level, whichever the file uses.
 
 - An object or list on one line stays on one line if it fits. Several blank lines become one.
-- Works on tokens, not on the tree: JSON may nest more deeply than functions can recurse.
+- The formatter works on tokens, not on the tree, because JSON may be nested more deeply than functions can recurse.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _WIDTHS = (2, 4)
 
 
 def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
-    """The white space of a text without syntax errors."""
+    """The white space between the tokens of a text without syntax errors."""
     spans = [Span(*match.span()) for match in _TOKEN.finditer(text)]
     if not spans:
         return
@@ -58,7 +58,7 @@ def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
 
 
 def _like(text: str, layout: FileLayout) -> FileLayout:
-    """The layout with the width of the first indented line, if that is one of the usual ones."""
+    """`layout` with the indentation width of the file, which is that of the first indented line if it is 2 or 4."""
     first_indent = _FIRST_INDENT.search(text)
     if first_indent is None or len(first_indent[1]) not in _WIDTHS or first_indent[1][0] == "\t":
         return layout
@@ -78,7 +78,7 @@ def _closers(tokens: list[str]) -> dict[int, int]:
 
 
 def _flat_gap(tokens: list[str], i: int) -> str:
-    """The text after token `i` if all is on one line."""
+    """The white space after token `i` if the enclosing object or list is on one line."""
     return " " * _flat_space(tokens, i)
 
 

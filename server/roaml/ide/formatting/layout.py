@@ -22,9 +22,9 @@ class FileLayout:
     """The layout of a file.
 
     Attributes:
-        width: columns of one level.
-        tabs: whether a level is a tab character.
-        line_length: longer lines are wrapped where possible, in columns.
+        width: the number of columns of one level of nesting.
+        tabs: whether one level is indented with a tab character instead of spaces.
+        line_length: the maximum length of a line, in columns. Longer lines are wrapped where possible.
     """
 
     width: int = 4
@@ -35,12 +35,12 @@ class FileLayout:
         return "\t" * depth if self.tabs else " " * (self.width * depth)
 
     def column(self, depth: int) -> int:
-        """The column at which text at a depth begins."""
+        """The column at which text begins at a depth of nesting."""
         return self.width * depth
 
 
 class Spacing(NamedTuple):
-    """White space, possibly empty, between two tokens, to be replaced by `text`."""
+    """The white space between two tokens, which may be empty, and the text that replaces it."""
 
     span: Span
     text: str
@@ -52,12 +52,13 @@ def breaks(text: str) -> int:
 
 
 def new_line(before: str, indent: str) -> str:
-    """A line break to `indent` instead of the white space `before`; several blank lines become one."""
+    """The text that replaces the white space `before` by a line break and `indent`. It contains one blank line if
+    `before` contains one or more."""
     return f"\n\n{indent}" if breaks(before) > 1 else f"\n{indent}"
 
 
 def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
-    """The smallest edits that fill the gaps."""
+    """The smallest edits that give the gaps their new texts."""
     gaps = list(gaps)
     line_end = next((match[0] for gap in gaps if (match := _LINE_END.search(text, *gap.span))), None)
     if line_end is None:
@@ -66,7 +67,8 @@ def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
     for span, filling in gaps:
         new = filling.replace("\n", line_end)
         old = text[span.start : span.end]
-        # Separate from the line breaks, so that the indentation of a line can be changed without the line before it.
+        # Line breaks and indentation have separate edits, so that an edit of the indentation does not touch the line
+        # before.
         old_breaks, new_breaks = _indent_start(old), _indent_start(new)
         if old_breaks and new_breaks:
             yield from _difference(span.start, old[:old_breaks], new[:new_breaks])
@@ -76,12 +78,13 @@ def edits(text: str, gaps: Iterable[Spacing]) -> Iterator[TextEdit]:
 
 
 def _indent_start(text: str) -> int:
-    """The beginning of the last line of white space; 0 if there is only one line."""
+    """The index at which the last line of a white space begins; 0 if it has no line break."""
     return max(text.rfind("\n"), text.rfind("\r")) + 1
 
 
 def _difference(at: int, old: str, new: str) -> Iterator[TextEdit]:
-    """The difference of two texts, the first of which is at `at`. Line ends are never split."""
+    """The edit that changes the text `old` at offset `at` to `new`; none if they are equal. The edit does not split a
+    line end."""
     if old == new:
         return
     least = min(len(old), len(new))

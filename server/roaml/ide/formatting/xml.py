@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The layout of XML.
 
-- Comments, instructions, CDATA sections, character data and the elements around it are not changed, nor is anything
-  below `xml:space="preserve"`. Only the tags of these elements are formatted.
-- Each child has its own line, except that an element on one line with one child stays on one line, and a comment
-  at the end of a line stays there. Several blank lines become one.
+- Comments, instructions and CDATA sections are not changed. Of an element with character data or with
+  `xml:space="preserve"`, only the tags are formatted, not the content.
+- Each child has its own line, with two exceptions: an element that is written on one line and has one child stays on
+  one line, and a comment at the end of a line stays there. Several blank lines become one.
 - Attributes on several lines get one line each, below the first one or one level deeper, as in the file. A tag that is
   too long is wrapped one level deeper.
-- `<else />` and `<elseif />` are aligned with their `<if>`, or with its other children if they were written so.
+- `<else />` and `<elseif />` are aligned with their `<if>` or with its other children, as in the file.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ class _Formatter:
         yield Spacing(Span(items[-1].span.end, len(self.text)), "\n")
 
     def lines(self, items: Sequence[Node], depth: int, markers: int | None = None) -> Iterator[Spacing]:
-        """The gaps between and inside of some siblings; `markers` is the depth of those that divide an `<if>`."""
+        """The gaps between siblings and inside of them. `markers` is the depth of `<else />` and `<elseif />` if it is
+        not that of the other siblings."""
         last = items[0]
         for item in items:
             here = depth if markers is None or not _is_marker(item) else markers
@@ -97,7 +98,7 @@ class _Formatter:
         )
 
     def is_level(self, element: Element) -> bool:
-        """Whether the markers of an `<if>` are aligned with it; the first marker decides."""
+        """Whether the first `<else />` or `<elseif />` in an `<if>` is aligned with the `<if>`."""
         marker = next((child for child in element.elements if _is_marker(child)), None)
         if marker is None:
             return False
@@ -105,7 +106,7 @@ class _Formatter:
         return bool(before.strip()) or indent <= self.line_before(element.span.start)[1]
 
     def line_before(self, offset: int) -> tuple[str, int]:
-        """The text on a line before an offset, and the column where the line's text begins."""
+        """The text between the beginning of a line and an offset, and the indentation of the line in columns."""
         start = max(self.text.rfind("\n", 0, offset), self.text.rfind("\r", 0, offset)) + 1
         before = self.text[start:offset].expandtabs(self.layout.width)
         return before, len(before) - len(before.lstrip(SPACE))

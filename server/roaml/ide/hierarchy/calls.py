@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The call hierarchy: which machines communicate, as a graph.
 
-Machines call what they send: events, topics, services, actions; these call the machines that receive them. A client
-calls a service, and the service its server. Trees call the machines of their nodes, and other trees.
+A machine calls the events, topics, services and actions that it sends to. These call the machines that receive them: a
+client calls a service, and the service calls its server. A tree calls the machines of its nodes and its subtrees.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import interface_symbol
-from roaml.ide.names.lookup import SymbolUse, occurrences_at, thing
+from roaml.ide.names.lookup import SymbolUse, occurrences_at, symbol_group
 from roaml.ide.names.occurrence import HANDLES, Access
 from roaml.ide.names.occurrences import trees_of, uses
 from roaml.model.outline import InterfaceUse
@@ -29,7 +29,7 @@ _CALLABLE = (SymbolKind.EVENT, *_INTERFACES, SymbolKind.MACHINE, SymbolKind.TREE
 
 @dataclass(frozen=True, slots=True)
 class CallHierarchyItem:
-    """A node of the graph. `span` covers the whole element, `name_span` its name."""
+    """A node of the graph. `span` is the span of the element, `name_span` that of its name."""
 
     symbol: Symbol
     path: str
@@ -39,7 +39,7 @@ class CallHierarchyItem:
 
 @dataclass(frozen=True, slots=True)
 class HierarchyCall:
-    """An edge of the graph: its other end, and the places in the caller's file at which it calls."""
+    """An edge of the graph: the item at its other end, and the places of the calls in the caller's file."""
 
     item: CallHierarchyItem
     places: tuple[Span, ...]
@@ -74,7 +74,7 @@ def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
 
 
 def _is_message(symbol: Symbol) -> bool:
-    """Whether the called item itself calls others: its places are those of its name."""
+    """Whether an item is an event, topic, service or action. The place of its calls is its name."""
     return symbol.kind is SymbolKind.EVENT or symbol.kind in _INTERFACES
 
 
@@ -90,7 +90,7 @@ def _calls(analysis: Analysis, edges: Iterable[_Edge]) -> tuple[HierarchyCall, .
 
 
 def _item(analysis: Analysis, symbol: Symbol) -> CallHierarchyItem | None:
-    group = thing(analysis, (symbol,))
+    group = symbol_group(analysis, (symbol,))
     own = [use for use in group.uses if use.occurrence.symbol == symbol]
     use = next((use for use in own if use.occurrence.defines), own[0] if own else None)
     if use is None:
@@ -128,7 +128,7 @@ def _machine(analysis: Analysis, path: str) -> Symbol | None:
 
 def _of_event(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edge]:
     access = Access.WRITE if into else Access.READ
-    for use in thing(analysis, (symbol,)).uses:
+    for use in symbol_group(analysis, (symbol,)).uses:
         machine = _machine(analysis, use.path)
         if machine is not None and use.occurrence.access is access:
             yield machine, use.occurrence.span
@@ -155,7 +155,7 @@ def _interface(system: System, automaton: SystemAutomaton, use: InterfaceUse) ->
 
 
 def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
-    """The topics, services or actions of a handle."""
+    """The topics, services or actions to which a handle refers in the systems of its file."""
     for system in _systems(analysis, handle.path):
         for automaton in system.automata_of(handle.path):
             for use in automaton.outline.interfaces:
@@ -200,7 +200,7 @@ def _of_machine(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_
 
 def _trees_with(analysis: Analysis, symbol: Symbol) -> Iterator[_Edge]:
     """The trees that contain nodes of a plugin, or use a tree."""
-    for use in thing(analysis, (symbol,)).uses:
+    for use in symbol_group(analysis, (symbol,)).uses:
         tree = _tree_around(analysis, symbol, use)
         if tree is not None:
             yield tree, use.occurrence.span
@@ -222,12 +222,12 @@ def _of_tree(analysis: Analysis, symbol: Symbol, *, into: bool) -> Iterator[_Edg
     if into:
         yield from _trees_with(analysis, symbol)
         return
-    for location in thing(analysis, (symbol,)).definitions:
+    for location in symbol_group(analysis, (symbol,)).definitions:
         yield from _in_tree(analysis, location)
 
 
 def _in_tree(analysis: Analysis, place: Location) -> Iterator[_Edge]:
-    """The machines and trees that the nodes of the tree defined at a place name."""
+    """The machines and trees that are named by the nodes of a tree. `place` is the place of the tree's definition."""
     file = analysis.tree(place.path)
     for tree in file.trees if file else ():
         if tree.id is None or tree.id.span != place.span:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The type hierarchy: messages and structs.
 
-The types of a type's fields or members are its subtypes, the types that contain it are its supertypes. ROS types are
-limited to those that the machines of the workspace use, and the types inside them.
+The subtypes of a type are the types of its fields or members; its supertypes are the types that contain it. The only
+ROS types are those that the machines of the workspace use, and the types inside them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class TypeItem:
-    """A message, service, action or struct; `detail` is its kind, and the fields that contain it."""
+    """A message, service, action or struct. `detail` lists the fields that have this type; if there are none, it is the
+    kind of the type."""
 
     symbol: Symbol
     detail: str
@@ -32,7 +33,7 @@ class TypeItem:
 
 
 def types_at(analysis: Analysis, path: str, offset: int) -> tuple[TypeItem, ...]:
-    """The types at a caret: written there, or those of the variable, field or member."""
+    """The types at a caret: the type that is written there, or the types of the variable, field or member."""
     symbols: dict[Symbol, None] = {}
     for occurrence in occurrences_at(analysis, path, offset):
         symbols.update(dict.fromkeys(_types_of(analysis, path, occurrence.symbol)))
@@ -46,7 +47,7 @@ def members_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
 
 
 def holders_of(analysis: Analysis, symbol: Symbol) -> tuple[TypeItem, ...]:
-    """The types that have a field or member of a type."""
+    """The types with a field or member of the type `symbol`."""
     candidates = _structs(analysis, symbol.path) if symbol.kind is SymbolKind.STRUCT else _used(analysis)
     fields = ((holder, name) for holder in candidates for name, inner in _inside(analysis, holder) if inner == symbol)
     return _items(analysis, fields)

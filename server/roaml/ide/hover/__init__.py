@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hover text for a place in a file, as Markdown.
 
-- `place` looks up the place once; each of the other modules describes one kind of thing, and none calls another.
-- A name says what it denotes; where there is none, elements, attributes, values, functions and operators have the
-  documentation of their language.
+- `place` looks up the place once. Each of the other modules describes one kind of place, and none calls another.
+- The hover text of a name describes its symbol. At other places, elements, attributes, values, functions and operators
+  have the documentation of their language.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
 
 
 def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:
-    """The descriptions of the place; if a name is there, only those that add to the description of the name."""
+    """The descriptions for a place. At a name, the description of its symbol comes first. Others follow only if they
+    add to it."""
     if (name := _named(place)) is not None:
         yield name
     if place.kind in _JSON:

@@ -63,7 +63,7 @@ def _name(place: Place, name: str) -> str:
 
 
 def _known(place: Place) -> dict[str, Type]:
-    """The event variables available at a place."""
+    """The event variables that are available at a place, with their types."""
     machine = place.analysis.machine(place.path)
     handler = handler_at(machine, place.offset) if machine else None
     if machine is None or handler is None:

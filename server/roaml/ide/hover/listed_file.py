@@ -18,7 +18,8 @@ from roaml.text import Span
 
 
 def listed_file(place: Place) -> tuple[Span, str] | None:
-    """The kind and the content of the file that the path at a place names; `None` if it cannot be read."""
+    """The description of the file whose path is at a place: its kind and its content. `None` if there is no path, or if
+    the file cannot be read."""
     analysis, path, offset = place.analysis, place.path, place.offset
     system, tree = analysis.system_file(path), analysis.tree(path)
     written = [entry.src for entry in system.inputs] if system else []
@@ -31,7 +32,7 @@ def listed_file(place: Place) -> tuple[Span, str] | None:
 
 
 def content(analysis: Analysis, system: str, path: str) -> str:
-    """The kind and the content of a file of a system; "" if it cannot be read."""
+    """The description of a file of a system: its kind and its content; "" if it cannot be read."""
     if analysis.source(path) is None:
         return ""
     machine, tree = analysis.machine(path), analysis.tree(path)

@@ -34,18 +34,18 @@ def in_markup(place: Place) -> tuple[Span, str] | None:
 
 
 def _value(place: Place, element: Element, attribute: Attribute, known: AttributeType) -> str:
-    """The description of a value; if there is none, that of its attribute."""
+    """The description of a value; if there is none, the description of its attribute."""
     chosen = next((choice for choice in known.simple.choices if choice.value == attribute.value.strip()), None)
-    said = ""
+    description = ""
     if place.kind is FileKind.SYSTEM:
-        said = parameter(element, attribute)
+        description = parameter(element, attribute)
     elif known.value is ValueRole.TYPE:
-        said = _type(place, attribute.value.strip())
+        description = _type(place, attribute.value.strip())
     elif attribute.name == "rate_hz":
-        said = rate(attribute.value)
+        description = rate(attribute.value)
     if chosen is not None:
-        return paragraphs(describe_language.choice(chosen), said)
-    return paragraphs(said or describe_language.attribute(known))
+        return paragraphs(describe_language.choice(chosen), description)
+    return paragraphs(description or describe_language.attribute(known))
 
 
 def _type(place: Place, written: str) -> str:

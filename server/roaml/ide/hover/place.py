@@ -15,11 +15,13 @@ from roaml.project.analysis import Analysis
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """
+    """A place in a file, and what is known about it.
+
     Attributes:
+        text: the text of the file.
         kind: the kind of the file.
-        systems: the systems of the file; `(None,)` if it is in none.
-        names: the meaning of the text at the place, in each system.
+        systems: the systems of the file; `(None,)` if it belongs to no system.
+        names: the symbols of the name at the place, in each system.
         elements: the enclosing XML elements, outermost first.
         expression: the enclosing expression.
     """
@@ -36,7 +38,7 @@ class Place:
 
 
 def place_at(analysis: Analysis, path: str, offset: int) -> Place | None:
-    """The place in a file; None if the file cannot be read."""
+    """The place at an offset in a file; `None` if the file cannot be read."""
     source = analysis.source(path)
     if source is None:
         return None

@@ -18,7 +18,7 @@ from roaml.text import Span
 
 
 def global_variable(place: Place) -> tuple[Span, str] | None:
-    """The global variable whose name is at a place, in each system of the file."""
+    """The descriptions of the global variable whose name is at a place, in each system of the file."""
     analysis, offset = place.analysis, place.offset
     value = analysis.json(place.path)
     hovered = value_at(value[0], offset) if value else None
@@ -38,7 +38,7 @@ def global_variable(place: Place) -> tuple[Span, str] | None:
 
 
 def in_json(place: Place) -> tuple[Span, str] | None:
-    """The description of a key or an operator in the syntax of properties; the formula of a property."""
+    """The description of the key or operator at a place, or the formula of the property at a place."""
     value, offset = place.analysis.json(place.path), place.offset
     if value is None:
         return None
@@ -55,8 +55,8 @@ def in_json(place: Place) -> tuple[Span, str] | None:
         text = ""
         if member.key == "op":
             head = code(describe_properties.formula(owner))
-            said = describe_properties.operator(held.value)
-            text = paragraphs(head, said) if said else ""
+            description = describe_properties.operator(held.value)
+            text = paragraphs(head, description) if description else ""
         elif member.key == "name" and PROPERTIES.is_a(schema, "property"):
             expression = members(owner).get("expression")
             text = code(describe_properties.formula(expression)) if expression else ""
@@ -67,7 +67,7 @@ def in_json(place: Place) -> tuple[Span, str] | None:
 
 
 def value_at(value: JsonValue, offset: int) -> JsonValue | None:
-    """The innermost value around an offset; None on keys and between values."""
+    """The innermost value around an offset; `None` at keys and between values."""
     innermost: JsonValue | None = value
     while innermost is not None:
         if isinstance(innermost, JsonObject):
@@ -114,4 +114,4 @@ def _members_at(value: JsonValue, offset: int) -> Iterator[tuple[Schema, JsonObj
 
 
 _OF_FORMULAS = ("op", "constant", "distribution")
-"""Keys that only formulas have, also in the parts of a model that are not properties."""
+"""Keys that occur only in formulas and expressions, including those outside of the properties of a JANI model."""

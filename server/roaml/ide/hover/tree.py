@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hover texts for nodes of a tree: their names in the translation, where the tree is executed."""
+"""Hover texts for nodes of a tree: their names in the translation of each system that executes the tree."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ def tree_node(place: Place) -> tuple[Span, str] | None:
 
 
 def name_at(node: TreeNode, offset: int) -> Span | None:
-    """The tag, the plugin or the name of a node at a place."""
+    """The span of the tag, plugin or name of a node if it contains an offset; otherwise `None`."""
     spans = [node.element.name_span, *(name.span for name in (node.plugin, node.name) if name)]
     return next((span for span in spans if span.contains(offset)), None)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree with the places of its parts: the text from which a blackboard variable or a port's constant
-comes from.
+"""The executed tree with the places of its parts: where the name of a blackboard variable, or the constant of a port,
+is written.
 
-`roaml.model.expand` expands the subtrees without positions; this module adds the text of each
-part.
+`roaml.model.expand` expands the subtrees without positions; this module adds the positions.
 """
 
 from __future__ import annotations
@@ -24,10 +23,11 @@ from roaml.roles import SymbolKind
 from roaml.script.names import names_in as names_in_script
 
 Piece = tuple[str, Symbol | None, Form]
-"""A part of a name in the translation: its text and the symbol that it comes from, if any."""
+"""A part of a name in the translation: its text, the symbol whose name it contains, if any, and the form of that
+name."""
 
 TreeKey = tuple[str, str]
-"""File and ID of a tree."""
+"""The path of a file, and the ID of a tree in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,11 @@ class Frame:
     Attributes:
         expanded: the same instance without places.
         tree: the tree in the file.
-        prefix: the prefix of the full names of its variables.
-        settings: the values from the attributes of the subtree node and from defaults.
-        outer: the enclosing instance.
-        names: the variables that the tree's text mentions, also through defaults.
+        prefix: the parts of the prefix of its variables in the translation.
+        settings: the values of its ports, from the attributes of the subtree node and from defaults.
+        outer: the instance of the tree that contains the subtree node; `None` for the main tree.
+        names: the names of the variables that occur in the tree or in defaults of its ports.
+        is_alone: whether the tree belongs to no system.
     """
 
     expanded: expand.Frame
@@ -74,27 +75,28 @@ class Frame:
 
     @property
     def takes_all(self) -> bool:
-        """Whether names without an explicit remapping are taken from outside (automatic remapping)."""
+        """Whether the names of variables without an explicit remapping refer to the outer instance (automatic
+        remapping)."""
         return self.expanded.autoremap
 
     def is_shared(self, name: str) -> bool:
-        """Whether `name` is the same variable as the one with this name outside."""
+        """Whether `name` refers to the same variable as in the outer instance."""
         if name in self.settings:
             return self.settings[name].value.value.strip() == "{=}"
         if self.outer is None or name.startswith("@"):
             return False
-        if self.is_alone:  # scripts name variables, too, which the expansion does not know
+        if self.is_alone:  # the expansion does not know the variables that occur only in scripts
             return self.takes_all and not name.startswith("_") and self.outer.knows(name)
         return self.expanded.resolve(name) == self.outer.expanded.resolve(name)
 
 
 class Trees:
-    """The tree files of a system, the executed one first.
+    """The tree files of a system.
 
     Args:
-        outlines: the outlines of the files.
+        outlines: the outlines of the files. The file with the main tree comes first.
         owner: the system file, or the first tree file if there is no system.
-        is_alone: whether there is no system; then scripts also name variables.
+        is_alone: whether there is no system. If so, the names in scripts are variables as well.
     """
 
     def __init__(
@@ -111,8 +113,8 @@ class Trees:
         self._outlines = outlines
 
     def tree_symbol(self, path: str, name: str) -> Symbol:
-        """The tree that a name means in a file. Without a system, files that are not included by each other may have
-        trees of one name."""
+        """The symbol of the tree to which a name refers in a file. If there is no system, files that do not include
+        each other may contain different trees with the same name."""
         home = self.owner
         if self.is_alone:
             defining = [p for p, file in self.files.items() if any(t.id and t.id.value == name for t in file.trees)]
@@ -121,7 +123,7 @@ class Trees:
         return Symbol(home, SymbolKind.TREE, name)
 
     def names_in(self, tree: Tree) -> Iterator[str]:
-        """The variables that a tree refers to."""
+        """The names of the variables to which a tree refers."""
         yield from names_in(tree)
         if self.is_alone:
             for node in nodes(tree):
@@ -187,7 +189,7 @@ class Trees:
         return frames
 
     def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:
-        """The prefix of the names in an instance, and the settings at the place where the instance is used."""
+        """The prefix of the names in an instance of a tree, and the values that the subtree node gives to its ports."""
         if expanded.use is None or outer is None:
             return (), {}
         node = tuple(nodes(outer.tree))[expanded.use.position]
@@ -208,7 +210,7 @@ class Trees:
         return prefix, {name: value for name, value in settings.items() if not name.startswith("_")}
 
     def _names(self, tree: Tree) -> frozenset[str]:
-        """The variables that a tree refers to, also through defaults."""
+        """The names of the variables to which a tree refers, directly or by defaults of ports."""
         names = set(self.names_in(tree))
         for node in nodes(tree):
             plugin = node.plugin.value if node.plugin else ""
@@ -221,7 +223,8 @@ class Trees:
     # ------------------------------------------------------------- variables
 
     def variable(self, path: str, tree: str, name: str) -> Symbol:
-        """The blackboard variable of `{name}` in a tree. Variables that always share their name are one variable."""
+        """The symbol of the blackboard variable to which `{name}` refers in a tree. Variables that are equal because of
+        `{=}` or automatic remapping have the same symbol."""
         if name.startswith("@"):
             name = name[1:]
             if self.main is not None:
@@ -236,7 +239,7 @@ class Trees:
 
     @cached_property
     def _shared(self) -> Mapping[tuple[str, str, str], tuple[str, str, str]]:
-        """Union-find: a variable -> an equal one, by `{=}` or automatic remapping."""
+        """A union-find structure: variable -> an equal variable, by `{=}` or automatic remapping."""
         above: dict[tuple[str, str, str], tuple[str, str, str]] = {}
 
         def root(key: tuple[str, str, str]) -> tuple[str, str, str]:
@@ -254,7 +257,7 @@ class Trees:
         return above
 
     def is_taken(self, symbol: Symbol, new: str) -> bool:
-        """Whether a variable named `new` would be identified with another one."""
+        """Whether the variable of `symbol` would become equal to another one if its name were `new`."""
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
@@ -286,7 +289,7 @@ class Trees:
         return by_name
 
     def constant(self, number: int, key: str) -> Setting | None:
-        """The text that gives the port `key` of a node a constant."""
+        """The place of the constant that the port `key` of the node with this number has; `None` if it has none."""
         frame, node = self.nodes.get(number, (None, None))
         if frame is None or node is None:
             return None
@@ -312,7 +315,7 @@ class Trees:
 
 
 def names_in(tree: Tree) -> Iterator[str]:
-    """The variables that the nodes of a tree use."""
+    """The names of the variables that the attributes of a tree's nodes contain."""
     for node in nodes(tree):
         for attribute in node.element.attributes:
             variable = blackboard_variable(attribute.value)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
+from roaml.expr.infer import infer
 from roaml.expr.tree import (
     ArrayLiteral,
     Expr,
@@ -17,8 +18,8 @@ from roaml.expr.tree import (
     walk,
 )
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, resolve_type, unwrap, wrap
-from roaml.ide.names.occurrence import Access, Occurrence, base_span, parameter, variable, without_slash
+from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, resolve_type, unwrap
+from roaml.ide.names.occurrence import Access, Occurrence, base_span, fields, parameter, variable, without_slash
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
 from roaml.language import HL_SCXML
@@ -31,7 +32,6 @@ from roaml.model.machine import (
     Handler,
     If,
     Machine,
-    Param,
     ReturnStatus,
     RosSend,
     Send,
@@ -54,13 +54,14 @@ _WORD = re.compile(r"\S+")
 
 
 def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
-    """The topic, service or action `name` of a declaration of `kind`. Topics are identified by their sanitised name."""
+    """The symbol of the topic, service or action `name` of a declaration of `kind`. The symbol of a topic contains its
+    sanitised name."""
     channel_kind = CHANNEL_KINDS[kind]
     return Symbol(owner, channel_kind, sanitise(name) if channel_kind is SymbolKind.TOPIC else name)
 
 
 def is_implicit(declaration: Declaration) -> bool:
-    """Whether the interface itself is the handle."""
+    """Whether a declaration has no handle of its own, so that the name of the interface is used as the handle."""
     return declaration.handle is not None and declaration.handle is declaration.interface
 
 
@@ -72,10 +73,11 @@ def in_machine(
     types: Mapping[str, Mapping[str, Type]],
     environment: Environment,
 ) -> Iterator[Occurrence]:
-    """
+    """The occurrences of names in a state machine.
+
     Args:
         owner: the system file, or the machine's own file if it is analysed alone.
-        types: the types of the variables, per chart scope.
+        types: the types of the variables, by the scope of their chart.
         environment: the types that other files of the system declare.
     """
     return _Machine(text, machine, path, owner, types, environment).all()
@@ -133,7 +135,8 @@ class _Machine:
     def handle(
         self, name: Name | None, declaration: Declaration | None, access: Access = Access.TEXT
     ) -> Iterator[Occurrence]:
-        """A use of a handle. If the interface itself is the handle, the interface is used."""
+        """The occurrence of a handle. If the name of the interface is used as the handle, it is an occurrence of the
+        interface."""
         if name is None or declaration is None:
             return
         if is_implicit(declaration):
@@ -231,7 +234,7 @@ class _Machine:
                     if branch.cond is not None:
                         yield from scope.names(branch.cond)
             case RosSend():
-                yield from self.communicate(scope, statement)
+                yield from self.ros_send(scope, statement)
             case ReturnStatus():
                 if statement.status is not None and statement.status.value not in STATUSES:
                     yield from self.word(scope, statement.status)
@@ -253,32 +256,19 @@ class _Machine:
                 yield Occurrence(param.name.span, symbol, defines=True, access=Access.WRITE)
             yield from self.value(scope, param.value)
 
-    def communicate(self, scope: _Scope, statement: RosSend) -> Iterator[Occurrence]:
+    def ros_send(self, scope: _Scope, statement: RosSend) -> Iterator[Occurrence]:
         declaration = find_handle(self.machine, statement)
         yield from self.handle(statement.handle, declaration, Access.WRITE)
         part = interface_part(statement.part, declaration, self.environment)
         for field in statement.fields:
-            yield from self.field(field, part)
+            if field.name is not None:
+                yield from fields(field.name, part, Access.WRITE)
             yield from self.value(scope, field.value)
         for argument in (statement.goal_id, statement.thread_id):
             yield from self.value(scope, argument)
 
-    def field(self, field: Param, part: Type) -> Iterator[Occurrence]:
-        """The fields on a dotted path."""
-        if field.name is None or len(field.name.value) != field.name.span.end - field.name.span.start:
-            return
-        at, owner = field.name.span.start, part
-        for name in field.name.value.split("."):
-            inner, _ = unwrap(owner)
-            member = inner.member(name) if isinstance(inner, Struct) else None
-            if not isinstance(inner, Struct) or member is None:
-                return
-            span = Span(at, at + len(name))
-            yield Occurrence(span, Symbol("", SymbolKind.FIELD, name, inner.name), access=Access.WRITE)
-            at, owner = span.end + 1, member
-
     def word(self, scope: _Scope, name: Name | None) -> Iterator[Occurrence]:
-        """A number or the name of a variable."""
+        """The occurrence of a variable in text that is a number or the name of a variable."""
         if name is not None and not name.value.lstrip("+-").isdigit():
             symbol = variable(self.path, name.value, scope.chart.scope)
             yield Occurrence(name.span, symbol, access=Access.READ)
@@ -322,7 +312,7 @@ class _Scope:
             symbol = parameter(self.machine.owner, event.value, node.name)
             yield Occurrence(node.name_span, symbol, access=Access.READ)
             return
-        inner, _ = unwrap(self.type_of(node.object))
+        inner, _ = unwrap(infer(node.object, self.type_of_name)[0])
         if not isinstance(inner, Struct) or inner.member(node.name) is None:
             return
         if inner.kind is StructKind.DECLARED:
@@ -332,23 +322,12 @@ class _Scope:
         elif inner.name:
             yield Occurrence(node.name_span, Symbol("", SymbolKind.FIELD, node.name, inner.name), access=Access.READ)
 
-    def type_of(self, expr: Expr) -> Type:
-        """The type of a chain of members and indices; unknown for other expressions."""
-        match expr:
-            case NameExpr():
-                return self.known.get(expr.name) or self.variables.get(expr.name) or UNKNOWN
-            case Index():
-                indexed = self.type_of(expr.object)
-                return indexed.element if isinstance(indexed, Array) else UNKNOWN
-            case Member():
-                inner, bounds = unwrap(self.type_of(expr.object))
-                member = inner.member(expr.name) if isinstance(inner, Struct) else None
-                return UNKNOWN if member is None else wrap(member, bounds)
-        return UNKNOWN
+    def type_of_name(self, name: str) -> Type | None:
+        return self.known.get(name) or self.variables.get(name)
 
 
 def type_use(owner: str, type_: TypeRef | None) -> Iterator[Occurrence]:
-    """The struct in a type."""
+    """The occurrence of a struct in the name of a type."""
     if type_ is not None and type_.name is not None and type_.name.base not in BASE_TYPES:
         yield Occurrence(base_span(type_.span, type_.name.base), Symbol(owner, SymbolKind.STRUCT, type_.name.base))
 

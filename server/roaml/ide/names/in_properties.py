@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in property files: the sources of the parts of a global variable's name.
+"""The names in property files in JANI: the symbols from which the parts of a global variable's name come.
 
-`EVENT.valid`, `EVENT__parameter__member`, `EVENT__parameter.d1_len`: the event may be written by the user or generated
-from a topic, service, action, automaton or blackboard variable. The names themselves are those of
-`roaml.model.globals`.
+Names have forms such as `EVENT.valid`, `EVENT__parameter__member` and `EVENT__parameter.d1_len`. The name of the event
+is written by the user, or generated from a topic, service, action, automaton or blackboard variable.
+`roaml.model.globals` defines the names.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _ACTION_CLIENT = {
 def in_properties(
     text: str, properties: Iterable[Property], table: Mapping[str, tuple[Piece, ...]]
 ) -> Iterator[Occurrence]:
-    """`table` is the result of `names`."""
+    """The occurrences of symbols in the names of global variables. `table` is the result of `names`."""
     for prop in properties:
         for identifier, span in identifiers(prop.expression):
             if text[span.start : span.end] == identifier:
@@ -82,7 +82,8 @@ def _plain(text: str) -> Piece:
 
 
 _Event = tuple[tuple[Piece, ...], Type]
-"""The name of an event, and the part of a ROS interface that it carries; unknown if it carries none."""
+"""The parts of the name of an event, and the part of a ROS interface that the event carries; `UNKNOWN` if it carries
+none."""
 
 
 def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[_Event]:
@@ -145,7 +146,8 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
 
 
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
-    """The part of a name after the event. `part` is the part of the interface that the event carries."""
+    """The parts of a global variable's name after the event. `part` is the part of the interface that the event
+    carries."""
     if rest == ".valid":
         yield _plain(rest)
     elif variable.event in system.events:
@@ -174,7 +176,7 @@ def _parameter(rest: str, variable: GlobalVariable, system: System) -> Iterator[
 
 
 def _members(rest: str, type_: Type, owner: str) -> Iterator[Piece]:
-    """The members of structs, or the fields of messages, on the way to a leaf."""
+    """The members of structs, or the fields of messages, on the path to a leaf."""
     inner, _ = unwrap(type_)
     if isinstance(inner, Struct):
         for name, member in inner.members:

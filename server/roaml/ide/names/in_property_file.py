@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in property files in XML: those of properties and variables, and the interfaces and nodes that ports
-name."""
+"""The names in property files in XML: the names of properties and variables, and the interfaces and nodes to which
+ports refer."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.tree import walk
-from roaml.expr.types import Struct, Type, unwrap
 from roaml.ide.names.frames import Frame, Piece, Trees
-from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
+from roaml.ide.names.occurrence import Access, Occurrence, fields, tree_node, without_slash
 from roaml.interfaces.registry import split_type_name
 from roaml.interfaces.types import Kind
 from roaml.model.expand import Instance
@@ -43,7 +42,8 @@ def in_property_file(
     table: Mapping[str, tuple[Piece, ...]],
     find: FindInterface,
 ) -> Iterator[Occurrence]:
-    """
+    """The occurrences of names in a property file in XML.
+
     Args:
         owner: the system file, or `path` if the file is analysed alone.
         table: the names of the global variables of the translation -> their parts.
@@ -117,7 +117,8 @@ class _PropertyFile:
                     yield Occurrence(port.type.span, symbol)
 
     def pieces(self, pieces: tuple[Piece, ...], span: Span, skipped: int = 0) -> Iterator[Occurrence]:
-        """The parts of a name of the translation that is written at `span`, without its first characters."""
+        """The occurrences of symbols in a name of the translation. `span` contains the name without its first `skipped`
+        characters."""
         start = span.start - skipped
         for written, symbol, form in pieces:
             if symbol is not None and span.start <= start and start + len(written) <= span.end:
@@ -125,7 +126,7 @@ class _PropertyFile:
             start += len(written)
 
     def node(self, name: Name) -> Iterator[Occurrence]:
-        """The nodes and trees on a path."""
+        """The occurrences of the nodes and trees on a path."""
         matches = nodes_called(self.system, name.value) if self.system is not None else ()
         if len(matches) != 1 or self.system is None:
             return
@@ -144,7 +145,7 @@ class _PropertyFile:
         yield Occurrence(Span(start, start + len(last)), symbol, access=Access.READ)
 
     def around(self, system: System, instance: Instance) -> list[tuple[Symbol, ...]]:
-        """The symbols of the names in `parts_above`."""
+        """The symbols to which the names in `parts_above` refer, in the same order."""
         found: list[tuple[Symbol, ...]] = []
         frame = self.frame_of(instance)
         while True:
@@ -164,7 +165,7 @@ class _PropertyFile:
         return self.trees.nodes[instance.number][0] if instance.number in self.trees.nodes else None
 
     def names_of(self, frame: Frame) -> Iterator[Symbol]:
-        """The names of a use of a tree: that of the `<SubTree>`, if it has one, and that of the tree."""
+        """The symbols of the names of an instance of a tree: the `<SubTree>`, if it has a name, and the tree."""
         use, id_ = frame.expanded.use, frame.expanded.tree.id
         if use is not None and frame.expanded.name != id_:
             yield tree_node(use.path, use.tree, use.position, frame.expanded.name)
@@ -172,7 +173,8 @@ class _PropertyFile:
             yield self.trees.tree_symbol(frame.path, id_)
 
     def symbol_of(self, automaton: SystemAutomaton) -> Symbol:
-        """The symbol that the name of a node of the tree denotes: the node, or its plugin."""
+        """The symbol to which the name of a node of the tree refers: the node, or its plugin if the node has no
+        name."""
         assert automaton.instance is not None
         _, node = self.trees.nodes.get(automaton.instance.number, (None, None))
         source = automaton.instance.source
@@ -201,13 +203,6 @@ class _PropertyFile:
             pieces = self.table.get(f"{port.name.value}__{name.value}", ())
             yield from self.pieces(pieces, name.span, len(port.name.value) + 2)
             return
-        start = name.span.start
-        owner: Type | None = part_of(port, self.find)
-        for text in name.value.split("."):
-            inner, _ = unwrap(owner) if owner is not None else (None, ())
-            member = inner.member(text) if isinstance(inner, Struct) else None
-            if not isinstance(inner, Struct) or member is None:
-                return
-            symbol = Symbol("", SymbolKind.FIELD, text, inner.name)
-            yield Occurrence(Span(start, start + len(text)), symbol, access=Access.READ)
-            start, owner = start + len(text) + 1, member
+        part = part_of(port, self.find)
+        if part is not None:
+            yield from fields(name, part, Access.READ)

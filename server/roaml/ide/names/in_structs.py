@@ -28,7 +28,8 @@ def in_xml(declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Oc
 
 
 def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaration], owner: str) -> Iterator[Occurrence]:
-    """A property that is an object names both a member and a struct (docs/spec/types.md#json-structs)."""
+    """The occurrences in a JSON Schema. The key of a property that is an object is the name of both a member and a
+    struct (docs/spec/types.md#json-structs)."""
     occurrences: dict[Occurrence, None] = {}
     names = set()
     for struct in declarations:
@@ -54,7 +55,7 @@ def in_json(text: str, value: JsonValue, declarations: Iterable[StructDeclaratio
 
 
 def _span(text: str, name: Name | None) -> Span | None:
-    """The name itself, without the quotes or the path around it; `None` if it is written with escapes."""
+    """The span of a name without the quotes or the path around it; `None` if the name is written with escapes."""
     if name is None:
         return None
     start = text.rfind(name.value, name.span.start, name.span.end)
@@ -68,7 +69,8 @@ def _refers(text: str, type_: object) -> bool:
 
 
 def _definitions(value: JsonValue) -> Iterator[tuple[str, Span]]:
-    """The keys of `$defs` and `definitions`, and the last parts of all references."""
+    """The names of definitions and their spans: the keys of `$defs` and `definitions`, and the last parts of all
+    references."""
     stack = [value]
     while stack:
         node = stack.pop()

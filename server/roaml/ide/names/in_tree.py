@@ -23,6 +23,7 @@ from roaml.xml_syntax import Document, Element
 
 
 def in_tree(document: Document, path: str, trees: Trees, system: System | None) -> Iterator[Occurrence]:
+    """The occurrences of names in a file of behavior trees."""
     return _Tree(document, path, trees, system).all()
 
 
@@ -83,7 +84,7 @@ class _Tree:
             yield Occurrence(port.key.span, Symbol(path, SymbolKind.PORT, port.key.value))
 
     def tag(self, element: Element, symbol: Symbol) -> Iterator[Occurrence]:
-        """The name of an element in its start tag and in its end tag."""
+        """The occurrences of a symbol as the name of an element, in its start tag and in its end tag."""
         for span in (element.name_span, element.close_name_span):
             if span is not None and self.document.text[span.start : span.end].endswith(element.name):
                 yield Occurrence(Span(span.end - len(element.name), span.end), symbol)
@@ -92,14 +93,14 @@ class _Tree:
         return self.system.plugin(name.value) if self.system and name else ("", None)
 
     def plugin_symbol(self, name: str) -> Symbol:
-        """The machine with this name; for an undeclared plugin, only the name."""
+        """The symbol of the machine with this name. For a plugin without a machine, it contains only the name."""
         path, outline = self.system.plugin(name) if self.system else ("", None)
         if path:
             return Symbol(path, SymbolKind.MACHINE, name)
         return Symbol(self.owner if outline is None else "", SymbolKind.PLUGIN, name)
 
     def reference(self, value: Name, inside: str, access: Access) -> Iterator[Occurrence]:
-        """The variable in `{…}`."""
+        """The occurrence of the variable in a value `{…}`."""
         variable = blackboard_variable(value.value)
         span = None if variable is None else self.inner(value, variable)
         if variable is not None and span is not None:
@@ -107,7 +108,7 @@ class _Tree:
             yield Occurrence(span, symbol, access is Access.WRITE, access)
 
     def inner(self, value: Name, variable: str) -> Span | None:
-        """The position of the variable in a value, without its `@`; `None` if the value is not a valid name."""
+        """The span of the variable in a value, without its `@`; `None` if the value contains no name."""
         name = variable.removeprefix("@")
         if not name or name == "=":
             return None
@@ -116,7 +117,7 @@ class _Tree:
         return None if start < 0 else decoded.span(start, start + len(name))
 
     def scripts(self, node: TreeNode, inside: str) -> Iterator[Occurrence]:
-        """The variables in scripts, which have a meaning only where there is no system."""
+        """The variables in scripts, which are read only if the tree belongs to no system."""
         for attribute in script_attributes(node):
             script, _ = parsed(self.document.decoded(attribute.value_span))
             targets: set[int] = set()
@@ -159,7 +160,7 @@ class _Tree:
                 yield Occurrence(port.name.span, Symbol(path, SymbolKind.PORT, port.name.value))
 
     def defaults(self) -> Iterator[Occurrence]:
-        """Variables in the defaults of ports: each is a variable of every tree that does not set the port."""
+        """The variables in defaults of ports. Each is a variable of every tree that does not set the port."""
         for plugin, settings in self.trees.defaults.items():
             own = {key: setting for key, setting in settings.items() if setting.path == self.path}
             users = [
@@ -180,7 +181,7 @@ class _Tree:
     # ------------------------------------------------------------- constants
 
     def constants(self) -> Iterator[Occurrence]:
-        """Topics, services and actions in the values of ports."""
+        """The topics, services and actions in the values of ports."""
         if self.system is None:
             return
         occurrences: dict[Occurrence, None] = {}
@@ -204,7 +205,7 @@ _NAMING = {
     "UnsetBlackboard": "key",
     **dict.fromkeys(("WasEntryUpdated", "SkipUnlessUpdated", "WaitValueUpdate"), "entry"),
 }
-"""The ports whose text is the name of a variable, where there is no system."""
+"""The ports whose value is the name of a variable even without braces, in trees that belong to no system."""
 
 
 def _access(outline: MachineOutline | None, key: str) -> Access:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a place to all places that mean the same thing.
+"""Finds all places that refer to the same symbol as a given place.
 
-A file may belong to several systems, and a name in it may mean different things in them. All places that any of them
-identifies are one `SymbolGroup`: a rename must change all of them.
+A file may belong to several systems, and a name in it may refer to a different symbol in each of them. All places that
+refer to one of these symbols form a `SymbolGroup`, because a rename must change all of them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
-"""Kinds of symbols that only their own file can use."""
+"""Kinds of symbols that can be used only in the file that defines them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +37,9 @@ class SymbolUse:
 
 @dataclass(frozen=True, eq=False)
 class SymbolGroup:
-    """Symbols that denote the same thing. `symbols` begins with those at the requested place.
+    """Symbols that must be renamed together, and their uses. `symbols` begins with those at the requested place.
 
-    `uses` are sorted by file and place, each place once.
+    `uses` are sorted by file and place, without duplicates.
     """
 
     symbols: tuple[Symbol, ...]
@@ -55,7 +55,7 @@ class SymbolGroup:
 
 
 def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurrence, ...]:
-    """The occurrences at a caret, in each system; a name that begins there takes precedence over one that ends
+    """The occurrences at a caret, in each system. A name that begins at the caret takes precedence over one that ends
     there."""
     touching = dict.fromkeys(
         occurrence
@@ -67,23 +67,23 @@ def occurrences_at(analysis: Analysis, path: str, offset: int) -> tuple[Occurren
     return tuple(starting or touching)
 
 
-def thing_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup | None:
+def symbol_group_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup | None:
     """The group of the name at a caret; `None` if there is no name."""
     occurrences = occurrences_at(analysis, path, offset)
-    return thing(analysis, (occurrence.symbol for occurrence in occurrences)) if occurrences else None
+    return symbol_group(analysis, (occurrence.symbol for occurrence in occurrences)) if occurrences else None
 
 
-def thing(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
-    """All uses of some symbols, and of the symbols that share a place with one of them."""
+def symbol_group(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
+    """The group of some symbols: all their uses, and all uses of the symbols that share a place with one of them."""
     seen = dict.fromkeys(symbols)
     todo = list(seen)
     uses_by_place: dict[tuple[str, Span], SymbolUse] = {}
     while todo:
         symbol = todo.pop(0)
-        for path, uses_ in where(analysis, symbol):
+        for path, uses_ in possible_uses(analysis, symbol):
             for occurrence in uses_.by_symbol.get(symbol, ()):
                 place = (path, occurrence.span)
-                # Of several at one place, the definition is the most specific, then the requested one.
+                # Several occurrences may be at one place. A definition takes precedence; then the first symbol does.
                 if place not in uses_by_place or (occurrence.defines and not uses_by_place[place].occurrence.defines):
                     uses_by_place[place] = SymbolUse(path, occurrence)
                 for other in _sharing(analysis, path, occurrence.span):
@@ -99,8 +99,9 @@ def _sharing(analysis: Analysis, path: str, span: Span) -> Iterator[Symbol]:
             yield occurrence.symbol
 
 
-def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
-    """The files that can use a symbol, each with the relevant systems."""
+def possible_uses(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
+    """The paths of the files that can use a symbol, each with the uses of names in it. A file occurs once for each
+    system in which it can use the symbol."""
     if symbol.kind in _IN_ONE_FILE:
         for system in analysis.systems_of(symbol.path):
             yield symbol.path, uses(analysis, symbol.path, system)
@@ -117,5 +118,5 @@ def where(analysis: Analysis, symbol: Symbol) -> Iterator[tuple[str, Uses]]:
 
 
 def _family(analysis: Analysis, path: str) -> tuple[str, ...]:
-    """The files that see the names of a file that belongs to no system."""
+    """The files that can use the names of a file that belongs to no system."""
     return analysis.family(path) if analysis.kind(path) is FileKind.TREE else (path,)

@@ -1,23 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One use of a name, and its symbol.
+"""The use of a name, and the symbol to which it refers.
 
-A `Symbol` is the identity of a named thing. Its `path` determines its scope:
+A `Symbol` identifies a definition. Its `path` determines its scope:
 - a state, variable, handle, port or machine is local to its file, whichever systems list it;
 - a blackboard variable and a named tree node are local to the tree (`scope`) in the file that contains them;
 - events, parameters, topics, services, actions, trees, structs and members are part of a system: `path` is its file, or
   the file itself if it is analysed alone;
-- definitions of ROS or BehaviorTree.CPP are part of no file: `path` is "".
+- definitions of ROS or BehaviorTree.CPP belong to no file of the user: `path` is "".
 
-The same text may denote different things in different systems, and even two things in one (a JSON property names a
-member and a struct). `roaml.ide.names.lookup` follows both to find everything that must change together.
+The same text may refer to different symbols in different systems, and even to two symbols in one system: the key of a
+property in a JSON Schema names a member and a struct. `roaml.ide.names.lookup` follows all of them to find the names
+that must change together.
 """
 
 from __future__ import annotations
 
 import enum
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
+from roaml.expr.types import Struct, Type, member_type, unwrap
 from roaml.language import HL_SCXML
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
@@ -31,12 +34,12 @@ HANDLES = frozenset(
 )
 """The kinds of symbols that declarations of ROS interfaces and timers define."""
 
-NOT_OURS = frozenset((SymbolKind.FIELD, SymbolKind.ROS_TYPE))
-"""Kinds of symbols that ROS definitions define."""
+DEFINED_BY_ROS = frozenset((SymbolKind.FIELD, SymbolKind.ROS_TYPE))
+"""Kinds of symbols that are defined by ROS interfaces, not by models."""
 
 
 class Access(enum.Enum):
-    """The kind of a use: it names the symbol, reads or receives it, or writes or sends it."""
+    """The kind of a use: it only names the symbol, it reads or receives it, or it writes or sends it."""
 
     TEXT = "names it"
     READ = "reads it"
@@ -54,7 +57,7 @@ class Form(enum.Enum):
 
 
 class Occurrence(NamedTuple):
-    """`span` is exactly the name; `form` is its spelling there."""
+    """A use of a name. `span` covers exactly the name; `form` is its spelling at this place."""
 
     span: Span
     symbol: Symbol
@@ -72,15 +75,31 @@ def parameter(owner: str, event: str, name: str) -> Symbol:
 
 
 def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
-    """A node that has its own name; `position` as in `roaml.model.expand.Source`."""
+    """The symbol of a tree node with a name. `position` is its position in the tree, as in
+    `roaml.model.expand.Source`."""
     return Symbol(path, SymbolKind.TREE_NODE, name, f"{tree}:{position}")
 
 
+def fields(name: Name, part: Type, access: Access) -> Iterator[Occurrence]:
+    """The fields on a dotted path into a message or a part of an interface."""
+    if len(name.value) != name.span.end - name.span.start:
+        return
+    start, owner = name.span.start, part
+    for field in name.value.split("."):
+        inner, _ = unwrap(owner)
+        member = member_type(owner, field)
+        if not isinstance(inner, Struct) or member is None:
+            return
+        span = Span(start, start + len(field))
+        yield Occurrence(span, Symbol("", SymbolKind.FIELD, field, inner.name), access=access)
+        start, owner = span.end + 1, member
+
+
 def base_span(span: Span, base: str) -> Span:
-    """The name of a type without its brackets."""
+    """The span of the name of a type without its brackets."""
     return Span(span.start, span.start + len(base))
 
 
 def without_slash(name: Name) -> Span:
-    """A topic as written, without the leading slash, which makes no difference."""
+    """The span of the name of a topic without a leading slash, which has no meaning in a model."""
     return Span(name.span.start + 1, name.span.end) if name.value.startswith("/") else name.span

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All uses of names in a file, as part of one system or alone."""
+"""All uses of names in a file, as a part of one system, or as a file without a system."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, eq=False)
 class Uses:
-    """The uses of names in one file, in the order of the text; by symbol; by place."""
+    """The uses of names in one file: all in the order of the text, by symbol, and by span."""
 
     all: tuple[Occurrence, ...]
     by_symbol: Mapping[Symbol, tuple[Occurrence, ...]]
@@ -30,13 +30,14 @@ class Uses:
 
 
 def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
-    """The uses of names in the file `path`, as part of a system or (`None`) alone. Cached by their dependencies."""
+    """The uses of names in the file `path`, as a part of `system`; if it is `None`, as a file without a system. The
+    result is cached."""
     source = analysis.source(path)
     if source is None:
         return _index(())
     key: tuple[object, ...] = (source.digest, analysis.structs(system))
     if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
-        key = (*key, analysis.typed_in(path, system))  # everything that it uses of its system
+        key = (*key, analysis.typed_in(path, system))  # contains everything of the system on which the uses depend
     else:
         key = (*key, analysis.system(system) if system else None, trees_of(analysis, path, system))
     return analysis.memo.get("uses", (path, system), key, lambda: _index(_of(analysis, path, system)))
@@ -48,7 +49,7 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
 
 
 def _index(occurrences: Iterable[Occurrence]) -> Uses:
-    """Each occurrence, without duplicates."""
+    """The uses that consist of some occurrences, without duplicates."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
     ordered: list[Occurrence] = []
@@ -105,7 +106,8 @@ def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, .
 
 
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
-    """The trees of a system, or those of a tree file alone with the files that are connected with it by includes."""
+    """The trees of a system. If `system` is `None`, the trees of the file `path` and of the files that are connected
+    with it by includes."""
     outlines = analysis.tree_outlines(system) if system else analysis.family_outlines(path)
     paths = analysis.tree_paths(system) if system else tuple(outline.path for outline in outlines)
     digests = tuple(getattr(analysis.source(tree), "digest", b"") for tree in paths)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of a symbol in the translation: events of the plain SCXML, global variables of the JANI model."""
+"""The names of a symbol in the translation: events in plain SCXML, and global variables in JANI."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from roaml.project.analysis import Analysis
 
 
 def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable, ...]:
-    """The global variables whose names contain a symbol, in all its systems, flags (`.valid`) first."""
+    """The global variables whose names contain the name of a symbol, in all systems of the symbol. Flags (`.valid`)
+    come first."""
     result: dict[str, GlobalVariable] = {}
     if symbol.path:
         systems = (symbol.path,) if symbol.path in analysis.system_paths else analysis.systems_of(symbol.path)

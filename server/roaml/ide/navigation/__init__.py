@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a name to its definition, declaration, type, implementation and uses."""
+"""Navigation from a name to its definition, declaration, type, implementation and uses."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, StructKind, Type, unwrap
-from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, thing, thing_at
-from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Access
+from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group, symbol_group_at
+from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
 from roaml.lower.nodes import node_file
 from roaml.model.system import System
@@ -24,39 +24,42 @@ INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 @dataclass(frozen=True, slots=True)
 class DocumentHighlight:
-    """A use in the same file. `access` is its kind; a definition is a write access."""
+    """A use of a symbol in the same file. `access` is its kind; a definition is a write access."""
 
     span: Span
     access: Access
 
 
 def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """The definition of the symbol at a caret: senders for events, publishers for topics, servers for services."""
+    """The definitions of the symbol at a caret. Those of an event are its senders, those of a topic its publishers, and
+    those of a service or action its servers."""
     file = _file_at(analysis, path, offset)
     if file is not None:
         return (Location(file, Span(0, 0)),)
-    group = thing_at(analysis, path, offset)
+    group = symbol_group_at(analysis, path, offset)
     return () if group is None else (*group.definitions, *_ros(analysis, group.symbols), *_builtin(group.symbols))
 
 
 def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The first definition; if there is none, the first use; `None` if there is neither."""
-    tied = thing(analysis, (symbol,))
-    uses = (use.location for use in tied.uses)
-    return next(iter((*_ros(analysis, (symbol,)), *_builtin((symbol,)), *tied.definitions, *uses)), None)
+    """The first definition of a symbol; if there is none, its first use; `None` if there is neither."""
+    group = symbol_group(analysis, (symbol,))
+    uses = (use.location for use in group.uses)
+    return next(iter((*_ros(analysis, (symbol,)), *_builtin((symbol,)), *group.definitions, *uses)), None)
 
 
 def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """Like `definition`; for topics, services and actions the declarations of all participants."""
-    group = thing_at(analysis, path, offset)
+    """The declarations of the symbol at a caret. Those of a topic, service or action are the declarations in all
+    machines that use it; for other symbols, the result is that of `definition`."""
+    group = symbol_group_at(analysis, path, offset)
     if group is None or not group.kinds & set(INTERFACES):
         return definition(analysis, path, offset)
     return tuple(use.location for use in group.uses if use.occurrence.access is Access.TEXT)
 
 
 def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """The file of a tree node's plugin, the handlers of an event; otherwise the definition."""
-    group = thing_at(analysis, path, offset)
+    """The implementations of the symbol at a caret. Those of an event are its handlers; for other symbols, the result
+    is that of `definition`, such as the file of a tree node's plugin."""
+    group = symbol_group_at(analysis, path, offset)
     if group is not None and SymbolKind.EVENT in group.kinds:
         return tuple(
             use.location
@@ -68,7 +71,7 @@ def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location
 
 def references(analysis: Analysis, path: str, offset: int, *, with_declaration: bool = True) -> tuple[Location, ...]:
     """All uses of the symbol at a caret, in all files, sorted."""
-    group = thing_at(analysis, path, offset)
+    group = symbol_group_at(analysis, path, offset)
     if group is None:
         return ()
     uses = (use.location for use in group.uses if with_declaration or not use.occurrence.defines)
@@ -77,7 +80,7 @@ def references(analysis: Analysis, path: str, offset: int, *, with_declaration: 
 
 def highlights(analysis: Analysis, path: str, offset: int) -> tuple[DocumentHighlight, ...]:
     """All uses of the symbol at a caret, in this file."""
-    group = thing_at(analysis, path, offset)
+    group = symbol_group_at(analysis, path, offset)
     uses: Iterable[SymbolUse] = group.uses if group else ()
     return tuple(_highlight(use) for use in uses if use.path == path)
 
@@ -88,12 +91,12 @@ def _highlight(use: SymbolUse) -> DocumentHighlight:
 
 
 def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
-    places = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in NOT_OURS)
+    places = (locate_ros(analysis, symbol) for symbol in symbols if symbol.kind in DEFINED_BY_ROS)
     return tuple(dict.fromkeys(place for place in places if place is not None))
 
 
 def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
-    """The machines for nodes of BehaviorTree.CPP, which define their behaviour in the model."""
+    """The machines for nodes of BehaviorTree.CPP, which define the behavior of the nodes in the translation."""
     for symbol in symbols:
         file = node_file(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
         if file is not None:
@@ -101,7 +104,7 @@ def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
 
 
 def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
-    """The file of a path at a caret."""
+    """The file to which the path at a caret refers; `None` if there is no path, or if the file cannot be read."""
     system, tree = analysis.system_file(path), analysis.tree(path)
     names = [entry.src for entry in system.inputs] if system else []
     names += [include.path for include in tree.includes] if tree else []
@@ -136,7 +139,7 @@ def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) 
             data = linked.event_data.get(symbol.scope) if linked else None
             yield from _of_type(analysis, system or path, data.member(symbol.name) if data else None)
         case SymbolKind.STRUCT:
-            yield from thing(analysis, (symbol,)).definitions
+            yield from symbol_group(analysis, (symbol,)).definitions
         case SymbolKind.FIELD:
             place = type_of_field(analysis, symbol)
             if place is not None:
@@ -148,13 +151,13 @@ def _type_of(analysis: Analysis, path: str, system: str | None, symbol: Symbol) 
         case kind if kind in INTERFACES and linked is not None:
             yield from _of_interface(analysis, linked, symbol)
         case kind if kind in INTERFACES:
-            yield from _of_declarations(analysis, thing(analysis, (symbol,)))
+            yield from _of_declarations(analysis, symbol_group(analysis, (symbol,)))
 
 
 def _of_type(analysis: Analysis, owner: str, type_: Type | None) -> Iterator[Location]:
     inner = unwrap(type_)[0] if type_ is not None else None
     if isinstance(inner, Struct) and inner.kind is StructKind.DECLARED:
-        yield from thing(analysis, (Symbol(owner, SymbolKind.STRUCT, inner.name),)).definitions
+        yield from symbol_group(analysis, (Symbol(owner, SymbolKind.STRUCT, inner.name),)).definitions
 
 
 def _of_handle(analysis: Analysis, symbol: Symbol) -> Iterator[Location]:

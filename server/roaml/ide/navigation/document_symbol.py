@@ -31,7 +31,8 @@ class DocumentSymbolKind(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class DocumentSymbol:
-    """`detail` follows the name; `name_span`, a part of `span`, is shown when the symbol is selected."""
+    """An entry of an outline. `detail` is shown after the name. `name_span` is the part of `span` that is selected when
+    the user chooses the entry."""
 
     name: str
     detail: str

@@ -115,7 +115,8 @@ def _state(state: State) -> DocumentSymbol:
 
 
 def _handler(handler: Handler) -> DocumentSymbol:
-    """The name is the event of a plain transition, or the element with the name to which it refers."""
+    """The symbol of a handler. Its name is the event of a plain transition, or the element and the handle to which the
+    element refers."""
     element = handler.element
     words = [name.value for name in (handler.handle, handler.child) if name]
     if element.name != "transition":
@@ -137,7 +138,7 @@ def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
 
 
 def _node(node: TreeNode) -> DocumentSymbol:
-    """The name of the node, followed by its plugin."""
+    """The symbol of a node: the name of the node, with its plugin as detail."""
     plugin = node.plugin.value if node.plugin else node.element.name
     name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
     kind = DocumentSymbolKind.CONTROL if node.children else DocumentSymbolKind.LEAF
@@ -187,7 +188,7 @@ def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
 
 
 def _property_file(file: PropertyFile) -> Iterator[DocumentSymbol]:
-    """The sections, with their ports and properties."""
+    """The symbols of the sections of a property file in XML, with their ports and properties."""
     for section in file.element.elements:
         ports = [_property_port(port) for port in file.ports if _is_inside(port.element.span, section.span)]
         properties = [

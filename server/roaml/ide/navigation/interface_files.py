@@ -12,7 +12,7 @@ from roaml.text import Location, Span
 
 
 def locate_ros(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The definition of a type or a field; `None` if its file is not found."""
+    """The definition of a ROS type or of one of its fields; `None` if its file is not found."""
     if symbol.kind is SymbolKind.ROS_TYPE:
         return locate_type(analysis, symbol.scope, symbol.name)
     definition, section = section_of(analysis.registry, symbol.scope)
@@ -21,13 +21,13 @@ def locate_ros(analysis: Analysis, symbol: Symbol) -> Location | None:
 
 
 def locate_type(analysis: Analysis, kind: str, name: str) -> Location | None:
-    """The file that defines a type, as a place at its beginning."""
+    """The beginning of the file that defines a ROS type; `None` if the file is not found."""
     definition = analysis.registry.resolve(kind, name)  # type: ignore[arg-type]
     return None if isinstance(definition, NotFound) else Location(definition.path, Span(0, 0))
 
 
 def type_of_field(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The message type of a field; `None` if it is not a message."""
+    """The definition of the type of a field; `None` if the type is not a message."""
     definition, section = section_of(analysis.registry, symbol.scope)
     field = definition.section(section).field(symbol.name) if definition else None
     return None if field is None or field.type.is_primitive else locate_type(analysis, "msg", field.type.name)

@@ -76,7 +76,7 @@ def _automaton(item: JsonValue) -> DocumentSymbol | None:
 
 
 def _edge(item: JsonValue) -> DocumentSymbol | None:
-    """The action of the edge, followed by its source, its destinations and its guard."""
+    """The symbol of an edge: the name of its action, with its source, destinations and guard as detail."""
     parts = members(item)
     location, action = parts.get("location"), parts.get("action")
     if not isinstance(location, JsonString):

@@ -14,8 +14,8 @@ from roaml.text import Span
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A definition. `container` is what contains it: a machine, a struct, an event, ..."""
+class WorkspaceSymbol:
+    """A definition. `container` is the name of the machine, struct, event or tree that contains it."""
 
     symbol: Symbol
     path: str
@@ -23,15 +23,15 @@ class Found:
     container: str
 
 
-def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[Found, ...]:
+def search(analysis: Analysis, paths: Iterable[str], query: str) -> tuple[WorkspaceSymbol, ...]:
     """The definitions in some files whose names contain the letters of `query` in that order, ignoring case."""
     letters = query.casefold()
-    entries: dict[tuple[str, Span, SymbolKind], Found] = {}
+    entries: dict[tuple[str, Span, SymbolKind], WorkspaceSymbol] = {}
     for path in paths:
         for system in analysis.systems_of(path):
             for occurrence in uses(analysis, path, system).all:
                 if occurrence.defines and _matches(occurrence.symbol.name.casefold(), letters):
-                    entry = Found(
+                    entry = WorkspaceSymbol(
                         occurrence.symbol, path, occurrence.span, _container(analysis, path, occurrence.symbol)
                     )
                     entries.setdefault((path, occurrence.span, occurrence.symbol.kind), entry)

@@ -11,8 +11,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, thing_at
-from roaml.ide.names.occurrence import HANDLES, NOT_OURS, Form
+from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group_at
+from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Form
 from roaml.ide.rename.new_name import problem
 from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC, sanitise
 from roaml.project.analysis import Analysis
@@ -34,12 +34,12 @@ _NEED_A_DEFINITION = frozenset(
     )
 )
 _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
-"""Names of ports that the tree sets automatically."""
+"""The names of ports whose values come from the node of the tree."""
 
 
 @dataclass(frozen=True, slots=True)
 class RenameRefusal:
-    """`reason` is a clause for the user."""
+    """A rename that is not possible. `reason` is a clause for the user."""
 
     reason: str
 
@@ -54,16 +54,16 @@ class Prepared:
 
 @dataclass(frozen=True, slots=True)
 class Renaming:
-    """The edits of each file, sorted."""
+    """The edits of a rename, sorted, by the path of the file."""
 
     edits: Mapping[str, tuple[TextEdit, ...]]
 
 
 def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefusal:
-    """Whether the symbol at a caret can be renamed."""
-    group, source = thing_at(analysis, path, offset), analysis.source(path)
+    """The symbol to rename at a caret, or why it cannot be renamed."""
+    group, source = symbol_group_at(analysis, path, offset), analysis.source(path)
     if group is None or source is None:
-        return RenameRefusal("there is no name here")
+        return RenameRefusal("there is no name at this position")
     reason = _fixed(group)
     if reason:
         return RenameRefusal(reason)
@@ -72,10 +72,10 @@ def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefu
 
 
 def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | RenameRefusal:
-    """The edits that rename the symbol at a caret."""
-    group = thing_at(analysis, path, offset)
+    """The edits that rename the symbol at a caret to `new`, or why it cannot have this name."""
+    group = symbol_group_at(analysis, path, offset)
     if group is None:
-        return RenameRefusal("there is no name here")
+        return RenameRefusal("there is no name at this position")
     new = new.strip()
     if SymbolKind.TOPIC in group.kinds:
         new = new.removeprefix("/")
@@ -106,17 +106,17 @@ def _fixed(group: SymbolGroup) -> str:
     """Why a symbol cannot be renamed at all; "" if it can."""
     for symbol in group.symbols:
         name = symbol.name
-        if symbol.kind in NOT_OURS:
+        if symbol.kind in DEFINED_BY_ROS:
             return f"`{name}` is defined by ROS, not by this model"
         if symbol.kind is SymbolKind.PLUGIN and not symbol.path:
             return f"`{name}` is a node of BehaviorTree.CPP"
         if symbol.kind is SymbolKind.PORT and name in _OF_THE_NODE:
             return f"the port `{name}` has a special meaning in a tree"
         if symbol.kind is SymbolKind.TOPIC and name == CLOCK_TOPIC:
-            return f"the topic `{name}` is the time of ROS"
+            return f"the topic `{name}` is the clock of ROS, whose name is fixed"
         in_prefix = any(use.occurrence.symbol == symbol and use.occurrence.form is Form.WORD for use in group.uses)
         if in_prefix and not (name[:1].isalpha() or name[:1] == "_"):
-            return f"`{name}` is spelled differently in properties"
+            return f"`{name}` is spelled differently in the translation, so the uses in properties cannot be renamed"
     if group.kinds & _NEED_A_DEFINITION and not group.definitions:
         return f"`{group.symbols[0].name}` is not defined in this workspace"
     return ""

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a symbol may have a new name: the name is valid, and no other symbol in its scope has it.
+"""Decides whether a symbol may have a new name: the name is valid, and no other symbol in its scope has it.
 
-Stricter than the rules: a valid name that would change the meaning of another name, here or in the translation, is
-rejected as well.
+The decision is stricter than the rules: a valid name is also rejected if it would change the meaning of another name,
+    in
+the models or in the translation.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES
 from roaml.ide.names.in_machine import is_implicit
-from roaml.ide.names.lookup import SymbolGroup, where
+from roaml.ide.names.lookup import SymbolGroup, possible_uses
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import trees_of
 from roaml.language import BEHAVIOR_TREE
@@ -29,11 +30,11 @@ from roaml.scxml.names import STATUSES, is_synchronising
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
 _PROPERTY = re.compile(r"[\w.-]+\Z")
-_MADE = re.compile(r"(topic_|srv_|action_|cancel_action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
+_GENERATED = re.compile(r"(topic_|srv_|action_|cancel_action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
 """The beginnings of names that the translation generates."""
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)
-"""Kinds of symbols whose names the translation joins with others by `__`."""
+"""Kinds of symbols whose names the translation joins with other names by `__`."""
 
 
 def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
@@ -54,17 +55,18 @@ def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
                 return f"a blackboard variable `{new}` already exists"
         if reason := _in_property_files(analysis, group, symbol, new):
             return reason
-        if handle := _handle_called(analysis, group, symbol, new):
-            return f"{_article(handle.kind)} `{new}` already exists in a machine that uses it by its name"
+        if handle := _conflicting_handle(analysis, group, symbol, new):
+            return f"{_article(handle.kind)} `{new}` already exists in a machine that uses `{symbol.name}`"
     return ""
 
 
 _OF_NODES = (SymbolKind.TREE_NODE, SymbolKind.MACHINE, SymbolKind.PLUGIN, SymbolKind.TREE)
-"""Kinds of symbols that paths of nodes in property files name."""
+"""Kinds of symbols that may occur in the paths of nodes in property files."""
 
 
 def _in_property_files(analysis: Analysis, group: SymbolGroup, symbol: Symbol, new: str) -> str:
-    """Why property files do not allow a name: another property has it, or it would lead a port to another node."""
+    """Why property files do not allow a new name: another property has the name, or a port of a property file would
+    refer to another node. "" if they allow it."""
     if symbol.kind is SymbolKind.PROPERTY:
         listed_files = analysis.listed(symbol.path)
         paths = [file.path for file in listed_files if file.required_kind is FileKind.PROPERTIES and file.usable]
@@ -78,12 +80,13 @@ def _in_property_files(analysis: Analysis, group: SymbolGroup, symbol: Symbol, n
         names = {name for node in system.instances for name in (node.name, node.plugin)} if system else set()
         names |= {name for use in system.tree_uses for name in (use.name, use.tree)} if system else set()
         if new in names or "/" in new:
-            return f"a property names nodes of the tree, and another one is called `{new}`"
+            return f"properties refer to nodes of the tree by their names, and another node is called `{new}`"
     return ""
 
 
-def _handle_called(analysis: Analysis, group: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
-    """The declaration for which a handle, or an interface that is its own handle, would be mistaken."""
+def _conflicting_handle(analysis: Analysis, group: SymbolGroup, symbol: Symbol, new: str) -> Declaration | None:
+    """The declaration with which a new name of a handle, or of an interface whose name is used as a handle, would
+    conflict; `None` if there is none."""
     if symbol.kind in HANDLES:
         machine = analysis.machine(symbol.path)
         return next((d for d in _declared(machine, new) if is_implicit(d)), None)
@@ -97,12 +100,12 @@ def _handle_called(analysis: Analysis, group: SymbolGroup, symbol: Symbol, new: 
 
 
 def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
-    """The declarations with a name in a machine."""
+    """The declarations in a machine whose handle is `name`."""
     return tuple(d for d in machine.declarations if d.handle and d.handle.value == name) if machine else ()
 
 
 def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
-    """Why `new` is not a valid name of a kind."""
+    """Why `new` is not a valid name for symbols of a kind; "" if it is valid."""
     kind_name = _article(kind)
     cannot = f"`{new}` cannot name {kind_name}"
     if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in group.symbols):
@@ -111,11 +114,11 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
     match kind:
         case SymbolKind.VARIABLE:
             if new in EVENT_VARIABLES:
-                return f"`{new}` is the name of received data"
+                return f"`{new}` is the name of an event variable"
             return variable_problem(new)
         case SymbolKind.EVENT:
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
-            if right and (is_synchronising(new) or _MADE.match(new)):
+            if right and (is_synchronising(new) or _GENERATED.match(new)):
                 return f"{cannot}: the translation uses it for its own events"
         case SymbolKind.PARAMETER:
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
@@ -135,22 +138,22 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
         case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             right = _INTERFACE.match(new)
         case SymbolKind.MACHINE | SymbolKind.PLUGIN:
-            right = _WORD.match(new) and not _MADE.match(new)
+            right = _WORD.match(new) and not _GENERATED.match(new)
             if new in BEHAVIOR_TREE.elements:
-                return f"`{new}` is a name of BehaviorTree.CPP"
+                return f"`{new}` is the name of a node of BehaviorTree.CPP"
         case _:
             right = _WORD.match(new) and new not in STATUSES
     return "" if right else cannot
 
 
 def _neighbours(analysis: Analysis, symbol: Symbol) -> Iterator[Symbol]:
-    """The symbols of all files in which one is available."""
-    for _, uses in where(analysis, symbol):
+    """The symbols that occur in the files that can use `symbol`."""
+    for _, uses in possible_uses(analysis, symbol):
         yield from uses.by_symbol
 
 
 def _clashes(symbol: Symbol, other: Symbol, new: str) -> bool:
-    """Whether `symbol` would be mistaken for `other` if its name were `new`."""
+    """Whether the names of `symbol` and `other` would conflict if `symbol` were called `new`."""
     if symbol.kind in _INTERFACES:
         is_topic = symbol.kind is SymbolKind.TOPIC
         return (

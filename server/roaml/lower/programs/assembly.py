@@ -176,6 +176,25 @@ class NodeProgram:
     halt: tuple[Instruction, ...]
     is_stateless: bool
 
+    @functools.cached_property
+    def needed_ports(self) -> tuple[str, ...]:
+        """The ports that the program reads when it is ticked; it cannot work without them."""
+        return tuple(dict.fromkeys(port for part in self.tick if isinstance(part, Read) for port in part.ports))
+
+    @functools.cached_property
+    def read_ports(self) -> frozenset[str]:
+        return frozenset(port for part in walk(self) if isinstance(part, Read) for port in part.ports)
+
+    @functools.cached_property
+    def written_ports(self) -> frozenset[str]:
+        return frozenset(part.port for part in walk(self) if isinstance(part, Write))
+
+    @functools.cached_property
+    def asks_world(self) -> bool:
+        """Whether the program depends on something that happens in the world."""
+        choices = (part.probability for part in self.tick if isinstance(part, Choose))
+        return any(isinstance(probability, ast.Name) and probability.id == "event" for probability in choices)
+
 
 @functools.cache
 def programs() -> Mapping[str, NodeProgram]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import parsed, script_attributes
 from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
-from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
@@ -28,6 +27,7 @@ OBSERVING = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
 MAX_VALUES = 6
 """The maximum number of values that a mock writes to an entry."""
 
+_NO_PORTS: frozenset[str] = frozenset()
 _KIND = {Type.INTEGER: EntryKind.INTEGER, Type.REAL: EntryKind.REAL, Type.TEXT: EntryKind.TEXT}
 _TYPE = {kind: type_ for type_, kind in _KIND.items()}
 
@@ -96,6 +96,30 @@ def _kind_of_type(name: str) -> EntryKind:
     return EntryKind.REAL if name.startswith("float") else EntryKind.INTEGER
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _ScriptFacts:
+    """Attributes:
+    typed: the parts of a script that show types of entries, in the order of the text.
+    read: the names of the entries that it reads.
+    """
+
+    typed: tuple[Assignment | Comparison, ...]
+    read: tuple[str, ...]
+
+
+_PLAIN_ASSIGNMENTS = (":=", "=")
+"""The operators of assignments that do not read their target."""
+
+
+def _facts(script: Script) -> _ScriptFacts:
+    parts = list(walk(script))
+    typed = tuple(part for part in parts if isinstance(part, (Assignment, Comparison)))
+    plain = (part for part in typed if isinstance(part, Assignment) and part.operator in _PLAIN_ASSIGNMENTS)
+    targets = {id(part.target) for part in plain}
+    names = (part.name for part in parts if isinstance(part, Name) and id(part) not in targets)
+    return _ScriptFacts(typed, tuple(dict.fromkeys(names)))
+
+
 @dataclass
 class _Reader:
     tree: ExecutedTree
@@ -116,11 +140,11 @@ class _Reader:
             self.texts.setdefault(entry, []).append(text)
         for node in self.tree.nodes:
             self.ports(node)
+        scripts = [(node, _facts(script)) for node in self.tree.nodes for _, script, _ in node_scripts(node)]
         for _ in range(len(self.tree.nodes) + 2):  # until nothing changes
             before = dict(self.kinds), len(self.readers)
-            for node in self.tree.nodes:
-                for _, script, _ in node_scripts(node):
-                    self.script(node, script)
+            for node, script_facts in scripts:
+                self.script(node, script_facts)
             self.copied()
             if before == (self.kinds, len(self.readers)):
                 break
@@ -136,7 +160,7 @@ class _Reader:
 
     def ports(self, node: ExecutedNode) -> None:
         program = self.used[node.number]
-        read, written = (set(), set()) if program is None else _ports_of(program)
+        read, written = (_NO_PORTS, _NO_PORTS) if program is None else (program.read_ports, program.written_ports)
         for port, entry, text, _ in node.ports():
             declared = node.known.port(port) if node.known else None
             if node.type in OBSERVING and port == "entry":
@@ -197,30 +221,24 @@ class _Reader:
                 if other in self.kinds:
                     self.add(one, self.kinds[other])
 
-    def script(self, node: ExecutedNode, script: Script) -> None:
+    def script(self, node: ExecutedNode, facts: _ScriptFacts) -> None:
         def entry(name: str) -> Type:
             kind = self.kinds.get(node.frame.entry(name))
             return Type.UNKNOWN if kind is None else _TYPE[kind]
 
-        targets = set()
-        for expr in walk(script):
-            match expr:
-                case Assignment(target=target, value=value, operator=operator):
-                    full = node.frame.entry(target.name)
-                    self.writers.add(full)
-                    self.stored.add(full)  # a value that is computed has to be stored
-                    if operator not in (":=", "="):
-                        self.readers.add(full)
-                    if operator in (":=", "="):
-                        targets.add(id(target))
-                        self.add(full, _KIND.get(type_of(value, entry)))
-                case Comparison(operands=operands):
-                    self.compared(node, operands, entry)
-        for expr in walk(script):
-            if isinstance(expr, Name) and id(expr) not in targets:
-                self.readers.add(node.frame.entry(expr.name))
+        for expr in facts.typed:
+            if isinstance(expr, Comparison):
+                self.compared(node, expr.operands)
+                continue
+            full = node.frame.entry(expr.target.name)
+            self.writers.add(full)
+            self.stored.add(full)  # a value that is computed has to be stored
+            if expr.operator in _PLAIN_ASSIGNMENTS:
+                self.add(full, _KIND.get(type_of(expr.value, entry)))
+        for name in facts.read:
+            self.readers.add(node.frame.entry(name))
 
-    def compared(self, node: ExecutedNode, operands: tuple[object, ...], entry: object) -> None:
+    def compared(self, node: ExecutedNode, operands: tuple[object, ...]) -> None:
         """A comparison of an entry with a constant shows the type of the entry."""
         names = [operand for operand in operands if isinstance(operand, Name)]
         constants = [operand.value for operand in operands if isinstance(operand, (Number, String))]
@@ -283,15 +301,3 @@ def set_entry(node: ExecutedNode, *, in_system: bool) -> str | None:
         if port in ("output_key", "key"):
             return node.frame.entry(text.strip()) if entry is None else entry if in_system else None
     return None
-
-
-def _ports_of(program: NodeProgram) -> tuple[set[str], set[str]]:
-    """The ports that a program reads, and those that it writes."""
-    read: set[str] = set()
-    written: set[str] = set()
-    for instruction in assembly.walk(program):
-        if isinstance(instruction, assembly.Read):
-            read.update(instruction.ports)
-        elif isinstance(instruction, assembly.Write):
-            written.add(instruction.port)
-    return read, written

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
@@ -86,3 +86,30 @@ class NodeCode:
     counts: bool
     origin: Location
     is_halted_always: bool = False
+
+    @property
+    def shape(self) -> Hashable:
+        """What determines the states of the automaton: those of two nodes with equal shapes differ only in names.
+
+        Expressions with variables are not part of it, because both of their outcomes are followed.
+        """
+        positions: dict[str, int] = {}
+
+        def entry(used: BoardEntry | None) -> Hashable:
+            return used and (positions.setdefault(used.variable, len(positions)), used.kind, used.type)
+
+        def script(name: str, used: CompiledScript) -> Hashable:
+            return name, tuple(map(entry, used.reads)), len(used.conditions), tuple(map(entry, used.writes))
+
+        return (
+            self.program.name,
+            tuple((child.answers, child.is_stateless) for child in self.children),
+            tuple((name, type(value), value) for name, value in sorted(self.known.items())),
+            tuple((port, entry(bound)) for port, bound in sorted(self.bound.items())),
+            tuple(script(name, used) for name, used in sorted(self.scripts.items())),
+            entry(self.updated),
+            tuple((entry(output), len(values)) for output, values in self.outputs),
+            self.elements,
+            self.rate,
+            self.is_halted_always,
+        )

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
 from roaml.libraries.scripts import script_ports
-from roaml.lower.programs import assembly
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
 from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
@@ -81,14 +80,6 @@ def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
     return TreeRefusal(node.origin, f"`{node.type}` needs the port `{port}`", is_reported=True)
 
 
-def asks_world(program: NodeProgram) -> bool:
-    """Whether a program depends on something that happens in the world."""
-    return any(
-        isinstance(instruction, assembly.Choose) and getattr(instruction.probability, "id", "") == "event"
-        for instruction in program.tick
-    )
-
-
 @dataclass(eq=False)
 class PortValues:
     """The values of the ports that a program uses: constants, or entries. `elements` are those of the queue of a
@@ -147,7 +138,7 @@ class _Reader:
             if entry is not None:
                 if entry in board.entries:
                     bound[port.name] = board.entries[entry]
-                elif port.name in _needed(program):
+                elif port.name in program.needed_ports:
                     raise TreeRefusal(Location(node.origin.path, span), board.unset(entry))
                 continue
             if text is None:
@@ -157,7 +148,7 @@ class _Reader:
                 known[port.name] = _case(text, kinds)
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
-        missing = [port for port in _needed(program) if port not in known and port not in bound]
+        missing = [port for port in program.needed_ports if port not in known and port not in bound]
         if missing and not program.name.startswith("Switch"):
             raise _missing(node, missing[0])
         if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
@@ -229,15 +220,6 @@ def flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ..
         if entry is not None and entry in board.flags and entry not in board.entries:
             flags[port] = board.flags[entry]
     return flags
-
-
-def _needed(program: NodeProgram) -> set[str]:
-    """The ports without which a program cannot work."""
-    names: set[str] = set()
-    for instruction in program.tick:
-        if isinstance(instruction, assembly.Read):
-            names.update(instruction.ports)
-    return names
 
 
 def _literal(port: str, type_: str, text: str, origin: Location) -> Known:

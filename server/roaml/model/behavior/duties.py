@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exactly one answer on every path: the places where an answer never comes, or comes only after an impossible event.
+"""Finds the paths on which a machine does not give exactly one answer: the answer is never sent, or only after an event
+that cannot occur.
 
-All functions are pure functions of a graph (`Behavior`). `possible` are the steps that can be taken; without it, all
-can.
+All functions are pure functions of a graph (`Behavior`). Their argument `possible` returns whether a step can be taken;
+without it, every step can.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def always(_: BehaviorStep) -> bool:
 
 
 def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
-    """The configurations that owe an answer and from which no sequence of possible steps leads to it."""
+    """The configurations that owe the answer to `duty` and from which no sequence of possible steps leads to it."""
     owing = frozenset(n for n, c in enumerate(behavior.configurations) if _is_due(c, duty))
     steps = [step for step in behavior.steps if step.source in owing and possible(step)]
     answered = _back({step.source for step in steps if step.target not in owing}, steps)
@@ -48,15 +49,19 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
 
 
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
-    """If there are several goals at once, it is unknown which one an answer is for."""
+    """Whether a configuration owes the answer to `duty`. It is false if there are several goals at once, because it is
+    unknown to which of them an answer belongs."""
     if configuration.state == NOWHERE or configuration.answering(duty) is Phase.SEVERAL:
         return False
     return configuration.owes(duty)
 
 
 def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
-    """The configurations to which a tick or halt (a request, a goal) may come, and from which no sequence of possible
-    steps leads to a handler for it. The tree sends nothing else until the answer."""
+    """The configurations in which the machine never handles the event of `duty`: a tick, halt, request or goal.
+
+    The event may arrive in each of them, but no sequence of possible steps leads from it to a handler for the event.
+    Steps that handle a tick or halt are left out, because the tree sends neither until it has the answer.
+    """
     waiting = frozenset(
         n
         for n, c in enumerate(behavior.configurations)
@@ -70,7 +75,7 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
         if possible(step) and not (step.event and step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT))
     ]
     lost = waiting - _back((taking & waiting) | known, between)
-    # If an event still follows without a request, the machine does not stay.
+    # The machine still leaves a configuration if it expects an event that needs no further tick or request.
     left = {
         step.source
         for step in between
@@ -100,7 +105,7 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
     following = [step for step in inside if _follows(step)]
     going_on = _back({step.source for step in following if step.source != step.target}, inside)
     if going_on >= lost:
-        going_on, following = set(), []  # it never ends: the step that leads there is reported
+        going_on, following = set(), []  # the steps form endless cycles: report the steps that lead into them
     takers = (s for s in behavior.chart.states if any(h.trigger is _TAKING[duty.kind] for h in s.handlers))
     ready = {state.id.value for state in takers if state.id}
     early: set[int] = set()
@@ -117,8 +122,7 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
 
 
 def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[int]:
-    """The configurations to which a step leads, directly or by further steps, and which owe an answer that never
-    comes."""
+    """The configurations that can be reached with and after `step` and that owe an answer that is never sent."""
     lost = unfinished(behavior, duty)
     return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
 
@@ -147,7 +151,8 @@ def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Beh
 
 
 def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, int]:
-    """The number of steps out of a set of configurations from each of them; 0 for those outside."""
+    """For each configuration of a set, the least number of steps that lead out of the set. The configurations outside
+    the set that are reached in this way have the number 0."""
     incoming: dict[int, list[int]] = {}
     for step in behavior.steps:
         if step.source in configurations:
@@ -163,12 +168,12 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
 
 
 def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations from which some of `steps` lead to `goals`, including these."""
+    """The configurations from which some of `steps` lead to `goals`, including `goals`."""
     return _reached(goals, ((step.target, step.source) for step in steps))
 
 
 def _forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations to which some of `steps` lead from `first`, including these."""
+    """The configurations to which some of `steps` lead from `first`, including `first`."""
     return _reached(first, ((step.source, step.target) for step in steps))
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The graph of a chart: every configuration that it may be in between two events, and every step between them.
 
-A configuration is a state, the answers that are owed and awaited there (`phases`), the goals whose ids variables hold
-(`ids`), and the knowledge about values. A step handles an event, or none, executes everything in the transition
-(docs/spec/machines.md#onentry) and ends in a configuration. The history decides which events may come: a response only
-after its request, a tick only when the last one is answered.
+A configuration consists of a state, the answers that are owed and awaited in it (`phases`), the goals whose ids are
+stored in variables (`ids`), and the knowledge about values. A step handles an event, or is an eventless transition. It
+executes everything in the transition (docs/spec/machines.md#onentry) and ends in a configuration. The earlier steps
+decide which events may arrive: a response only after its request, a tick only after the answer to the previous tick.
 
 - The graph contains every path that the chart can take, and it may contain paths that it cannot take.
 - Its size is bounded. If the knowledge about values has too many variants, it is discarded; a chart that is still too
@@ -67,7 +67,7 @@ MAX_KNOWLEDGE_VARIANTS = 12
 """The maximum number of configurations that differ only in the knowledge about values."""
 
 NOWHERE = "?"
-"""Represents an unknown state, in which anything may happen."""
+"""The name of an unknown state, in which anything may happen."""
 
 
 class FaultKind(Vocabulary):
@@ -95,14 +95,14 @@ class FaultKind(Vocabulary):
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Something that must not be sent at this point of a path.
+    """A statement that must not be executed at this point of a path, such as a second answer to one request.
 
     Attributes:
         duty: the duty that is answered.
         statement: the statement that sends the answer.
-        certain: whether it does not depend on a condition.
-        source: for `FOREIGN` the expression that the variable was given, for `EARLIER` a variable that holds the id of
-            the goal that has arrived, if there is one.
+        certain: whether the fault occurs whatever the conditions in the bodies are.
+        source: for `FOREIGN`, the expression that was assigned to the variable; for `EARLIER`, a variable that holds
+            the id of the goal that has arrived, or "" if there is none; "" for other kinds.
     """
 
     kind: FaultKind
@@ -157,8 +157,8 @@ class BehaviorStep:
         ignored: whether no condition holds, so that the event is consumed without effect
             (docs/spec/semantics.md#discarded-events).
         sent: the events that are sent, in order.
-        faults: the errors in it.
-        certain: whether its target does not depend on a condition inside its bodies.
+        faults: the faults of the statements that are executed.
+        certain: whether the target is the same whatever the conditions inside the bodies are.
     """
 
     source: int
@@ -177,11 +177,11 @@ class Behavior:
     """The graph of a chart.
 
     Attributes:
-        configurations: all of them, the initial ones first.
+        configurations: all configurations, the initial ones first.
         starts: the number of initial configurations.
-        steps: all of them; `outgoing` and `incoming` are their indexes by configuration.
+        steps: all steps; `outgoing` and `incoming` group them by configuration.
         at_start: the events that the `<onentry>` of the initial state sends.
-        statuses: the answers that each `<bt_return_status>` may certainly give.
+        statuses: the statuses that each `<bt_return_status>` returns on the paths on which the status is known.
         approximate: whether some knowledge was discarded, so that paths that depend on conditions may not exist.
     """
 
@@ -210,8 +210,8 @@ def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior |
     It is cached with the chart and discarded with it.
 
     Args:
-        fine: follow values from step to step. This takes longer and excludes more of the impossible paths, so it is
-            used for charts that may contain an error.
+        fine: whether values are followed from step to step. This takes longer and excludes more of the impossible
+            paths, so it is used for charts that may contain an error.
     """
     known: dict[bool, Behavior | None] = chart.__dict__.setdefault("behavior", {})
     if fine not in known:
@@ -220,7 +220,7 @@ def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior |
 
 
 class _Path(NamedTuple):
-    """One way through the bodies of a step."""
+    """One path through the statements that a step executes."""
 
     phases: Phases
     ids: HeldIds
@@ -248,7 +248,7 @@ class _Path(NamedTuple):
         return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
 
     def held(self, variable: str) -> HeldId | None:
-        """The content of a variable for the id of a goal; `None` if no id was stored in it."""
+        """The goal whose id `variable` holds; `None` if no id was stored in it."""
         return next((held for name, held in self.ids if name == variable), None)
 
     def holding(self, variable: str, held: HeldId | None) -> _Path:
@@ -259,17 +259,18 @@ class _Path(NamedTuple):
         return self._replace(ids=tuple(ids))
 
     def variable_with(self, held: HeldId) -> str:
-        """A variable that holds this; "" if there is none."""
+        """A variable that holds the id `held`; "" if there is none."""
         return next((variable for variable, other in self.ids if other == held), "")
 
     def with_ids(self, handle: str, before: GoalStatus, after: GoalStatus) -> _Path:
-        """This path with the status `after` for the goals of a server that have the status `before`."""
+        """A copy of this path in which the goals of the server `handle` with the status `before` have the status
+        `after`."""
         old, new = HeldId(before, handle), HeldId(after, handle)
         return self._replace(ids=tuple((variable, new if held == old else held) for variable, held in self.ids))
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
-    """The scalar variables of a chart that are integers, and those that are booleans."""
+    """The base types of the scalar variables of a chart, the names of the integers, and those of the booleans."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
     integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
@@ -277,7 +278,7 @@ def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[s
 
 
 def condition_facts(chart: Chart) -> ConditionFacts:
-    """The facts with which the conditions of a chart are compared."""
+    """The facts that are needed to evaluate the conditions of a chart."""
     _, integers, logical = _kinds(chart)
     return ConditionFacts(integers, logical, constants=STATUSES)
 
@@ -289,7 +290,7 @@ class _TooLargeError(Exception):
 EVENT_VARIABLES = frozenset(
     ("_event", "_msg", "_req", "_res", "_goal", "_action", "_feedback", "_wrapped_result", "_bt")
 )
-"""Variables that hold the data of the current event, which are not available after its step."""
+"""Variables that hold the data of the current event. They are not available after the step that handles it."""
 
 
 class _Group(NamedTuple):
@@ -301,8 +302,9 @@ class _Group(NamedTuple):
     touched: frozenset[tuple[Subject, str]]
 
 
-_Found = tuple[str, _Path, Handler, int, bool]
-"""The target of a step, the history within it, its handler, the choice, and whether the event is ignored."""
+_Reaction = tuple[str, _Path, Handler, int, bool]
+"""A reaction to an event: the state that it leads to, the path through its statements, its handler, the index of the
+handler's target, and whether the event is ignored."""
 
 _ANSWERABLE = (
     ProtocolPart.BT_TICK,
@@ -314,20 +316,21 @@ _ANSWERABLE = (
     ProtocolPart.CHILD_STATUS,
     ProtocolPart.CHILD_HALTED,
 )
-"""Events that are lost if no condition holds, and that a client or parent waits for."""
+"""Events that must be answered, or that are answers: an automaton waits forever if one is discarded because no
+condition holds."""
 _CODES = (4, 5, 6)
 _ANSWERED = {
     ProtocolPart.RESPONSE: Subject.RESPONSE,
     ProtocolPart.RESULT: Subject.OUTCOME,
     ProtocolPart.GOAL_RESPONSE: Subject.DECISION,
 }
-"""The answers that a client waits for, by the event that it receives."""
+"""The event that a client receives -> the answer that it brings."""
 _ARRIVED = {
     ProtocolPart.GOAL: GoalStatus.ASKED,
     ProtocolPart.THREAD_START: GoalStatus.ACCEPTED,
     ProtocolPart.CANCEL: GoalStatus.ACCEPTED,
 }
-"""The status of the goal whose id an event brings."""
+"""An event that carries the id of a goal -> the status of that goal when the event arrives."""
 _DECIDED = (GoalStatus.ACCEPTED, GoalStatus.EARLIER, GoalStatus.REJECTED, GoalStatus.FINISHED)
 _WRONG_GOAL = {
     GoalStatus.ASKED: FaultKind.UNDECIDED,
@@ -335,7 +338,7 @@ _WRONG_GOAL = {
     GoalStatus.REJECTED: FaultKind.REJECTED,
     GoalStatus.FINISHED: FaultKind.UNASKED,
 }
-"""The fault of naming a goal of this status in a result, in feedback or when a thread is started."""
+"""The status of a goal -> the fault if a result, feedback or the start of a thread names a goal with this status."""
 _OF_INTERFACES = tuple(subject for subject in Subject if subject not in (Subject.TREE, Subject.CHILD))
 
 
@@ -371,8 +374,8 @@ class _Explorer:
         self.declarations: dict[Handler | RosSend, Declaration | None] = {}
         self.effective: dict[tuple[Statement, ...], tuple[Statement, ...]] = {}
         self.groups: dict[str, list[_Group]] = {}
-        self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, HeldIds, Knowledge], list[_Found]] = {}
-        self.found: list[_Found] = []
+        self.reactions: dict[tuple[State, ProtocolEvent | None, Phases, HeldIds, Knowledge], list[_Reaction]] = {}
+        self.group_reactions: list[_Reaction] = []
         self.known_here: dict[tuple[str, Phases, HeldIds], set[Knowledge]] = {}
         self.goal_here = ANY_ID  # the meaning of `_action.goal_id` in the current step
 
@@ -384,8 +387,8 @@ class _Explorer:
     # ------------------------------------------------------ what is followed
 
     def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
-        """The variables whose values may decide where a path leads: those that conditions read, if they are compared
-        more than once or assigned only constants and booleans."""
+        """The variables whose values may decide which path is taken: the variables that conditions read, if they are
+        compared more than once or are assigned only constants and booleans."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
         relevant = {*self._counted(), *self._statuses()}
         assigned: dict[str, list[Expr | None]] = {}
@@ -417,13 +420,13 @@ class _Explorer:
         return frozenset(relevant) - EVENT_VARIABLES
 
     def _statuses(self) -> frozenset[str]:
-        """The variables that hold statuses."""
+        """The variables whose values `<bt_return_status>` returns."""
         given = (s.status.value for s in self.chart.statements if isinstance(s, ReturnStatus) and s.status)
         return frozenset(given) - set(STATUSES)
 
     def _counts_down(self) -> bool:
-        """Whether a thread that becomes free changes the number of the next one. The number of running threads is not
-        followed, so this number seems to decrease without end."""
+        """Whether the chart changes a thread number when a thread becomes free. The graph does not contain the number
+        of running threads, so this thread number could decrease without end in it."""
         numbers = set(self._counted())
         while True:
             values = [
@@ -478,8 +481,8 @@ class _Explorer:
             goal_ids |= copied
 
     def _may_be_ids(self) -> frozenset[str]:
-        """The variables, and the data of events, that may hold the id of a goal: all except the fields of a goal and
-        values computed only from these, from constants and from each other."""
+        """The variables, including those for event data, that may hold the id of a goal: all except the fields of a
+        goal, and variables that are computed only from these fields, from constants and from each other."""
         candidates = set(EVENT_VARIABLES - {"_goal"})
         assigned = [
             ((access_path(s.location.tree) or ("",))[0], s.value.tree if isinstance(s.value, Expression) else None)
@@ -505,9 +508,9 @@ class _Explorer:
             entry = self.states[initial].entry
             path = _Path((), (), self._initial())
             paths = self._bodies([entry.statements if entry else ()], [path])
-            for each in paths:
-                at_start += each.sent
-                self._number(ChartConfiguration(initial, each.phases, each.ids, self._kept(each.knowledge)))
+            for entered in paths:
+                at_start += entered.sent
+                self._number(ChartConfiguration(initial, entered.phases, entered.ids, self._kept(entered.knowledge)))
             starts = len(self.numbers)
             done = 0
             while done < len(self.numbers):
@@ -559,7 +562,7 @@ class _Explorer:
                 self._react(configuration, number, group)
 
     def _groups(self, name: str) -> list[_Group]:
-        """The handlers of a state that wait for the same event."""
+        """The handlers of a state, grouped by the event that they wait for."""
         if name not in self.groups:
             state = self.states.get(name)
             by_event: dict[ProtocolEvent | None, list[Handler]] = {}
@@ -574,10 +577,10 @@ class _Explorer:
         self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
     ) -> frozenset[tuple[Subject, str]]:
         """The phases that the steps of a group may read or change."""
-        found: set[tuple[Subject, str]] = {(Subject.TREE, ""), (Subject.CHILD, "")}
+        touched: set[tuple[Subject, str]] = {(Subject.TREE, ""), (Subject.CHILD, "")}
         if event is not None:
             handle = event.name
-            found |= {(subject, handle) for subject in _OF_INTERFACES}
+            touched |= {(subject, handle) for subject in _OF_INTERFACES}
         bodies = [state.exit.statements if state.exit else ()]
         for handler in handlers:
             for target in handler.targets:
@@ -588,11 +591,13 @@ class _Explorer:
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
                 cancels = statement.part is ProtocolPart.CANCEL
-                found |= {(subject, handle) for subject in _OF_INTERFACES if cancels or subject is not Subject.OUTCOME}
-        return frozenset(found)
+                touched |= {
+                    (subject, handle) for subject in _OF_INTERFACES if cancels or subject is not Subject.OUTCOME
+                }
+        return frozenset(touched)
 
     def event(self, handler: Handler) -> ProtocolEvent | None:
-        """The event that a handler waits for; `None` if it waits for none."""
+        """The event that a handler waits for; `None` if the handler is eventless."""
         match handler.trigger:
             case None:
                 return None
@@ -626,12 +631,15 @@ class _Explorer:
         return True
 
     def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
-        """The reactions of a group to an event. They depend on few phases, so many configurations share them."""
+        """Add the steps with which a group reacts to its event in a configuration.
+
+        The reactions depend on few phases, so they are computed once for many configurations.
+        """
         taken = self._received(_Path(configuration.phases, configuration.ids, configuration.knowledge), group.event)
         inside = tuple(entry for entry in taken.phases if entry[0] in group.touched)
         key = (group.state, group.event, inside, taken.ids, taken.knowledge)
         if key not in self.reactions:
-            self.found = self.reactions[key] = []
+            self.group_reactions = self.reactions[key] = []
             self._decide(group, taken._replace(phases=inside))
         outside = tuple(entry for entry in taken.phases if entry[0] not in group.touched)
         for state, path, handler, choice, ignored in self.reactions[key]:
@@ -654,7 +662,10 @@ class _Explorer:
             self._choose(group, handlers, taken)
 
     def _choose(self, group: _Group, handlers: tuple[Handler, ...], taken: _Path) -> None:
-        """The first handler whose condition holds is executed (docs/spec/machines.md#selection)."""
+        """Add the reactions of the first handler whose condition holds (docs/spec/machines.md#selection).
+
+        If several conditions may hold first, the reactions of each of these handlers are added.
+        """
         facts, event = self.facts, group.event
         ways = [taken.knowledge]
         matters = event is not None and event.part in _ANSWERABLE
@@ -676,12 +687,14 @@ class _Explorer:
         if matters:
             assert group.state.id is not None
             for way in ways:
-                if not way.enumerates(taken.knowledge):  # if so, these are all values that are ever sent
+                # If the conditions enumerate values, no other value is ever sent, and the event is not discarded.
+                if not way.enumerates(taken.knowledge):
                     path = taken._replace(knowledge=self._kept(way))
-                    self.found.append((group.state.id.value, path, handlers[-1], 0, True))
+                    self.group_reactions.append((group.state.id.value, path, handlers[-1], 0, True))
 
     def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
-        """Add the reactions in which a goal is accepted, so that its result is awaited, and rejected."""
+        """Add two reactions to the answer to a goal: the goal is accepted and its result is awaited, or it is
+        rejected."""
         assert group.event is not None
         for choice, phase in ((0, Phase.AWAITED), (1, None)):
             self._execute(group, handler, [taken.at(Subject.OUTCOME, group.event.name, phase)], choice)
@@ -701,12 +714,13 @@ class _Explorer:
                 known = self._kept(path.knowledge) if entered else NOTHING
                 after = name if entered else NOWHERE
                 done = path._replace(knowledge=known)
-                if event is not None and event.part is ProtocolPart.GOAL:  # the earlier goal is an accepted one again
+                # After the decision on a later goal, the earlier goal is an accepted goal again.
+                if event is not None and event.part is ProtocolPart.GOAL:
                     done = done.with_ids(event.name, GoalStatus.EARLIER, GoalStatus.ACCEPTED)
-                self.found.append((after, done, handler, choice, False))
+                self.group_reactions.append((after, done, handler, choice, False))
 
     def _received(self, path: _Path, event: ProtocolEvent | None) -> _Path:
-        """The changes by an event before anything is executed."""
+        """The path after the arrival of an event, before any statement is executed."""
         if event is None:
             return path
         match event.part:
@@ -740,7 +754,7 @@ class _Explorer:
         return paths
 
     def _effective(self, body: tuple[Statement, ...]) -> tuple[Statement, ...]:
-        """The statements of a body that are relevant here; most assignments are not."""
+        """The statements of a body that affect the graph. Most assignments do not."""
         if body not in self.effective:
             self.effective[body] = tuple(statement for statement in body if self._matters(statement))
         return self.effective[body]
@@ -797,7 +811,7 @@ class _Explorer:
         return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
-        """The content of a variable for the id of a goal after an assignment; `None` for a constant."""
+        """The goal whose id the variable holds after an assignment of `value`; `None` if `value` is a constant."""
         if not isinstance(location, Name) or value is None or any(isinstance(e, ErrorExpr) for e in walk(value)):
             return ANY_ID
         if access_path(value) == ("_action", "goal_id"):
@@ -925,7 +939,7 @@ class _Explorer:
             if held is not None and held.of == handle and held.status in goals:
                 path = path.holding(variable.name, HeldId(GoalStatus.FINISHED, handle))
         if len(path.faults) > before:
-            return path.at(Subject.RESULT, handle, None)  # it is already reported that this ends no goal
+            return path.at(Subject.RESULT, handle, None)  # a fault of the id was added: do not report a second fault
         if handle in self.threaded and not self.thread:
             return path
         match path.phase(Subject.RESULT, handle):
@@ -939,10 +953,11 @@ class _Explorer:
         return path.at(subject, handle, Phase.SEVERAL if path.phase(subject, handle) else Phase.AWAITED)
 
     def _checked_id(self, statement: RosSend, path: _Path, duty: Duty, goals: tuple[GoalStatus, ...]) -> _Path:
-        """Check that a goal is named by the id with which it arrived; return the path with the fault, if any.
+        """The path with a fault if the statement does not name a goal by the id with which the goal arrived.
 
         Args:
-            goals: the statuses of the goals that may be named.
+            duty: the duty that the statement answers.
+            goals: the statuses of the goals that the statement may name.
         """
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:

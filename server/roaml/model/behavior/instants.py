@@ -2,11 +2,12 @@
 """The events that can occur in a system without the passing of time, and those that need time
 (docs/spec/semantics.md#time).
 
-During a tick of the behavior tree no time passes: the next tick waits for the answer, and the clock for the next tick.
-So a plugin can wait only for events that it triggers itself: by its request, the server's own requests, and so on.
+No time passes during a tick of the behavior tree: the next tick waits for the answer to this one, and the clock waits
+for the next tick. So during a tick a plugin receives only events that it causes itself, for example by its request, or
+by the requests that the server then sends.
 
-If an unreadable part of the system might send the awaited event, the event is assumed to come at once, and so is
-everything from a machine of which a part that handles events cannot be read.
+An event is assumed to arrive at once if an unreadable part of the system might send it, or if its sender is a machine
+with an unreadable part that handles or sends events.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _PROMISED = {
     ProtocolPart.GOAL_RESPONSE: DutyKind.GOAL,
     ProtocolPart.RESULT: DutyKind.RESULT,
 }
-"""The events that a client receives, with the duty of the server that they answer."""
+"""An event that a client receives -> the duty of the server that it answers."""
 _KINDS = {
     ProtocolPart.MESSAGE: (SymbolKind.SUBSCRIBER,),
     ProtocolPart.REQUEST: (SymbolKind.SERVICE_SERVER,),
@@ -55,7 +56,7 @@ _ANSWERS = {
     ProtocolPart.GOAL_RESPONSE: (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED),
     ProtocolPart.RESULT: (ProtocolPart.RESULT,),
 }
-"""The events that a server sends and a client receives."""
+"""An event that a client receives -> the events by which a server sends it."""
 
 _Fact = tuple[int, ProtocolEvent]
 
@@ -65,10 +66,12 @@ class EventDelay:
     """Why an event takes time.
 
     Attributes:
-        automaton: the automaton that waits for it.
+        automaton: the automaton that waits for the event.
         event: the awaited event.
-        promise: the delayed answer, if the event is an answer; `server` sends it.
-        next: the delay of the event that this depends on; `None` for a timer.
+        server: the server that sends the event; `None` if the event is not an answer of a server.
+        promise: the delayed answer of `server`.
+        next: the delay of the event after which this event is sent; `None` if this event does not depend on another
+            one, as that of a timer.
     """
 
     automaton: SystemAutomaton
@@ -80,7 +83,8 @@ class EventDelay:
 
 @dataclass(eq=False)
 class _Solver:
-    """The least solution of a system of facts "this event reaches this automaton", found by iteration."""
+    """The least solution of the facts "this event reaches this automaton", which depend on each other; found by
+    iteration."""
 
     system: System
     holds: Callable[[_Solver, int, ProtocolEvent], bool]
@@ -112,7 +116,7 @@ class _Solver:
     def senders(
         self, automaton: SystemAutomaton, event: ProtocolEvent
     ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
-        """The automata that may send an event that `automaton` receives as `event`, with the event as they send it."""
+        """The automata that may send the event that `automaton` receives as `event`, and that event as they name it."""
         if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
@@ -128,7 +132,7 @@ class _Solver:
                 yield endpoint.automaton, ProtocolEvent(event.part, endpoint.use.handle)
 
     def causes(self, automaton: SystemAutomaton, sent: ProtocolEvent) -> Iterator[ProtocolEvent]:
-        """The events on which an automaton sends something."""
+        """The events after which an automaton sends `sent`."""
         for chart in automaton.outline.charts:
             for cause, event in chart.reactions:
                 if event == sent:
@@ -136,7 +140,7 @@ class _Solver:
 
 
 def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> Channel | None:
-    """The topic, service or action of an event of an automaton."""
+    """The topic, service or action of an event of an automaton; `None` if there is none."""
     for use in automaton.outline.interfaces:
         if use.handle == event.name and use.kind in _KINDS.get(event.part, ()):
             return system.channel(automaton, use)
@@ -163,7 +167,8 @@ class Instants:
         return self.solver.solve(self.own, event)
 
     def possible(self, step: BehaviorStep) -> bool:
-        """Whether the plugin can take a step. Some servers never reject a goal."""
+        """Whether the plugin can take a step: its event can arrive, and if it handles the acceptance or rejection of a
+        goal, the server sends that answer."""
         if step.event is None or step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT):
             return True
         if step.event.part is ProtocolPart.GOAL_RESPONSE:
@@ -200,7 +205,8 @@ class Instants:
         return False
 
     def _kept(self, server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
-        """The promises that the plugin may encounter: a single client does not find a server busy with its own goal."""
+        """The promises that the plugin may depend on. If the server has only one client, promises that are given while
+        the server is busy with an earlier goal are left out."""
         channel = self.system.channel(server.automaton, server.use)
         alone = channel is not None and len(channel.users) == 1
         return (promise for promise in promises(server, event) if not (alone and promise.busy))
@@ -210,7 +216,7 @@ class Instants:
         return not any(all(self.solver.read(number, event) for event in needs) for needs in promise.needs)
 
     def delay(self, event: ProtocolEvent) -> EventDelay:
-        """The reason why an event does not arrive."""
+        """The reason why an event cannot arrive without the passing of time."""
         self.comes(event)
         return self._delay(self.plugin, event, frozenset())
 
@@ -232,14 +238,14 @@ class Instants:
         return EventDelay(automaton, event)
 
     def _first(self, automaton: SystemAutomaton, needs: Needs) -> ProtocolEvent:
-        """The first event that does not arrive, of the alternative with the fewest events."""
+        """The first event that does not arrive, from the alternative of `needs` with the fewest events."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))
 
 
 def may_be_sent(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> bool:
-    """Whether an unreadable part may send an event."""
+    """Whether an unreadable part of the system may send `event` to `automaton`."""
     if event.part is ProtocolPart.EVENT:
         return system.may(GapAct.SENDS, event.name)
     if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
@@ -283,7 +289,7 @@ def is_clock(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -
 
 
 def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]:
-    """The automata of the nodes below a node."""
+    """The automata of the nodes below the node of `plugin` in the tree."""
     waiting = list(plugin.instance.children) if plugin.instance else []
     while waiting:
         automaton = system.by_instance.get(waiting.pop())
@@ -298,11 +304,12 @@ def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]
 def comes_again(
     system: System, receiver: SystemAutomaton, chart: int, event: ProtocolEvent, sent: frozenset[ProtocolEvent]
 ) -> bool:
-    """Whether `event` may be sent once more while a chart of `receiver` does not move, which has received it and sent
-    `sent` since. Time may pass in between (docs/spec/semantics.md#time).
+    """Whether `event` may be sent a second time while a chart of `receiver` stays in one state. The chart has received
+    `event` once and has sent the events `sent` since then. Time may pass (docs/spec/semantics.md#time).
 
     Args:
-        chart: its index in the outline; a copy of a thread does not block the other copies.
+        chart: the index of the chart in the outline. If it is a thread with several copies, the other copies may still
+            move.
     """
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
@@ -346,7 +353,7 @@ def comes_again(
         return True
     if any(sender is receiver and sent_event in sent for sender, sent_event in senders):
         return True
-    # Each copy of a thread is a sender of its own.
+    # Each copy of a thread is a separate sender.
     several = len(senders) > 1 or (event.part is ProtocolPart.THREAD_FREE and max(copies[1:], default=1) > 1)
     for sender, sent_event in senders:
         number = solver.number(sender)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The knowledge about values on a path: the conditions that have held, and the constants that have been assigned.
+"""The knowledge about values on a path: the conditions that were true, and the constants that were assigned.
 
-- A `Knowledge` is a conjunction with one `Domain` for each term (`level`, `_res.success`, `a + b`, `v.length`); a term
-  without a domain may have any value. It is immutable.
+- A `Knowledge` is an immutable conjunction with one `Domain` for each term (`level`, `_res.success`, `a + b`,
+  `v.length`). A term without a domain may have any value.
 - It never excludes a possible value: an unsupported expression adds no knowledge.
-- Two terms that are compared with each other have a domain as well: a subset of `<`, `=`, `>`.
+- A pair of terms that are compared with each other also has a domain: a subset of `<`, `=`, `>`.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ class Domain:
     """The values that a term may have.
 
     Attributes:
-        only: all of them, if there are finitely many.
-        excluded: values that it does not have.
-        low, high: bounds of numbers; `low_open` and `high_open` mean that the bound itself is excluded.
+        only: all values, if they can be listed; otherwise `None`.
+        excluded: values that the term cannot have.
+        low, high: the bounds of a number; `low_open` and `high_open` mean that the bound itself is excluded.
     """
 
     only: frozenset[Constant] | None = None
@@ -98,7 +98,7 @@ _RELATIONS = Domain(frozenset("<=>"))
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """`roots` are the variables in the term."""
+    """A term and its domain. `roots` are the variables in the term."""
 
     term: str
     roots: frozenset[str]
@@ -124,8 +124,8 @@ class Knowledge:
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
     def enumerates(self, before: Knowledge) -> bool:
-        """Whether a term has been compared for equality with several constants since `before`, and equals none of them,
-        as when all values of an enumeration are excluded."""
+        """Whether a term has been compared for equality with several constants since `before` and equals none of them.
+        This is the case if conditions handle each value of an enumeration."""
         return any(
             entry.domain.only is None and len(entry.domain.excluded) > 1 and entry not in before.entries
             for entry in self.entries
@@ -140,7 +140,8 @@ NOTHING = Knowledge()
 
 
 class _Term(NamedTuple):
-    """`text` is `None` for an expression that cannot be read, or whose value may differ at each evaluation."""
+    """An expression whose value may be known. `text` is `None` if the expression cannot be read, or if its value may
+    differ at each evaluation."""
 
     text: str | None
     roots: frozenset[str]
@@ -169,7 +170,7 @@ class ConditionFacts:
     _terms: dict[int, _Term] = field(default_factory=dict, repr=False, compare=False)
 
     def term(self, expr: Expr) -> _Term:
-        """The term for an expression; computed once for each (the expressions outlive this object)."""
+        """The term for an expression. It is cached by the identity of the expression, which outlives this object."""
         known = self._terms.get(id(expr))
         if known is None:
             if isinstance(expr, Boolean | String):
@@ -186,8 +187,11 @@ class ConditionFacts:
     # ------------------------------------------------------------ conditions
 
     def assume(self, knowledge: Knowledge, condition: Expr, holds: bool = True) -> tuple[Knowledge, ...]:
-        """The knowledge where `condition` holds, or does not: one of several conjunctions; empty if it is
-        impossible."""
+        """The knowledge if `condition` holds, or if it does not hold (`holds` is false).
+
+        The result is a disjunction: one of the returned conjunctions is true. It is empty if the condition cannot have
+        this value.
+        """
         ways = tuple(dict.fromkeys(self._assume(knowledge, condition, holds)))
         return ways if len(ways) <= MAX_CONJUNCTIONS else (knowledge,)
 
@@ -223,7 +227,7 @@ class ConditionFacts:
             return
         left_value, right_value = self.value(knowledge, left), self.value(knowledge, right)
         if left_value is not None and right_value is not None:
-            if _stands(left_value, right_value) & relation:
+            if _relations_between(left_value, right_value) & relation:
                 yield knowledge
         elif right_value is not None:
             yield from self._bound(knowledge, left, relation, right_value)
@@ -283,7 +287,7 @@ class ConditionFacts:
     # ---------------------------------------------------------------- values
 
     def value(self, knowledge: Knowledge, expr: Expr) -> Constant | None:
-        """The value of an expression, if it is known."""
+        """The value of an expression; `None` if it is not known."""
         term = self.term(expr)
         if term.constant is not None or term.text is None:
             return term.constant
@@ -307,7 +311,8 @@ class ConditionFacts:
         return Domain()
 
     def assign(self, knowledge: Knowledge, location: Expr, value: Expr | None) -> tuple[Knowledge, ...]:
-        """The knowledge after an assignment. A condition that is stored splits the knowledge in two."""
+        """The knowledge after an assignment. An assigned condition gives two results: the condition is true, or it is
+        false."""
         root = next(iter(self.term(location).roots), "")
         if value is None or not isinstance(location, Name):
             return (knowledge.without(root),)
@@ -369,12 +374,12 @@ _HOLDING = {
 
 
 def _relation(operator: Operator, holds: bool) -> frozenset[str]:
-    """The possible relations of two values where a comparison holds, or does not."""
+    """The possible relations of two values (`<`, `=`, `>`) if a comparison holds, or if it does not."""
     relation = frozenset(_HOLDING[operator])
     return relation if holds else frozenset("<=>") - relation
 
 
-def _stands(first: Constant, second: Constant) -> frozenset[str]:
+def _relations_between(first: Constant, second: Constant) -> frozenset[str]:
     if isinstance(first, str) or isinstance(second, str):
         return frozenset("=" if first == second else "<>")
     return frozenset("=" if first == second else "<" if first < second else ">")
@@ -397,7 +402,7 @@ def _shifted(domain: Domain, by: float) -> Domain:
 
 
 def variables_in(expressions: Iterable[Expr]) -> frozenset[str]:
-    """The variables that some expressions read."""
+    """The variables that `expressions` read."""
     return frozenset(name for expr in expressions for name in _roots(expr))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The vocabulary of the graph of a chart: events, duties, and what is owed and awaited in a configuration."""
+"""The types of the graph of a chart: events, duties, and the answers that a configuration owes and awaits."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class DutyKind(Vocabulary):
 
 
 class Duty(NamedTuple):
-    """Something that must be answered exactly once. `handle` is that of the server, "" for the tree."""
+    """An event that must be answered exactly once. `handle` is the handle of the server; "" for ticks and halts."""
 
     kind: DutyKind
     handle: str
@@ -71,11 +71,11 @@ class Phase(Vocabulary):
     DUE = "due"
     AWAITED = "awaited"
     SEVERAL = "several"
-    """Several answers are due or awaited; their number is not followed."""
+    """Several answers are due or awaited; the exact number is not stored."""
 
 
 OWED = {DutyKind.REQUEST: Subject.REQUEST, DutyKind.GOAL: Subject.GOAL, DutyKind.RESULT: Subject.RESULT}
-"""The subject whose phase states whether a server owes the answer to a duty."""
+"""Kind of duty -> the subject whose phase states whether the server owes the answer."""
 
 
 class GoalStatus(Vocabulary):
@@ -90,11 +90,12 @@ class GoalStatus(Vocabulary):
     FOREIGN = "foreign"
     """A value that is not the id of a goal."""
     ANY = "any"
-    """It is not known what it holds."""
+    """The content of the variable is not known."""
 
 
 class HeldId(NamedTuple):
-    """`of` is the handle of the server that the goal was sent to, or the text of the expression of a foreign value."""
+    """The id of a goal in a variable. `of` is the handle of the server to which the goal was sent; for a foreign value,
+    it is the text of the assigned expression."""
 
     status: GoalStatus
     of: str
@@ -103,9 +104,10 @@ class HeldId(NamedTuple):
 ANY_ID = HeldId(GoalStatus.ANY, "")
 
 Phases: TypeAlias = tuple[tuple[tuple[Subject, str], Phase], ...]
-"""Sorted; subjects of servers and clients are distinguished by their handles."""
+"""The phases of all subjects that have one: sorted pairs of (subject, handle) and phase. The handle names the server or
+client."""
 HeldIds: TypeAlias = tuple[tuple[str, HeldId], ...]
-"""The variables that hold an id that was stored, sorted."""
+"""The variables in which an id was stored, with the ids; sorted by variable."""
 
 
 def phase_in(phases: Phases, subject: Subject, handle: str) -> Phase | None:

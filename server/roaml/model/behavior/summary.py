@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The part of a graph that other machines use: the events that each answer needs, and those on which a machine sends
-events.
+"""The part of a graph that other machines depend on: the events that must occur before each answer, and the events
+after which a machine sends events.
 
-It contains names of states and handles, but no positions, so most changes of a file do not change it.
+The summary contains names of states and handles, but no positions, so most changes of a file do not change it.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
-"""Alternatives: each is a set of events that together are sufficient. Without an alternative, the event never
-occurs."""
+"""Alternative sets of events. The events of any one set are sufficient together. If there is no set, nothing is
+sufficient."""
 
 AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
-"""The time before the first event of a machine."""
+"""A pseudo-event: the start of a machine, before its first event."""
 
 MAX_ALTERNATIVES = 6
 MAX_EVENTS = 4
@@ -39,7 +39,7 @@ _DUTIES = {
     ProtocolPart.GOAL: (DutyKind.GOAL, DutyKind.RESULT),
     ProtocolPart.THREAD_START: (DutyKind.RESULT,),
 }
-"""The duties of a server that an event brings."""
+"""An event that a server receives -> the kinds of duties that it creates."""
 _ASKED_BY = {DutyKind.REQUEST: ProtocolPart.REQUEST, DutyKind.GOAL: ProtocolPart.GOAL}
 
 
@@ -49,9 +49,10 @@ class Promise:
 
     Attributes:
         duty: a request, a goal or a result.
-        state: the state in which the machine waits; `scope` distinguishes the threads of a file.
-        taken: whether the request has been received; otherwise the machine does not even handle it there.
-        busy: whether the result of an earlier goal is still owed there.
+        state: the state in which the machine waits.
+        scope: the scope of the chart that the state is in; it distinguishes the threads of a file.
+        taken: whether the request has been received; otherwise the state has no handler for the request.
+        busy: whether the machine still owes the result of an earlier goal in this state.
         needs: the events that must occur before the answer is sent, or before the request is handled.
     """
 
@@ -67,9 +68,9 @@ class Promise:
 class ChartOutline:
     """
     Attributes:
-        promises: the delayed answers, for each configuration in which they are awaited.
-        reactions: pairs: on the first event, in some state, the second one is sent.
-        repeats: for each event that is sent, the events that must occur before it is sent again.
+        promises: the delayed answers, one for each configuration that owes an answer.
+        reactions: pairs of events: after receiving the first, the machine sends the second in some state.
+        repeats: for each event that the machine sends, the events that must occur before it is sent again.
     """
 
     promises: tuple[Promise, ...]
@@ -95,8 +96,13 @@ def summarise(behavior: Behavior) -> ChartOutline:
 
 @dataclass(frozen=True, slots=True)
 class _Edge:
-    """Steps that are equivalent here. `event` is a bit, 0 for none; `taken` and `sent` are the events that are received
-    and sent."""
+    """Steps that do not differ in the summary.
+
+    Attributes:
+        event: the bit of the received event; 0 if there is none.
+        taken: the received event; `None` if there is none.
+        sent: the events that are sent.
+    """
 
     source: int
     target: int
@@ -106,7 +112,7 @@ class _Edge:
 
 
 class _Summary:
-    """Sets of events are represented as integers, with one bit for each event."""
+    """Computes the outline of one chart. Sets of events are integers with one bit for each event."""
 
     def __init__(self, behavior: Behavior) -> None:
         self.behavior = behavior
@@ -133,7 +139,7 @@ class _Summary:
         return list(duties)
 
     def _promises(self, duty: Duty) -> Iterator[Promise]:
-        """The places where an answer is owed, and where a request is not even handled."""
+        """The promises for the configurations that owe an answer, and for those without a handler for the request."""
         configurations = self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
@@ -206,7 +212,8 @@ def _incoming(edges: Iterable[_Edge]) -> dict[int, list[_Edge]]:
 
 
 def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge]) -> dict[int, tuple[int, ...]]:
-    """For each configuration from which edges lead to one of `reaching`, the smallest sets of events that do so."""
+    """For each configuration from which edges lead to an edge of `reaching`, the smallest sets of events on such
+    paths, including the last edge."""
     goals = set(reaching)
     needs: dict[int, tuple[int, ...]] = {}
     waiting: dict[int, None] = {}
@@ -228,7 +235,7 @@ def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge])
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:
-    """The sets without those that contain another one; if there are many, only the smallest."""
+    """The sets that contain no other set of `masks`; only the smallest ones if there are many."""
     smallest: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
         if mask.bit_count() > MAX_EVENTS:

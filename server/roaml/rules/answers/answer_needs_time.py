@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""answer-needs-time: see answer_needs_time.md."""
+"""The rule `answer-needs-time`, which answer_needs_time.md describes."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[H
 
 
 def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], instants: Instants) -> ProtocolEvent | None:
-    """The first event on the way to the answer that needs time to arrive; if there are several, one that leads to the
-    answer."""
+    """The first event that needs time to arrive on a path from the step `first` to the answer, or `None` if there is
+    none."""
     outgoing, left = behavior.outgoing(), distances(behavior, slow)
     seen, waiting = {first.target}, [first.target]
     while waiting:
@@ -104,7 +104,7 @@ def _not_taken(delay: EventDelay) -> bool:
 
 
 def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
-    """One phrase for each link of the chain of machines that wait for each other, without the first link."""
+    """One phrase for each link of the chain of machines that wait for each other, except the first link."""
     while delay is not None and delay.next is not None:
         then = delay.next
         cause = _named(system, then.automaton, then.event)
@@ -145,7 +145,7 @@ def _channel(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -
 
 
 def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
-    """A phrase for the event that is waited for."""
+    """A noun phrase for an event that an automaton waits for."""
     match event.part:
         case ProtocolPart.TICK:
             return f"its timer `{event.name}`"

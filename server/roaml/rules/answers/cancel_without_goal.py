@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cancel-without-goal: see cancel_without_goal.md."""
+"""The rule `cancel-without-goal`, which cancel_without_goal.md describes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,8 @@ def _declarations(context: MachineContext, part: ProtocolPart) -> set[Declaratio
 
 
 def _useless(context: MachineContext, behavior: Behavior) -> Iterator[RosSend]:
-    """The requests that each step sends without an accepted goal, if this chart handles the acceptance of goals."""
+    """The cancel requests that are never sent while the client has an accepted goal. Requests of actions whose goal
+    responses this chart does not handle are left out."""
     handled = {
         find_handle(context.machine, handler)
         for state in behavior.chart.states
@@ -102,6 +103,6 @@ def _sent_in(behavior: Behavior, step: BehaviorStep) -> Iterator[RosSend]:
 RULE = Rule(
     "cancel-without-goal",
     Severity.WARNING,
-    "A client cancels a goal where it has no accepted goal.",
+    "A client sends a cancel request where it has no accepted goal.",
     machine=check,
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-status: see invalid_status.md."""
+"""The rule `invalid-status`, which invalid_status.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-answer: see repeated_answer.md."""
+"""The rule `repeated-answer`, which repeated_answer.md describes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ASKED_BY = {
     DutyKind.GOAL: (ProtocolPart.GOAL,),
     DutyKind.RESULT: (ProtocolPart.GOAL, ProtocolPart.THREAD_START),
 }
-"""The events that a duty answers."""
+"""The requests for which a duty requires an answer."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -55,7 +55,7 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
 
 
 def _is_asked(behavior: Behavior, duty: Duty) -> bool:
-    """Whether this chart handles the events that the duty answers."""
+    """Whether this chart handles the requests that an answer to the duty is sent for."""
     parts = _ASKED_BY[duty.kind]
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
@@ -88,7 +88,7 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
     related = [Related(first.element.name_span, "the first answer")] if first is not None else []
     again = "the second answer" if first is not None else "this answer"
     related.append(Related(fault.statement.element.name_span, again))
-    # An answer that is sent when a state is entered may be correct for another way into the state.
+    # An answer that is sent when a state is entered may be correct on another path into the state.
     shared = where == fault.statement.element.name_span and not _twice(step, fault)
     severity = Severity.INFORMATION if shared else None
     message = _message(behavior, step, fault, first)
@@ -119,7 +119,8 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
 
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
-    """The statement that answered the request before, in the same step or in the nearest step that leads to it."""
+    """The statement that answered the request first, in the same step or in the nearest step before it. `None` if there
+    is no such statement."""
     if fault.kind is FaultKind.WRONG_KIND:
         return None
     events = _answers(fault)

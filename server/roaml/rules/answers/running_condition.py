@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""running-condition: see running_condition.md."""
+"""The rule `running-condition`, which running_condition.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unanswered-cancel: see unanswered_cancel.md."""
+"""The rule `unanswered-cancel`, which unanswered_cancel.md describes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NEW_GOAL = (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report handlers of cancel requests from which no way leads to the end of the goal as canceled."""
+    """Report handlers of cancel requests after which no path ends the goal as canceled."""
     handlers = list(_handlers(context))
     if not handlers or misspelled.among(context.machine.element.walk(), _ANSWER, HL_SCXML):
         return
@@ -49,7 +49,7 @@ def _handlers(context: MachineContext) -> Iterator[tuple[Chart, State, Handler]]
 
 
 def _unended(context: MachineContext) -> Iterator[Handler]:
-    """The handlers after which the goal is never ended: unanswered-goal reports them."""
+    """The handlers after which the goal is never ended at all; unanswered-goal reports them."""
     for behavior in behaviors(context):
         for step in behavior.steps:
             if step.event is None or step.event.part is not ProtocolPart.CANCEL:
@@ -71,7 +71,7 @@ def _may_cancel(machine: Machine, chart: Chart, state: State, handler: Handler, 
         for target in taken.targets:
             entered = states.get(target.state.value) if target.state else None
             if entered is None:
-                return True  # an unknown state, in which anything may happen
+                return True  # the state is unknown, so the goal may be ended there
             if _cancels(machine, (entered.entry.statements if entered.entry else (),), declaration):
                 return True
             assert entered.id is not None
@@ -97,7 +97,8 @@ def _cancels(machine: Machine, bodies: Iterable[tuple[Statement, ...]], declarat
 
 
 def _fixes(context: MachineContext, chart: Chart, handler: Handler, declaration: Declaration) -> Iterator[Fix]:
-    """End the goal, if only one variable of the chart holds ids of its goals."""
+    """A fix that ends the goal as canceled. There is none unless exactly one variable of the chart holds ids of its
+    goals."""
     ids = {
         statement.goal_id.tree.name
         for statement in chart.statements

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unanswered-goal: see unanswered_goal.md."""
+"""The rule `unanswered-goal`, which unanswered_goal.md describes."""
 
 from __future__ import annotations
 

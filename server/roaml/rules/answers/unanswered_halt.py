@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unanswered-halt: see unanswered_halt.md."""
+"""The rule `unanswered-halt`, which unanswered_halt.md describes."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
     behaviors,
-    deaf,
     is_spelled,
     missed,
     place,
     plugins,
     target_of,
+    unhandled_states,
 )
 from roaml.xml_syntax import Element
 
@@ -49,7 +49,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _halted(context: MachineContext) -> Iterator[tuple[SystemAutomaton, SystemAutomaton]]:
-    """The nodes of the plugin in the tree, each with its parent if the parent halts its children."""
+    """The nodes of the plugin whose parent halts its children, each with this parent."""
     for automaton in plugins(context):
         number = automaton.instance.parent if automaton.instance else None
         parent = context.system.by_instance.get(number) if context.system and number is not None else None
@@ -78,14 +78,14 @@ def _message(step: BehaviorStep, certain: bool) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states in which the plugin waits and that have no `<bt_halt>`."""
-    for waiting in deaf(context, behavior, automata, HALT):
+    for waiting in unhandled_states(context, behavior, automata, HALT):
         if waiting.needs_time:
             message = (
                 f"a halt that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
             )
             message += "clock waits until it is answered; add a `<bt_halt>`"
         else:
-            how = "while the plugin is running " if waiting.standing is Phase.RUNNING else ""
+            how = "while the plugin is running " if waiting.tree_status is Phase.RUNNING else ""
             message = f"a halt that arrives {how}in the state `{waiting.name}` is never handled, so the tree waits for "
             message += "ever; add a `<bt_halt>`"
         fixes = _add_handler(context, waiting.state)
@@ -106,7 +106,7 @@ def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
 
 
 def _answer(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """Add a `<bt_return_halted />` to the handler."""
+    """A fix that adds a `<bt_return_halted />` to the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     sent = {event.part for event in step.sent}
     if (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unanswered-request: see unanswered_request.md."""
+"""The rule `unanswered-request`, which unanswered_request.md describes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from roaml.rules.support.interfaces import response
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report services that answer on some paths only. Services that never answer are reported by silent-server."""
+    """Report services that answer a request only on some paths. Services that never answer are reported by
+    silent-server."""
     for behavior in behaviors(context):
         asked = {
             step.event.name: step.handler
@@ -54,7 +55,7 @@ def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
 
 
 def _fixes(context: MachineContext, step: BehaviorStep, asked: Handler) -> Iterator[Fix]:
-    """Send a response with the zero of each field's type at the end of the handler."""
+    """A fix that sends a response with zero values in all fields at the end of the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
     declaration = find_handle(context.machine, asked)
     if not step.certain or step.ignored or not place.complete or declaration is None or declaration.type is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unanswered-tick: see unanswered_tick.md."""
+"""The rule `unanswered-tick`, which unanswered_tick.md describes."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
     behaviors,
-    deaf,
     is_spelled,
     missed,
     place,
     plugins,
     target_of,
+    unhandled_states,
 )
 
 ANSWER = '<bt_return_status status="SUCCESS" />'
@@ -72,7 +72,7 @@ def _message(step: BehaviorStep, certain: bool) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states in which the plugin waits and that have no `<bt_tick>`."""
-    for waiting in deaf(context, behavior, automata, TICK):
+    for waiting in unhandled_states(context, behavior, automata, TICK):
         if waiting.needs_time:
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
@@ -83,13 +83,13 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
                 f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "
             )
             message += "add a `<bt_tick>`"
-        severity = Severity.WARNING if waiting.needs_time or waiting.standing is Phase.ENDED else None
+        severity = Severity.WARNING if waiting.needs_time or waiting.tree_status is Phase.ENDED else None
         fixes = _take(context, waiting.state.element)
         yield RULE.at(waiting.span, message, *fixes, severity=severity)
 
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:
-    """Return RUNNING in a state that does not handle ticks."""
+    """A fix that adds a handler to a state that does not handle ticks; the handler returns RUNNING."""
     for candidate in context.machine.chart.states:
         if candidate.element is state and candidate.id is not None and candidate.element.complete:
             lines = (
@@ -102,7 +102,7 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
 
 
 def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """Return SUCCESS at the end of the handler, or RUNNING where none of its conditions holds."""
+    """A fix that returns SUCCESS at the end of the handler, or RUNNING where none of its conditions holds."""
     document, element = context.document, step.handler.element
     if not element.complete or step.event is None:
         return
@@ -122,7 +122,7 @@ def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
 
 
 def _add_handler(context: MachineContext) -> Iterator[Fix]:
-    """Add a `<bt_tick>` to the initial state that returns SUCCESS at once."""
+    """A fix that adds a `<bt_tick>` to the initial state; it returns SUCCESS at once."""
     document, chart = context.document, context.machine.chart
     state = next((s for s in chart.states if s.id and chart.initial and s.id.value == chart.initial.value), None)
     if state is not None and state.id is not None and state.element.complete:

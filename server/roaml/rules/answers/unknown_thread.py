@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-thread: see unknown_thread.md."""
+"""The rule `unknown-thread`, which unknown_thread.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""wrong-goal-id: see wrong_goal_id.md."""
+"""The rule `wrong-goal-id`, which wrong_goal_id.md describes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,8 @@ specific."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report answers with an id other than that with which the goal arrived: they reach another client, or none."""
+    """Report answers whose goal id differs from the id with which the goal arrived. They reach another client, or
+    none."""
     for behavior in behaviors(context):
         told: set[tuple[str, FaultKind]] = set()
         for step, fault in _faults(behavior).values():
@@ -118,12 +119,12 @@ def _constant_finding(statements: list[RosSend], why: str) -> Finding:
     assert first.goal_id is not None
     subject = f"`<{first.element.name}>` has the constant `{first.goal_id.text.strip()}` as `goal_id`, {why}"
     advice = "store `_action.goal_id` in a variable where the goal is handled, and use that"
-    related = [Related(statement.element.name_span, "here, too") for statement in others]
+    related = [Related(statement.element.name_span, "also used here") for statement in others]
     return RULE.at(first.goal_id.span, f"{subject}; {advice}", related=related)
 
 
 def _wrong_constant(system: System, channel: Channel, value: float) -> str:
-    """Why a constant cannot be the id of all goals of an action; "" if it can."""
+    """The reason why a constant cannot be the id of all goals of an action, or an empty string if it can."""
     clients = [user.automaton.name for user in channel.users if ProtocolPart.GOAL in user.use.sends]
     if 0 <= value < len(channel.users) and value == int(value):
         if len(clients) < 2:
@@ -161,4 +162,4 @@ def _store(context: MachineContext, step: BehaviorStep, variable: str) -> Iterat
         yield Fix(f"Store the goal id in `{variable}`", (edit,))
 
 
-RULE = Rule("wrong-goal-id", Severity.WARNING, "An answer names a goal by a wrong id.", machine=check)
+RULE = Rule("wrong-goal-id", Severity.WARNING, "An answer names a goal by the wrong id.", machine=check)

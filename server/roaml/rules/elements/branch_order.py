@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""branch-order: see branch_order.md."""
+"""The rule `branch-order`, which branch_order.md describes."""
 
 from __future__ import annotations
 

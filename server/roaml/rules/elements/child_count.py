@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""child-count: see child_count.md."""
+"""The rule `child-count`, which child_count.md describes."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def _builtin(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
 
 
 def _known(context: TreeContext, node: TreeNode, forest: Forest) -> Iterator[Finding]:
-    """Check a node of a tree without a system: libraries and models define the number of children, otherwise its kind
-    does."""
+    """Check a node of a tree without a system: the number of children comes from libraries and models or, if these do
+    not define the node, from its kind."""
     known = forest.known_node(node)
     if known is not None:
         yield from _counted(context, node, *known.children)
@@ -88,7 +88,7 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
             if calls.children == 0:
                 message = f"`{plugin.name}` allows no children: its machine never ticks a child"
             else:
-                message = f"`{plugin.name}` ticks only {_children(calls.children)}, so this one is never ticked"
+                message = f"`{plugin.name}` ticks only {_children(calls.children)}, so this child is never ticked"
             yield RULE.at(span, message, _without(context, node, index))
             return
         if index not in calls.ticked_children:
@@ -97,7 +97,7 @@ def _own(context: TreeContext, node: TreeNode, plugin: MachineOutline) -> Iterat
 
 
 def _without(context: TreeContext, node: TreeNode, most: int) -> Fix:
-    """Remove the surplus children of a node."""
+    """A fix that removes the children of a node after the first `most`."""
     extra = node.children[most:]
     edits = tuple(removal(context.source.text, child.element.span) for child in extra)
     surplus = "this child" if len(extra) == 1 else "the surplus children"

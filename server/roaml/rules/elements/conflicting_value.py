@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""conflicting-value: see conflicting_value.md."""
+"""The rule `conflicting-value`, which conflicting_value.md describes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
-    """Report the ignored one of two values; the attribute takes precedence (docs/spec/files.md#attribute-or-child)."""
+    """Report a value in a child element that is ignored, because an attribute with the same value takes precedence
+    (docs/spec/files.md#attribute-or-child)."""
     return RULE.at(
         child.name_span,
         f"`{child.name}` is ignored: the attribute of the same name takes precedence",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""deprecated-spelling: see deprecated_spelling.md."""
+"""The rule `deprecated-spelling`, which deprecated_spelling.md describes."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def check_system(context: SystemContext) -> Iterator[Finding]:
-    """The reference translator also uses the name of a file to decide whether it is a machine
-    (docs/spec/files.md#kinds)."""
+    """Report machines whose file does not end in `.ascxml`: the reference translator also uses the name of a file to
+    decide whether it is a machine (docs/spec/files.md#kinds)."""
     roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
     for listed in context.files:
         src = listed.input.src
-        # If the root is the older one as well, the machine rule reports it.
+        # `check_machine` reports a machine that also has the older root.
         if src is not None and not context.file.older and roots.get(listed.path) == ROOT:
             name = re.split(r"[/\\]", src.value)[-1]
             if not name.endswith(EXTENSION):
@@ -59,7 +59,7 @@ def check_system(context: SystemContext) -> Iterator[Finding]:
 
 
 def _is_newer_tree(root: Element | None) -> bool:
-    """Whether a tree declares a format in which older spellings are no longer valid."""
+    """Whether a tree declares a format in which the older spellings are not valid."""
     version = root.get("BTCPP_format") if root else None
     return version is not None and version.value.strip() not in ("", "3")
 
@@ -93,7 +93,7 @@ def _attribute(context: FileContext, element: Element, attribute: Attribute, kno
 
 
 def _unread(context: FileContext, span: Span, message: str, superfluous: Span) -> Finding:
-    remove = Fix("Remove it", (removal(context.source.text, superfluous),), safe=True)
+    remove = Fix("Remove the older spelling", (removal(context.source.text, superfluous),), safe=True)
     severity = None if context.older else Severity.WARNING
     return RULE.at(span, message, remove, severity=severity, tags=(Tag.DEPRECATED,))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""empty-branch: see empty_branch.md."""
+"""The rule `empty-branch`, which empty_branch.md describes."""
 
 from __future__ import annotations
 

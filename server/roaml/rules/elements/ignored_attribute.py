@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ignored-attribute: see ignored_attribute.md."""
+"""The rule `ignored-attribute`, which ignored_attribute.md describes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SPEAKS_FOR = {("param", "location"): "expr"}
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """Report attributes that other tools read and the model does not."""
+    """Report attributes that other tools read and that have no effect on the model."""
     if context.document is None or context.grammar is None:
         return
     for element, type_, _ in known_elements(context.document, context.grammar):
@@ -51,7 +51,8 @@ def _severity(name: str, context: FileContext) -> Severity:
 
 
 def _reason(attribute: AttributeType) -> str:
-    """The text after "Ignored:" in the schema; otherwise its second sentence, or its first."""
+    """The reason why an attribute has no effect: the text after "Ignored:" in its documentation, otherwise the second
+    sentence of the documentation, or the first if there is only one."""
     text = attribute.documentation
     first, _, second = text.partition(". ")
     reason = text.partition("Ignored:")[2].strip() or second.partition("Not supported:")[2].strip()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ignored-element: see ignored_element.md."""
+"""The rule `ignored-element`, which ignored_element.md describes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         ignored: list[Element] = [s.element for s in chart.statements if isinstance(s, NoEffect)]
         ignored += [h.element for state in chart.states for h in state.handlers if not h.effective]
         for element in ignored:
-            # An element whose only content it is needs content (empty-branch), so it is removed as well.
+            # If the element is the only content of a branch, its removal leaves an empty branch (empty-branch).
             alone = stands_alone(context.document, element)
             edit = removal(context.source.text, element.span)
             remove = Fix(f"Remove `<{element.name}>`", (edit,), preferred=not alone, safe=not alone)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-child: see invalid_child.md."""
+"""The rule `invalid-child`, which invalid_child.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-value: see invalid_value.md."""
+"""The rule `invalid-value`, which invalid_value.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""misplaced-element: see misplaced_element.md."""
+"""The rule `misplaced-element`, which misplaced_element.md describes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from roaml.rules.rule import FileContext, Rule, listing
 from roaml.rules.support.children import has_counted_children
 
 SAME_PARTS = {"param": "field", "field": "param"}
-"""Elements that mean the same in different parents."""
+"""Elements with the same meaning in different parents: the wrong element, and the one that the parent allows."""
 
 
 def check(context: FileContext) -> Iterator[Finding]:
@@ -42,7 +42,7 @@ def _where(context: FileContext, name: str, parent: str) -> str:
 
 
 def _is_current(context: FileContext, name: str) -> bool:
-    """Whether an element is neither an older name nor the root of another kind of file."""
+    """Whether a name is neither the older name of an element nor the root of another kind of file."""
     assert context.grammar is not None
     root = context.document.root if context.document else None
     if root is not None and name in context.grammar.roots:
@@ -51,7 +51,7 @@ def _is_current(context: FileContext, name: str) -> bool:
 
 
 def _group(grammar: Grammar, name: str) -> str:
-    """A phrase for the parents of elements that are allowed in many places."""
+    """A phrase for the parents of an element that is allowed in many places; an empty string for other elements."""
     if name in grammar.groups["Executable"]:
         return "; it is allowed in a transition, a `<target>`, `<onentry>`, `<onexit>` or `<if>`"
     return {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-attribute: see missing_attribute.md."""
+"""The rule `missing-attribute`, which missing_attribute.md describes."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
 
 
 def _likely(context: FileContext, element: Element, name: str) -> str:
-    """The most likely value of a missing attribute; "" if there is none."""
+    """The most likely value of a missing attribute, or an empty string if no value is likely."""
     if name == "initial":
         state = element.find("state")
         identifier = state.get("id") if state else None

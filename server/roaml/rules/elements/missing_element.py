@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-element: see missing_element.md."""
+"""The rule `missing-element`, which missing_element.md describes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class MissingChild(Facts):
-    """`parent` has no child `name`."""
+    """The facts of a finding: the element `parent` lacks the required child `name`."""
 
     parent: str
     name: str
@@ -56,7 +56,7 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
-    """Report threads without a datamodel; that of a machine is optional (docs/spec/ros.md#threads)."""
+    """Report threads without a datamodel; a machine needs none (docs/spec/ros.md#threads)."""
     element = thread.element
     needs_datamodel = element.complete and element.find("datamodel") is None
     if needs_datamodel and not misspelled.among(element.elements, "datamodel", HL_SCXML):
@@ -66,7 +66,7 @@ def _thread_data(context: MachineContext, thread: Thread) -> Iterator[Finding]:
 
 
 def _leave_out(context: FileContext, element: Element) -> Iterator[Fix]:
-    """Remove an element without content, if the element is optional."""
+    """A fix that removes an element without content, if the element is optional."""
     root = context.document.root if context.document else None
     if context.document is None or root is None or context.grammar is None or element not in root.elements:
         return

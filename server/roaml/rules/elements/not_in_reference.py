@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""not-in-reference: see not_in_reference.md."""
+"""The rule `not-in-reference`, which not_in_reference.md describes."""
 
 from __future__ import annotations
 
@@ -10,22 +10,24 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.xml_syntax import Element
 
 NEW_ELEMENTS = ("ros_action_cancel_goal", "ros_action_handle_cancel_goal")
-"""The elements that the main line of the reference translator does not read yet
+"""The elements that the main branch of the reference translator does not read yet
 (docs/spec/differences.md#accepted-machines)."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report each of these elements once in a file."""
+    """Report the first use of each element of `NEW_ELEMENTS` in a file; the finding refers to the other uses."""
     places: dict[str, list[Element]] = {}
     for element in context.machine.element.walk():
         if element.name in NEW_ELEMENTS:
             places.setdefault(element.name, []).append(element)
     for name, (first, *others) in places.items():
         message = (
-            f"AS2FM does not read `<{name}>` yet: it is not in its main line; "
-            "check, verify and translate the model with this tool"
+            f"AS2FM does not read `<{name}>` yet, because its main branch does not contain the element; "
+            "check, verify and translate the model only with this tool"
         )
-        yield RULE.at(first.name_span, message, related=[Related(other.name_span, "here, too") for other in others])
+        yield RULE.at(
+            first.name_span, message, related=[Related(other.name_span, "also used here") for other in others]
+        )
 
 
 RULE = Rule("not-in-reference", Severity.INFORMATION, "An element that AS2FM does not read yet is used.", machine=check)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-element: see repeated_element.md."""
+"""The rule `repeated-element`, which repeated_element.md describes."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def check(context: FileContext) -> Iterator[Finding]:
             if context.grammar is BEHAVIOR_TREE:
                 most = {0: "no children", 1: "one child"}.get(violation.most, f"{violation.most} children")
                 message = f"`<{parent}>` allows only {most}"
-            related = (Related(violation.first.name_span, "the first one"),) if violation.most else ()
-            fixes = [remove(context.document, violation.element, "Remove this one")] if context.document else []
-            yield RULE.at(violation.element.name_span, message, *fixes, related=related)
+            first = Related(violation.first.name_span, f"the first is this `<{violation.first.name}>`")
+            fixes = [remove(context.document, violation.element, f"Remove this `<{name}>`")] if context.document else []
+            yield RULE.at(violation.element.name_span, message, *fixes, related=(first,) if violation.most else ())
 
 
 def check_machine(context: MachineContext) -> Iterator[Finding]:
@@ -45,14 +45,14 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
         for name in ONCE.get(element.name, ()):
             same = [child for child in children if child.name == name]
             for other in same[1:]:
-                related = (Related(same[0].name_span, "the first one"),)
+                related = (Related(same[0].name_span, f"the first is this `<{name}>`"),)
                 message = f"`<{element.name}>` allows only one `<{name}>`"
-                again = remove(context.document, other, "Remove this one")
+                again = remove(context.document, other, f"Remove this `<{name}>`")
                 yield RULE.at(other.name_span, message, again, related=related)
 
 
 def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
-    """Every element with its children, without elements of other namespaces."""
+    """Every element of a document with its children. Elements of other namespaces are left out."""
     namespaces = dict(document.namespaces)
     for element in own_elements(document):
         yield element, [child for child in element.elements if not is_foreign(namespaces, child)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""schema-violation: see schema_violation.md."""
+"""The rule `schema-violation`, which schema_violation.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-attribute: see unknown_attribute.md."""
+"""The rule `unknown-attribute`, which unknown_attribute.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-element: see unknown_element.md."""
+"""The rule `unknown-element`, which unknown_element.md describes."""
 
 from __future__ import annotations
 
@@ -36,6 +36,6 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 _PORTS = {"bidirectional_port": "inout_port"}
-"""Names of ports in models that BehaviorTree.CPP does not support, with the correct names."""
+"""Element names for ports in models that BehaviorTree.CPP does not support, with the supported names."""
 
 RULE = Rule("unknown-element", Severity.ERROR, "The language does not define an element.", file=check)

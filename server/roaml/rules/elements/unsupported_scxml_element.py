@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unsupported-scxml-element: see unsupported_scxml_element.md."""
+"""The rule `unsupported-scxml-element`, which unsupported_scxml_element.md describes."""
 
 from __future__ import annotations
 

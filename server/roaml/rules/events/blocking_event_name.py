@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blocking-event-name: see blocking_event_name.md."""
+"""The rule `blocking-event-name`, which blocking_event_name.md describes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,18 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and is_synchronising(statement.event.value):
-                message = "an event with this name is never discarded: it waits until every receiver handles it"
+                message = (
+                    "an event with this name is never discarded: it waits until every receiver handles it; "
+                    "choose another name"
+                )
                 yield RULE.at(statement.event.span, message)
     for declaration in _with_feedback(context.machine):
         name = declaration.interface
         if isinstance(name, Name) and is_synchronising(f"action_{sanitise(name.value)}_feedback"):
-            message = f"feedback of an action named `{name.value}` is never discarded: it waits until it is handled"
+            message = (
+                f"feedback of an action named `{name.value}` is never discarded: it waits until it is handled; "
+                "choose another name"
+            )
             yield RULE.at(name.span, message)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-data-unavailable: see event_data_unavailable.md."""
+"""The rule `event-data-unavailable`, which event_data_unavailable.md describes."""
 
 from __future__ import annotations
 
@@ -53,7 +53,10 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if place.part in ("onentry", "onexit"):
         if name == "_event" and context.machine.plain:
             # Machines without any ROS or tree element are not rewritten (docs/spec/machines.md#plain-machines).
-            message = f"`_event` in `<{place.part}>` is the event of whichever transition is taken"
+            message = (
+                f"`_event` in `<{place.part}>` is the event of the transition that is taken, which may be any event; "
+                "store it in a variable in the body of the transition"
+            )
             return RULE.at(problem.span, message, severity=Severity.WARNING)
         message = f"`{name}` is not available in `<{place.part}>`; store it in a variable in the body of the transition"
         return RULE.at(problem.span, message)
@@ -69,7 +72,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
 
 
 def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> Iterator[Fix]:
-    """Change `_event.data.x` to `_msg.x`, or `_msg.x` to `_event.data.x`."""
+    """Fixes that change the name to an event variable in `known`, for example `_event.data.x` to `_msg.x`."""
     old = DATA.get(problem.name, problem.name)
     names = [name for name in known if name != "_action"]
     start = problem.span.start

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-never-received: see event_never_received.md."""
+"""The rule `event-never-received`, which event_never_received.md describes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     continue
                 if not system.may(GapAct.RECEIVES, event.name):
                     close = close_names(event.name, awaited)
-                    message = f"no machine has a transition for the event `{event.name}`{did_you_mean(close)}"
+                    message = f"no machine has a transition for the event `{event.name}`, so it has no effect"
+                    message += did_you_mean(close)
                     yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-never-sent: see event_never_sent.md."""
+"""The rule `event-never-sent`, which event_never_sent.md describes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import remove
 from roaml.interfaces.registry import NotFound
 from roaml.model.gaps import GapAct
-from roaml.model.globals import global_variables
+from roaml.model.globals import event_names
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
@@ -35,7 +35,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         unread = system.may(GapAct.SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
         if not unread and event.value not in generated:
             close = close_names(event.value, sent)
-            message = f"no machine sends the event `{event.value}`{did_you_mean(close)}"
+            message = (
+                f"no machine sends the event `{event.value}`, so this transition is never taken{did_you_mean(close)}"
+            )
             drop = remove(context.document, handler.element, "Remove this transition")
             yield RULE.at(event.span, message, *replacements(event.span, close), drop)
 
@@ -65,8 +67,7 @@ def _generated(context: MachineContext, system: System) -> frozenset[str]:
         interface_type = context.interface(kind, name)
         return None if isinstance(interface_type, NotFound) else interface_type
 
-    variables = global_variables(system, interface).values()
-    return frozenset((*timers, *(variable.event for variable in variables)))
+    return event_names(system, interface).union(timers)
 
 
 RULE = Rule("event-never-sent", Severity.ERROR, "No machine sends an event that a transition waits for.", machine=check)

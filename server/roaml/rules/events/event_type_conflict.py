@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-type-conflict: see event_type_conflict.md."""
+"""The rule `event-type-conflict`, which event_type_conflict.md describes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[Finding]:
-    """Report parameters with different types in two senders of an event, which must be the same
+    """Report parameters that have different types in two senders of an event; the types must be equal
     (docs/spec/machines.md#send)."""
     if param.name is None:
         return
@@ -84,7 +84,7 @@ def flattened(name: str, type_: Type) -> dict[str, Type]:
 
 
 def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPart], list[Param]]:
-    """The fields that the machine sends, by declaration and part of the interface."""
+    """The fields that the machine sends, grouped by declaration and part of the interface."""
     sent_fields: defaultdict[tuple[Declaration, ProtocolPart], list[Param]] = defaultdict(list)
     for chart in context.machine.charts:
         for statement in chart.statements:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""late-event-data: see late_event_data.md."""
+"""The rule `late-event-data`, which late_event_data.md describes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _ANSWERS = {
     ProtocolPart.BT_TICK: (ProtocolPart.BT_STATUS,),
     ProtocolPart.BT_HALT: (ProtocolPart.BT_HALTED,),
 }
-"""The element that a machine must send before the next event of a kind can arrive."""
+"""The events that a machine must send before the next event of a kind can arrive."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -97,8 +97,9 @@ def _message(value: TypedValue, name: str) -> str:
 
 
 def _severity(value: TypedValue) -> Severity | None:
-    """Data of the tree protocol cannot be overwritten, because a node answers once per tick; data that are only sent on
-    seldom are."""
+    """The severity of a finding: hint if the data are unlikely to be overwritten, otherwise `None` (the default). Data
+    of the tree protocol cannot be overwritten, because a node answers once per tick. Data that are only sent on seldom
+    are."""
     handler = value.place.handler
     if handler is not None and handler.trigger in (
         ProtocolPart.CHILD_STATUS,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""removed-bt-event: see removed_bt_event.md."""
+"""The rule `removed-bt-event`, which removed_bt_event.md describes."""
 
 from __future__ import annotations
 

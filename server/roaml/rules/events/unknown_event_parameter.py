@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-event-parameter: see unknown_event_parameter.md."""
+"""The rule `unknown-event-parameter`, which unknown_event_parameter.md describes."""
 
 from __future__ import annotations
 

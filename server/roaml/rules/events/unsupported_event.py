@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unsupported-event: see unsupported_event.md."""
+"""The rule `unsupported-event`, which unsupported_event.md describes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _check(element: Element, attribute: Attribute, event: Name | None, text: str
         )
     elif len(event.value.split()) > 1:
         names = listing(event.value.split())
-        # If one of them is a wildcard, its copy is still reported.
+        # The copy for a wildcard is still reported, so the fix is not preferred then.
         split = Fix("Write one transition for each event", (_copies(element, event, text),), preferred="*" not in names)
         yield RULE.at(event.span, f"a transition waits for exactly one event; write one for each of {names}", split)
     elif "*" in event.value:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""coarse-random: see coarse_random.md."""
+"""The rule `coarse-random`, which coarse_random.md describes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MIRRORED = {
     Operator.GREATER: Operator.LESS,
     Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
 }
-"""Each comparison operator, with the operator for exchanged sides."""
+"""Each comparison operator with the operator that has the same meaning after an exchange of the operands."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -40,7 +40,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
-    """Random numbers that are multiplied by more than the number of their values."""
+    """Report random numbers that are multiplied by a constant greater than the number of their values."""
     is_rounded = isinstance(expr, Call) and isinstance(expr.function, Member) and expr.function.name in ROUNDING
     scale = slope(expr.arguments[0] if isinstance(expr, Call) and is_rounded and expr.arguments else expr)
     if scale is None or abs(scale) <= values:
@@ -58,7 +58,7 @@ def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
 
 
 def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Finding]:
-    """Comparisons of a random number whose probability differs from the probability that the constant suggests."""
+    """Report comparisons of a random number whose probability differs from the one that the constant suggests."""
     for node in walk(expr):
         if not isinstance(node, Binary) or node.operator not in _MIRRORED:
             continue
@@ -83,7 +83,7 @@ def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Findin
 
 
 _STRICT = (Operator.LESS, Operator.GREATER_EQUAL)
-"""The comparisons for which a value equal to the bound is on the same side as the greater values."""
+"""The comparisons that give the same result for a value equal to the bound and for greater values."""
 
 
 def drawn_variables(chart: Chart) -> frozenset[str]:
@@ -103,7 +103,8 @@ def drawn_variables(chart: Chart) -> frozenset[str]:
 
 
 def slope(expr: Expr) -> float | None:
-    """The constant a in an expression a · `Math.random()` + b, where b is anything without random numbers."""
+    """The constant a in an expression of the form a · `Math.random()` + b, where b contains no random numbers. `None`
+    if the expression does not have this form."""
     if is_draw(expr):
         return 1.0
     match expr:
@@ -138,7 +139,7 @@ def _advice(cells: int) -> str:
 
 
 def _comparison_advice(name: str, operator: Operator, bound: Fraction, values: int) -> str:
-    """The advice for a probability of `bound`, or 1 - `bound`."""
+    """Advice on how to make a comparison of the variable `name` hold with probability `bound` or 1 - `bound`."""
     if (bound * values).denominator == 1:
         other = "<" if operator is Operator.LESS_EQUAL else ">="
         return f"write `{name} {other} {float(bound):g}`"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""condition-not-boolean: see condition_not_boolean.md."""
+"""The rule `condition-not-boolean`, which condition_not_boolean.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""division-by-zero: see division_by_zero.md."""
+"""The rule `division-by-zero`, which division_by_zero.md describes."""
 
 from __future__ import annotations
 

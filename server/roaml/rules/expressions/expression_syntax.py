@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""expression-syntax: see expression_syntax.md."""
+"""The rule `expression-syntax`, which expression_syntax.md describes."""
 
 from __future__ import annotations
 

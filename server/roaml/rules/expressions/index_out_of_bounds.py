@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""index-out-of-bounds: see index_out_of_bounds.md."""
+"""The rule `index-out-of-bounds`, which index_out_of_bounds.md describes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
-    """Declare the array with enough elements, if it is a variable."""
+    """A fix that declares the array with enough elements, if it is a variable."""
     if not isinstance(value.value, Expression):
         return
     used = [n for n in walk(value.value.tree) if isinstance(n, Index) and n.index.span == problem.span]
@@ -48,7 +48,7 @@ def _more_room(value: TypedValue, problem: IndexOutOfBounds) -> Iterator[Fix]:
 
 
 def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterator[Finding]:
-    """Indices beyond the size that arrays without a bound have in this system."""
+    """Report indices beyond the size that arrays without a bound have in this system."""
     if context.system is None:
         return
     size = context.system.parameters.max_array_size
@@ -74,10 +74,13 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     if not isinstance(array, Array) or array.bound is None:
         return
     if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
+        name = _text(context, tree.object)
         yield RULE.at(
             tree.index.span,
-            f"`{_text(context, tree.object)}` has at most {array.bound} elements, and no condition prevents a write "
-            "after the last one",
+            (
+                f"`{name}` has at most {array.bound} elements, and no condition prevents a write after the last one; "
+                f"test `{name}.length` first"
+            ),
             severity=Severity.WARNING,
         )
 
@@ -102,7 +105,7 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
 
 
 def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:
-    """Whether the same body sets the length or the elements of the array before."""
+    """Whether an earlier statement of the same body sets the length or the elements of the array."""
     names = (_text(context, array), f"{_text(context, array)}.length")
     return any(
         isinstance(other.value, Expression)
@@ -142,7 +145,7 @@ def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: in
 
 
 def _trigger(handler: Handler) -> tuple[object, ...]:
-    """The trigger that handlers which are tested in order have in common."""
+    """The trigger of a handler, as a key: handlers with equal keys are tested in document order."""
     names = (handler.event, handler.handle, handler.child)
     return (handler.trigger, *(name.value if name else "" for name in names))
 
@@ -190,7 +193,7 @@ def _below(operator: Operator, number: float | None, bound: int) -> bool:
         case Operator.LESS_EQUAL | Operator.EQUAL:
             return number is None or number < bound
         case Operator.NOT_EQUAL:
-            # An array that grows by one stays below a length that it never has.
+            # The length grows by 1, so it cannot pass a number that the condition excludes.
             return number is None or 0 < number <= bound
     return False
 

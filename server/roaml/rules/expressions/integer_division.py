@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""integer-division: see integer_division.md."""
+"""The rule `integer-division`, which integer_division.md describes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _whole(tree: Expr) -> Iterator[Call]:
-    """The calls that round a quotient to an integer."""
+    """The calls of `Math.floor` and `Math.ceil` in an expression, which round a quotient to an integer."""
     for node in walk(tree):
         if isinstance(node, Call) and isinstance(node.function, Member) and node.function.name in WHOLE:
             yield node

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""integer-range: see integer_range.md."""
+"""The rule `integer-range`, which integer_range.md describes."""
 
 from __future__ import annotations
 

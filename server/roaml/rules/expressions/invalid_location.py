@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-location: see invalid_location.md."""
+"""The rule `invalid-location`, which invalid_location.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-operand: see invalid_operand.md."""
+"""The rule `invalid-operand`, which invalid_operand.md describes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _compare(problem: BadOperand) -> Iterator[Fix]:
-    """Compare a number with 0 where a boolean is required."""
+    """A fix that compares a number with 0 where a boolean is required."""
     if problem.required == BOOL and is_number(problem.given):
         yield Fix("Compare with 0", tuple(_around(problem.span, "(", " != 0)")), preferred=False)
 

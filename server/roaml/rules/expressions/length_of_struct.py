@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""length-of-struct: see length_of_struct.md."""
+"""The rule `length-of-struct`, which length_of_struct.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""misplaced-random: see misplaced_random.md."""
+"""The rule `misplaced-random`, which misplaced_random.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""type-mismatch: see type_mismatch.md."""
+"""The rule `type-mismatch`, which type_mismatch.md describes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def can_hold(required: Type, given: Type) -> bool:
-    """Whether a value fits. Structs are assigned leaf by leaf, so another struct with the same leaves fits as well."""
+    """Whether a value of the type `given` fits where the type `required` is needed. Structs are assigned leaf by leaf,
+    so a struct with the same leaves fits as well."""
     inner, bounds = unwrap(required)
     other, more = unwrap(given)
     if isinstance(inner, Struct) and isinstance(other, Struct) and len(bounds) == len(more):
@@ -78,7 +79,8 @@ def _without_points(context: MachineContext, value: TypedValue, required: Type) 
 
 
 def _too_long(tree: Expr, required: Type, size: int | None) -> Iterator[Finding]:
-    """Literals with more elements than the array can hold; `size` is the size of arrays without a bound, if known."""
+    """Report literals with more elements than the array can hold; `size` is the size of arrays without a bound, if
+    known."""
     match tree, required:
         case ArrayLiteral(), Array():
             yield from _longer(tree.span, f"`{required}` holds", "elements", len(tree.elements), required.bound or size)
@@ -114,7 +116,7 @@ def _what(value: TypedValue) -> str:
 
 
 def _fixes(context: MachineContext, value: TypedValue, given: Type, required: Type, span: Span) -> Iterator[Fix]:
-    """Rewrite the value, or change the type of the variable to that of the value."""
+    """Fixes that rewrite the value, or change the type of the variable to the type of the value."""
     if not isinstance(value.value, Expression):
         return
     is_whole_value = span == value.value.span

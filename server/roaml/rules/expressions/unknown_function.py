@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-function: see unknown_function.md."""
+"""The rule `unknown-function`, which unknown_function.md describes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ADVICE = {
 
 
 REWRITTEN = {"Math.sqrt": ("Math.pow", ", 0.5"), "Math.round": ("Math.floor", " + 0.5")}
-"""A function with the same effect, and the text to add after its argument."""
+"""Unknown functions, each with a function that has the same effect and the text to add after its argument."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -61,7 +61,7 @@ def _unknown(problem: UnknownFunction, value: Value) -> Finding:
 
 
 def _rewrite(problem: UnknownFunction, value: Value) -> Iterator[Fix]:
-    """Call another function with the same effect."""
+    """Fixes that call another function with the same effect."""
     if problem.name not in REWRITTEN or not isinstance(value, Expression) or value.broken:
         return
     function, behind = REWRITTEN[problem.name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-member: see unknown_member.md."""
+"""The rule `unknown-member`, which unknown_member.md describes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _add(context: MachineContext, problem: MissingMembers, names: list[str]) -> Iterator[Fix]:
-    """Add the missing members with the zeros of their types."""
+    """A fix that adds the missing members with the zero values of their types."""
     text = context.source.text[slice(*problem.span)]
     values = [zero_text(type_) for name in names if (type_ := problem.struct.member(name)) is not None]
     if text[-1:] != "}" or len(values) < len(names):
@@ -69,7 +69,7 @@ def _really_missing(problem: MissingMembers, value: TypedValue) -> list[str]:
 
 
 def _without_quotes(span: Span, text: str) -> Span:
-    """The name of a member, without the quotes of its key."""
+    """The span of a member's name, without the quotes around it."""
     quote = QUOTE.match(text, span.start, span.end)
     width = quote.end() - span.start if quote else 0
     return Span(span.start + width, span.end - width)

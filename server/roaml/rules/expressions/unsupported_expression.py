@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unsupported-expression: see unsupported_expression.md."""
+"""The rule `unsupported-expression`, which unsupported_expression.md describes."""
 
 from __future__ import annotations
 

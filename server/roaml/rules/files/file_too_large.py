@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""file-too-large: see file_too_large.md. Reported where files are read (`roaml.project.checking`)."""
+"""The rule `file-too-large`, which file_too_large.md describes. `roaml.project.checking` reports it
+where files are read."""
 
 from __future__ import annotations
 

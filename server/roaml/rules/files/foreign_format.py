@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""foreign-format: see foreign_format.md."""
+"""The rule `foreign-format`, which foreign_format.md describes."""
 
 from __future__ import annotations
 

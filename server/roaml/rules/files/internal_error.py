@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""internal-error: see internal_error.md. Reported where a rule crashes (`roaml.project.checking`)."""
+"""The rule `internal-error`, which internal_error.md describes. `roaml.project.checking` reports it
+where a rule fails."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-file: see missing_file.md."""
+"""The rule `missing-file`, which missing_file.md describes."""
 
 from __future__ import annotations
 

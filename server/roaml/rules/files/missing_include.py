@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-include: see missing_include.md."""
+"""The rule `missing-include`, which missing_include.md describes."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             yield RULE.at(include.path.span, f"`{include.path.value}` cannot be included: {reason}")
         elif include.package is not None and include.package.value in context.unknown_packages:
             message = (
-                f"no folder around this file has the ROS package `{include.package.value}`, "
-                "so the trees and models in it are not known"
+                f"no folder around this file contains the ROS package `{include.package.value}`, "
+                "so the trees and models in it are unknown"
             )
             yield RULE.at(include.package.span, message, severity=Severity.INFORMATION)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""not-checked: see not_checked.md."""
+"""The rule `not-checked`, which not_checked.md describes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_s
 from roaml.text import Span
 
 _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
-"""The facts about a file that may be the plugin of a node."""
+"""What a file may contain that cannot be read and is listed as a plugin: a plugin with any name."""
 _ANY_FACT: set[Fact] = {(GapAct.ANYTHING, None)}
 _MAX_NAMED_QUESTIONS = 3
 """The maximum number of questions that a message names."""
@@ -34,14 +34,14 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
     if isinstance(context, MachineContext) and not context.all_structs:
         yield from _unknown_types(context)
     causes = list(_causes(context, context.system))
-    wants = list(_wants(context.system, context.interface)) if causes else []
-    told: dict[Span, list[str]] = {}
+    questions = list(_questions(context.system, context.interface)) if causes else []
+    texts_at: dict[Span, list[str]] = {}
     for span, facts in causes:
-        answered = told.setdefault(span, [])
-        answered += [want.question for want in wants if want.question not in answered and want.may_be(facts)]
-    for span, questions in told.items():
-        if questions:
-            yield RULE.at(span, f"not checked because of this error: {_listing(questions)}; fix the error first")
+        texts = texts_at.setdefault(span, [])
+        texts += [question.text for question in questions if question.text not in texts and question.may_be(facts)]
+    for span, texts in texts_at.items():
+        if texts:
+            yield RULE.at(span, f"not checked because of this error: {_listing(texts)}; fix the error first")
 
 
 def _unknown_types(context: MachineContext) -> Iterator[Finding]:
@@ -62,12 +62,18 @@ def _unknown_types(context: MachineContext) -> Iterator[Finding]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Want:
-    """Something that is missing in the readable part of the system. If there is no `act`, it is a variable."""
+class _Question:
+    """A question about the system whose answer is not in its readable part.
+
+    Attributes:
+        act: what an automaton would have to do; `None` if the question is whether a variable of the translation exists.
+        name: of the plugin, topic, service, action, event or variable in question.
+        text: the question as a clause.
+    """
 
     act: Act | None
     name: str
-    question: str
+    text: str
 
     def may_be(self, facts: set[Fact]) -> bool:
         missing = self.act
@@ -77,7 +83,7 @@ class _Want:
 
 
 def _causes(context: MachineContext | TreeContext | SystemContext, system: System) -> Iterator[tuple[Span, set[Fact]]]:
-    """The places in a file that cannot be read, with the facts that they may contain."""
+    """The places in a file that cannot be read, each with the facts that the place may contain."""
     if isinstance(context, MachineContext):
         for placed in context.gaps:
             for automaton in context.automata:
@@ -105,47 +111,53 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
             yield port_span(node, use.port), system.facts_of_name(automaton, use)
 
 
-def _wants(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Want]:
+def _questions(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Question]:
     for name in sorted({instance.plugin for instance in system.instances}):
         if system.plugin(name)[1] is None:
-            yield _Want(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
+            yield _Question(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
             question = f"which machine subscribes to the topic `{topic.name}`"
-            yield _Want(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name, question)
+            yield _Question(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name, question)
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):
-            yield _Want(
+            yield _Question(
                 InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE),
                 topic.name,
                 f"which machine publishes on the topic `{topic.name}`",
             )
-    for what, server, client, channels in (
+    for kind_name, server, client, channels in (
         ("service", SymbolKind.SERVICE_SERVER, SymbolKind.SERVICE_CLIENT, system.services),
         ("action", SymbolKind.ACTION_SERVER, SymbolKind.ACTION_CLIENT, system.actions),
     ):
         for channel in channels.values():
             if not channel.sources:
-                yield _Want(InterfaceAct(server), channel.name, f"which machine serves the {what} `{channel.name}`")
+                yield _Question(
+                    InterfaceAct(server), channel.name, f"which machine serves the {kind_name} `{channel.name}`"
+                )
             elif not channel.users:
-                yield _Want(InterfaceAct(client), channel.name, f"which machine uses the {what} `{channel.name}`")
+                yield _Question(
+                    InterfaceAct(client), channel.name, f"which machine uses the {kind_name} `{channel.name}`"
+                )
     for event in system.events.values():
         if not event.senders:
-            yield _Want(GapAct.SENDS, event.name, f"which machine sends the event `{event.name}`")
+            yield _Question(GapAct.SENDS, event.name, f"which machine sends the event `{event.name}`")
         elif not event.receivers and not system.is_observed(event.name):
-            yield _Want(GapAct.RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
+            yield _Question(GapAct.RECEIVES, event.name, f"which machine has a transition for the event `{event.name}`")
     for variable, ports in system.blackboard.items():
         is_read = any(bound.port.read for bound in ports)
         if not any(bound.port.written for bound in ports):
             does = "writes" if is_read else "writes and which reads"
-            yield _Want(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
+            yield _Question(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
         elif not is_read:
-            yield _Want(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
-    known = global_variables(system, lambda kind, name: _found(interface(kind, name)))
+            yield _Question(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")
+    if not system.observed:
+        return
+    known = global_variables(system, lambda kind, name: _type_or_none(interface(kind, name)))
     for name in sorted(system.observed - known.keys()):
-        yield _Want(None, name, f"whether the variable `{name}`, which a property names, exists")
+        yield _Question(None, name, f"whether the variable `{name}`, which a property names, exists")
 
 
-def _found(interface: InterfaceType | NotFound) -> InterfaceType | None:
+def _type_or_none(interface: InterfaceType | NotFound) -> InterfaceType | None:
     return None if isinstance(interface, NotFound) else interface
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-document: see unknown_document.md."""
+"""The rule `unknown-document`, which unknown_document.md describes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOTS = tuple(root for grammar in (SYSTEM, HL_SCXML, BEHAVIOR_TREE, STRUCTS, XML
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """Report a file that was named explicitly and is not a supported file."""
+    """Report a file that a user or a system names and that is not a supported file."""
     if context.grammar is not None or context.document is None:
         return
     root = context.document.root

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-suppression: see unused_suppression.md. Reported by `roaml.project.checking`, which has all findings."""
+"""The rule `unused-suppression`, which unused_suppression.md describes. `roaml.project.checking` reports it,
+because it has the findings of all rules."""
 
 from __future__ import annotations
 
@@ -15,8 +16,13 @@ from roaml.text import Span, TextEdit
 def finding(
     text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
 ) -> Iterator[Finding]:
-    """The finding for a comment that suppresses `codes` (`None`: all), of which only those in `used` are needed;
-    `known` are the codes of all rules."""
+    """The finding for a comment that suppresses findings that do not occur; nothing if all its codes are needed.
+
+    Args:
+        codes: the codes that the comment lists; `None` if it suppresses all rules.
+        used: the codes of the findings that it suppresses.
+        known: the codes of all rules.
+    """
     used, known = frozenset(used), frozenset(known)
     misspelt = [code for code in codes or () if code not in known]
     if misspelt:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""wrong-file-kind: see wrong_file_kind.md."""
+"""The rule `wrong-file-kind`, which wrong_file_kind.md describes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TYPES = {
     ("data_declarations", FileKind.STRUCTS): "xml",
     ("data_declarations", FileKind.JSON_STRUCTS): "json",
 }
-"""The kinds of files that each section lists."""
+"""The value of `type` for each section and kind of file."""
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
@@ -38,7 +38,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
 
 
 def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
-    """Report a machine that is listed as a plugin and is not one, or listed as a node and is a plugin."""
+    """Report a machine that is listed as a plugin but is a node, or is listed as a node but is a plugin."""
     system, section = context.system, listed.input.section
     ticked = section == "node_models" and listed.path in system.ticked_nodes
     same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cancel-never-sent: see cancel_never_sent.md."""
+"""The rule `cancel-never-sent`, which cancel_never_sent.md describes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CANCELS = InterfaceAct(SymbolKind.ACTION_CLIENT, ProtocolPart.CANCEL)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report handlers of cancel requests that no client sends. Clients that do not exist are reported by
+    """Report handlers of cancel requests that no client sends. An action without any client is reported by
     missing-client."""
     if context.system is None:
         return
@@ -37,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         told.add(handler)
                         message = (
                             f"this handler is never taken: no client of `{action.name}` has a "
-                            "`<ros_action_cancel_goal>`"
+                            "`<ros_action_cancel_goal>`; add one, or remove the handler"
                         )
                         drop = remove(context.document, handler.element)
                         yield RULE.at(handler.element.name_span, message, drop)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-field: see duplicate_field.md."""
+"""The rule `duplicate-field`, which duplicate_field.md describes."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def _twice(context: MachineContext, params: tuple[Param, ...], kind: str) -> Ite
             again = "" if before.value == param.name.value else f" (as `{before.value}`)"
             yield RULE.at(
                 param.name.span,
-                f"the {kind} `{param.name.value}` is set twice{again}",
-                Fix("Remove this one", (removal(context.source.text, param.element.span),), preferred=False),
+                f"the {kind} `{param.name.value}` is set twice{again}; remove one of them",
+                Fix(f"Remove this {kind}", (removal(context.source.text, param.element.span),), preferred=False),
                 related=(Related(before.span, "set first here"),),
             )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-handle: see duplicate_handle.md."""
+"""The rule `duplicate-handle`, which duplicate_handle.md describes."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
     assert before.handle is not None
     related = (Related(before.handle.span, "declared first here"),)
     if _meaning(declaration) == _meaning(before):
-        message = f"`{handle.value}` is declared again with the same meaning"
-        remove = Fix("Remove this one", (removal(context.source.text, declaration.element.span),), safe=True)
-        # Two timers of one name are rejected, whatever their rates are (docs/spec/ros.md#timers).
+        message = f"`{handle.value}` is declared again with the same meaning; remove one of the declarations"
+        remove = Fix("Remove this declaration", (removal(context.source.text, declaration.element.span),), safe=True)
+        # The reference translator rejects two timers with one name, even if their rates are equal
+        # (docs/spec/ros.md#timers).
         severity = Severity.ERROR if declaration.kind is SymbolKind.TIMER else Severity.WARNING
         return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
@@ -54,7 +55,7 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
 
 
 def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> Fix:
-    """Rename a declaration and all its uses."""
+    """A fix that renames a declaration and all its uses."""
     machine = context.machine
     new = unused(handle.value.strip("/").replace("/", "_"), (d.handle.value for d in machine.declarations if d.handle))
     users: list[Handler | RosSend] = []
@@ -67,7 +68,7 @@ def _rename(context: MachineContext, declaration: Declaration, handle: Name) -> 
     else:
         end = declaration.element.name_span.end
         edit = TextEdit(Span(end, end), f' name="{new}"')
-    return Fix(f"Rename this one to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
+    return Fix(f"Rename this declaration to `{new}`", (edit, *(TextEdit(span, new) for span in named)), preferred=False)
 
 
 def _meaning(declaration: Declaration) -> tuple[SymbolKind, tuple[str, ...]]:
@@ -82,7 +83,7 @@ def _written(value: Name | PortRead | None) -> str:
 
 
 def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
-    """Report a service or action that a client declares twice (docs/spec/ros.md#services)."""
+    """The finding for a service or action that a client declares twice (docs/spec/ros.md#services)."""
     assert before.handle is not None
     message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))

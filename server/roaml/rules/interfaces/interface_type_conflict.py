@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""interface-type-conflict: see interface_type_conflict.md."""
+"""The rule `interface-type-conflict`, which interface_type_conflict.md describes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _conflict(context: MachineContext, system: System, declaration: Declaration, channel: Channel) -> Finding | None:
-    """The first type elsewhere that differs from that of a declaration."""
+    """The finding for a declaration whose type differs from another declaration of the topic, service or action; `None`
+    if all types agree."""
     if declaration.type is None:
         return None
     kind, mine = declaration.kind, declaration.type.value
@@ -49,7 +50,7 @@ def _conflict(context: MachineContext, system: System, declaration: Declaration,
         name = declaration.interface.value if isinstance(declaration.interface, Name) else channel.name
         return RULE.at(
             declaration.type.span,
-            f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}",
+            f"the {channel_kind.value} `{name}` has the type `{type_}` elsewhere{clash}; use the same type",
             Fix(f"Change to `{type_}`", (TextEdit(declaration.type.span, type_),), preferred=not related),
             # The reference translator does not compare the types of a topic (docs/spec/ros.md#topics).
             severity=Severity.WARNING if is_topic and not clash else Severity.ERROR,
@@ -59,8 +60,8 @@ def _conflict(context: MachineContext, system: System, declaration: Declaration,
 
 
 def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...], bool]]:
-    """The types at the other side, which take precedence, then those at the same side, each with whether it is at the
-    same side."""
+    """The types of the other declarations: first those on the other side, which take precedence, then those on the same
+    side. Each has its related places, and whether it is on the same side."""
     other = [endpoint for endpoint in channel.endpoints if endpoint.use.kind is other_kind(kind)]
     is_clock = kind is SymbolKind.SUBSCRIBER and channel.name == CLOCK_TOPIC and system.has_timer
     if is_clock:
@@ -73,12 +74,13 @@ def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tupl
 
 
 def _clash(context: MachineContext, mine: str, other: str) -> str:
-    """What is said of a field that two types of messages have with values of different kinds; "" if there is none."""
+    """The part of the message about a field that both message types have with values of different kinds; an empty
+    string if there is no such field."""
     messages = [context.interface(INTERFACE_KINDS[SymbolKind.PUBLISHER], type_) for type_ in (mine, other)]
     fields, theirs = ({} if isinstance(m, NotFound) else dict(leaves(m.part("message"))) for m in messages)
     for path, type_ in fields.items():
         if path in theirs and not same_kind(type_, theirs[path]):
-            return f"; its field `{'.'.join(path)}` is {phrase(theirs[path])} there and {phrase(type_)} here"
+            return f", and its field `{'.'.join(path)}` is {phrase(theirs[path])} there and {phrase(type_)} here"
     return ""
 
 
@@ -88,7 +90,7 @@ def _known(context: MachineContext, kind: SymbolKind, *types: str) -> bool:
 
 
 def normal(type_: str) -> str:
-    """`package/Type`, whether or not the kind is written in between."""
+    """The type as `package/Type`, without the kind that may be between them (`package/msg/Type`)."""
     parts = type_.split("/")
     return f"{parts[0]}/{parts[-1]}"
 

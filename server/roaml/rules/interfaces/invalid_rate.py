@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-rate: see invalid_rate.md."""
+"""The rule `invalid-rate`, which invalid_rate.md describes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _missing(declaration: Declaration) -> Finding:
 
 
 def _port(context: MachineContext, read: PortRead) -> Iterator[Finding]:
-    """Check the rates that the nodes of the tree pass by a port."""
+    """Check the rates that the nodes of the tree pass through a port."""
     key = read.key.value if read.key else ""
     for automaton in context.automata:
         value = automaton.port(key)
@@ -52,7 +52,7 @@ def _port(context: MachineContext, read: PortRead) -> Iterator[Finding]:
 
 
 def rate_problem(text: str) -> str:
-    """Why `text` is not a rate in Hz; "" if it is one."""
+    """The reason why `text` is not a rate in Hz, or an empty string if it is one."""
     try:
         rate = float(text)
     except ValueError:

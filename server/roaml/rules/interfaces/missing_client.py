@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-client: see missing_client.md."""
+"""The rule `missing-client`, which missing_client.md describes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for declaration, channel in unused:
             if not system.may(InterfaceAct(other_kind(kind)), channel.name):
                 close = close_names(channel.name, unserved)
-                message = f"no machine uses the {kind_name} `{channel.name}`{did_you_mean(close)}"
+                message = f"no machine uses the {kind_name} `{channel.name}`, so the server is never called"
+                message += did_you_mean(close)
                 fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
                 yield RULE.at(name_span(declaration), message, *fixes)
 

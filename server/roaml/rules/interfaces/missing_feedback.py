@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-feedback: see missing_feedback.md."""
+"""The rule `missing-feedback`, which missing_feedback.md describes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if any(system.may(_SENDS_FEEDBACK, action.name, server.automaton) for server in action.sources):
             continue
         for handler in _handlers(context, declaration):
-            message = f"the server of `{action.name}` never sends feedback"
+            message = f"this handler is never taken: the server of `{action.name}` never sends feedback"
             related = (Related(action.sources[0].symbol, "the server"),)
             drop = remove(context.document, handler.element)
             yield RULE.at(handler.element.name_span, message, drop, related=related)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-field: see missing_field.md."""
+"""The rule `missing-field`, which missing_field.md describes."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Type]]:
-    """The fields that are required and not set, with their types."""
+    """The required fields that a statement does not set, with their types."""
     unset = context.typed.unset.get(statement.element, ())
     part = sent_part(context, statement) if unset else None
     if part is None or any(field.name is None for field in statement.fields):
-        return []  # a field without a name (missing-attribute) may be the missing one
+        return []  # missing-attribute reports a field without a name, which may be the missing field
     # A field that is only misspelled, or set as a whole, is reported as an unknown field.
     names = {field.name.value for field in statement.fields if field.name}
     known = [".".join(path) for path, _ in leaves(part)]
@@ -39,7 +39,7 @@ def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Typ
 
 
 def _meant(name: str, known: Iterable[str]) -> tuple[str, ...]:
-    """The fields that an unknown field was probably meant to set."""
+    """The known fields that a field with the unknown name `name` was probably intended to set."""
     inside = tuple(path for path in known if path.startswith(f"{name}."))
     return inside or close_names(name, known, 1)
 

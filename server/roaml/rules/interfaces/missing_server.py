@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-server: see missing_server.md."""
+"""The rule `missing-server`, which missing_server.md describes."""
 
 from __future__ import annotations
 
@@ -39,12 +39,14 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
-    message = f"no machine serves the {kind_name} `{channel.name}`{did_you_mean(close)}"
+    message = (
+        f"no machine serves the {kind_name} `{channel.name}`, so its clients never get an answer{did_you_mean(close)}"
+    )
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 
 def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
-    """Rename an interface where it is declared, and where its name is used as the handle."""
+    """Fixes that rename an interface where it is declared, and where its name is used as the handle."""
     if not naming.literal:
         return
     spans = [naming.span]

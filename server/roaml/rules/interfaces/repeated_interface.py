@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-interface: see repeated_interface.md."""
+"""The rule `repeated-interface`, which repeated_interface.md describes."""
 
 from __future__ import annotations
 

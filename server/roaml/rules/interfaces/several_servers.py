@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""several-servers: see several_servers.md."""
+"""The rule `several-servers`, which several_servers.md describes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,9 @@ def _same_events(declaration: Declaration, channel: Channel, other: Channel, nou
         f"the {noun}s `{channel.name}` and `{other.name}` are both called `{sanitise(channel.name)}` in the "
         f"translation, which cannot distinguish them; rename one of them"
     )
-    return RULE.at(name_span(declaration), message, related=[Related(other.sources[0].symbol, "the other one")])
+    return RULE.at(
+        name_span(declaration), message, related=[Related(other.sources[0].symbol, f"the server of `{other.name}`")]
+    )
 
 
 def _finding(

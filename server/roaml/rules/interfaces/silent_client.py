@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""silent-client: see silent_client.md."""
+"""The rule `silent-client`, which silent_client.md describes."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
                         f"this handler is never taken: there is no `<{element}>` for the "
                         f"`<{DECLARING_ELEMENTS[kind]}>` "
                     )
-                    message += f"`{declaration.handle.value}`"
+                    message += f"`{declaration.handle.value}`; add one, or remove the handler"
                     yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
 
 
 def _without(context: MachineContext, declaration: Declaration, sender: str) -> Fix:
-    """Remove all handlers that wait for an answer to `sender`."""
+    """A fix that removes all handlers that wait for an answer to the element `sender`."""
     waiting = [
         handler.element
         for chart in context.machine.charts
@@ -63,7 +63,8 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
-    """The elements that send something, with their declaration; `None` instead of a declaration that cannot be read."""
+    """The names of the sending elements of the machine, each with the declaration that it uses; `None` if the
+    declaration cannot be read."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, RosSend):

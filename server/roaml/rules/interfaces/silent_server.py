@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""silent-server: see silent_server.md."""
+"""The rule `silent-server`, which silent_server.md describes."""
 
 from __future__ import annotations
 
@@ -77,13 +77,14 @@ def _action(
     waiting = [c for c in clients if ProtocolPart.RESULT in c.use.receives]
     if waiting and not sends(automaton, declaration, ProtocolPart.RESULT):
         message = (
-            f"the action `{channel.name}` never ends: `<ros_action_succeed>`, `_canceled` or `_aborted` is missing"
+            f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `_canceled` or `_aborted` is "
+            "missing"
         )
         yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
 
 
 def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
-    """Send a response with zeros at the end of the handler of each request."""
+    """A fix that sends a response with zero values at the end of each handler of requests."""
     assert declaration.handle is not None
     interface = context.interface("srv", declaration.type.value) if declaration.type else None
     handlers = [h for chart in context.machine.charts for state in chart.states for h in state.handlers]

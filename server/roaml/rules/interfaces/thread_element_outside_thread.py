@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""thread-element-outside-thread: see thread_element_outside_thread.md."""
+"""The rule `thread-element-outside-thread`, which thread_element_outside_thread.md describes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     element.name_span, f"`<{element.name}>` is only allowed in the server, not in its threads"
                 )
             elif chart.scope and element.name in UNUSUAL_IN_THREADS:
-                message = f"`<{element.name}>` in a thread: every goal waits until the server and all threads handle it"
+                message = (
+                    f"`<{element.name}>` in a thread: every goal waits until the server and all threads handle it; "
+                    "handle goals in the server"
+                )
                 yield RULE.at(element.name_span, message, severity=Severity.WARNING)
 
 

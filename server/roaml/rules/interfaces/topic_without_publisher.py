@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""topic-without-publisher: see topic_without_publisher.md."""
+"""The rule `topic-without-publisher`, which topic_without_publisher.md describes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         # A topic that is declared on both sides is unlikely to be misspelled.
         close = close_names(topic.name, () if topic.sources else published)
         silent = " (a publisher is declared but never publishes)" if topic.sources else ""
-        message = f"no machine publishes on the topic `{topic.name}`{silent}{did_you_mean(close)}"
+        message = (
+            f"no machine publishes on the topic `{topic.name}`{silent}, so no message arrives{did_you_mean(close)}"
+        )
         fixes = replacements(naming.span, close if naming.literal else ())
         # A machine that never waits for this topic alone may have inputs that are not used in this system.
         needed = bool(close or topic.sources or naming.use.awaited)

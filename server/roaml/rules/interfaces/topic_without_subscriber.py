@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""topic-without-subscriber: see topic_without_subscriber.md."""
+"""The rule `topic-without-subscriber`, which topic_without_subscriber.md describes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration, topic in unheard:
         if not system.may(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name):
             close = close_names(topic.name, unpublished)
-            message = f"no machine subscribes to the topic `{topic.name}`{did_you_mean(close)}"
+            message = f"no machine subscribes to the topic `{topic.name}`, so its messages have no effect"
+            message += did_you_mean(close)
             fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
             yield RULE.at(name_span(declaration), message, *fixes)
 

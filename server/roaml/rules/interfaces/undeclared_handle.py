@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""undeclared-handle: see undeclared_handle.md."""
+"""The rule `undeclared-handle`, which undeclared_handle.md describes."""
 
 from __future__ import annotations
 
@@ -65,7 +65,8 @@ def _undeclared(
 
 
 def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred: bool) -> Iterator[Fix]:
-    """Declare a timer, or the topic, service or action with this name that other machines of the system use."""
+    """A fix that declares a timer, or the topic, service or action that other machines of the system declare with this
+    name."""
     document, root = context.document, context.machine.element
     if kind is SymbolKind.TIMER:
         text, preferred = f'<ros_time_rate rate_hz="1" name="{name}" />', False

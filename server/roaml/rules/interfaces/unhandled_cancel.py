@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unhandled-cancel: see unhandled_cancel.md."""
+"""The rule `unhandled-cancel`, which unhandled_cancel.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unhandled-canceled-result: see unhandled_canceled_result.md."""
+"""The rule `unhandled-canceled-result`, which unhandled_canceled_result.md describes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _HANDLER = "ros_action_handle_canceled_result"
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report clients that cancel goals and handle results, but no result that says that a goal was canceled."""
+    """Report clients that cancel goals and handle results, but do not handle the result of a canceled goal."""
     machine = context.machine
     requests = [
         statement
@@ -53,7 +53,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _fixes(context: MachineContext, handlers: list[Handler]) -> Iterator[Fix]:
-    """Add a handler with the same target to each state that handles a result."""
+    """A fix that adds a handler with the same target to each state that handles a result."""
     last_of: dict[State, Handler] = {}
     for chart in context.machine.charts:
         for state in chart.states:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-field: see unknown_field.md."""
+"""The rule `unknown-field`, which unknown_field.md describes."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[st
 
 
 def inside_unknown(part: Struct, name: str) -> bool:
-    """Whether a field is inside one of unknown type, so that it cannot be checked."""
+    """Whether a field is inside a field of unknown type, so that it cannot be checked."""
     unknown = (".".join(path) for path, type_ in leaves(part) if isinstance(unwrap(type_)[0], Unknown))
     return any(name.startswith(f"{path}.") for path in unknown)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-ros-type: see unknown_ros_type.md."""
+"""The rule `unknown-ros-type`, which unknown_ros_type.md describes."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
-    """Report the name that ROS 2 itself uses: its meaning is clear, but other tools for these models do not accept
-    it."""
+    """Report a type with its kind, such as `std_msgs/msg/Bool`. ROS 2 uses this form, but other tools for these models
+    do not accept it."""
     package, *kind, name = type_.split("/")
     if kind:
         short = f"{package}/{name}"
@@ -41,7 +41,8 @@ def _with_kind(type_: str, span: Span) -> Iterator[Finding]:
 
 
 def _unknown_package(problem: NotFound, span: Span) -> Finding:
-    """Report an unknown package. Its name may be misspelled; more often it is in a folder that is not searched."""
+    """The finding for an unknown package. Its name may be misspelled; more often the package is in a folder that is not
+    searched."""
     package = problem.type_name.partition("/")[0]
     meant = tuple(name for name in problem.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
     where = f"; searched {', '.join(problem.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
@@ -52,7 +53,7 @@ def _unknown_package(problem: NotFound, span: Span) -> Finding:
 
 
 def _stem(package: str) -> str:
-    """The part of a package's name that distinguishes it from others."""
+    """The name of a package without endings that many packages have, such as `_msgs`."""
     return KIND_SUFFIX.sub("", package)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unset-field: see unset_field.md."""
+"""The rule `unset-field`, which unset_field.md describes."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapp
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report fields that are read and never set. Fields that the reference translator omits need not be set; then they
-    are empty."""
+    """Report fields that are read and never set. The reference translator omits some fields, which therefore need not
+    be set and are empty."""
     if context.system is None:
         return
     for value in context.typed.values:
@@ -58,8 +58,8 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
             yield RULE.at(
                 node.name_span,
                 (
-                    f"no machine sets the field `{field}` of `{channel.name}`, so it is always empty; set it where it "
-                    "is sent"
+                    f"no machine sets the field `{field}` of `{channel.name}`, so it is always empty; set it in the "
+                    "element that sends it"
                 ),
             )
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-handle: see unused_handle.md."""
+"""The rule `unused-handle`, which unused_handle.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""jani-type: see jani_type.md."""
+"""The rule `jani-type`, which jani_type.md describes."""
 
 from __future__ import annotations
 

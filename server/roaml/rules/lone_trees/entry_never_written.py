@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""entry-never-written: see entry_never_written.md."""
+"""The rule `entry-never-written`, which entry_never_written.md describes."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if key in written or hosted or not any(use.reads for use in uses):
             continue
         if any(entries.is_intended(use.tree, use.name) for use in uses):
-            continue  # node-port-value reports the output port that should write it
+            continue  # node-port-value reports the output port that should write the entry
         for use in uses:
             if use.path == context.source.path and _is_outermost(forest, entries, use) and use.tree in executed:
                 yield _finding(use, names.get(use.tree, []))
 
 
 def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
-    """Whether a use reads an entry or gives it to a subtree, in the outermost tree that has a name for it."""
+    """Whether a use reads an entry, or passes it to a subtree, in the outermost tree that has a name for the entry."""
     if use.script or "{" in use.name or not (use.reads or use.remaps):
         return False
     return (use.tree, use.name) not in entries.remapped and not _is_parameter(forest, use)
 
 
 def _is_parameter(forest: Forest, use: Use) -> bool:
-    """Whether the model of a subtree has a port for an entry; missing-node-port reports if it is not set."""
+    """Whether the model of a subtree has a port for an entry; missing-node-port reports a port that is not set."""
     model = forest.subtree_models.get(use.tree)
     port = model.port(use.name) if model is not None else None
     return port is not None and port.direction.reads

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""entry-type-conflict: see entry_type_conflict.md."""
+"""The rule `entry-type-conflict`, which entry_type_conflict.md describes."""
 
 from __future__ import annotations
 
@@ -46,7 +46,8 @@ def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
 
 
 def _first(typed: list[Use]) -> Use:
-    """The first use with the type of the entry: of the most frequent type, if the first port is not a string."""
+    """The first use whose type is the type of the entry. This is the most frequent type, unless the first port is a
+    string."""
     if typed[0].type == STRING:
         return typed[0]
     counts = Counter(use.type for use in typed)
@@ -55,7 +56,7 @@ def _first(typed: list[Use]) -> Use:
 
 
 _CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "NodeStatus", "chrono")
-"""The types that the library converts from a text; the program may register others."""
+"""The types to which BehaviorTree.CPP converts a text; the program may register others."""
 
 
 def _finding(use: Use, first: Use) -> Finding:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-node-port: see missing_node_port.md."""
+"""The rule `missing-node-port`, which missing_node_port.md describes."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if known.library or known.kind is NodeKind.SUBTREE:
             yield from _missing(node, known, known)
         elif not forest.is_partly_described(known):
-            twin = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
-            yield from _missing(node, known, twin) if twin else _without_value(node, known)
+            library_node = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
+            yield from _missing(node, known, library_node) if library_node else _without_value(node, known)
 
 
 def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:
@@ -48,10 +48,10 @@ def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:
 
 
 def _without_value(node: TreeNode, known: Node) -> Iterator[Finding]:
-    """Report the inputs that are not set and have no default. The node may do without them."""
+    """Report the input ports that are not set and have no default, although the node may work without them."""
     meant = probable_ports(node, known)
     if not all(meant.values()):
-        return  # unknown-node-port reports an attribute that may mean any port
+        return  # unknown-node-port reports an attribute that may be a misspelling of any port
     probable = _probable(node, known)
     for port in known.ports:
         if port.name in probable or node.element.get(port.name) is not None or _OPTIONAL.search(port.text):
@@ -62,7 +62,7 @@ def _without_value(node: TreeNode, known: Node) -> Iterator[Finding]:
 
 
 def _probable(node: TreeNode, known: Node) -> set[str]:
-    """The ports that misspelled attributes probably mean: unknown-node-port reports these."""
+    """The ports that misspelled attributes are probably intended to set; unknown-node-port reports these attributes."""
     return {name for names in probable_ports(node, known).values() for name in names}
 
 
@@ -78,4 +78,4 @@ def _value(port: Port) -> str:
     return numbers.get(port.type, f"{{{port.name}}}")
 
 
-RULE = Rule("missing-node-port", Severity.ERROR, "A node or subtree does not set a port that it needs.", tree=check)
+RULE = Rule("missing-node-port", Severity.ERROR, "A node or subtree does not set a required port.", tree=check)

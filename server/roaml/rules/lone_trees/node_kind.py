@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-kind: see node_kind.md."""
+"""The rule `node-kind`, which node_kind.md describes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _tag(known: Node) -> str:
 
 def _finding(node: TreeNode, known: Node) -> Finding:
     tag = node.element.name
-    # The library uses the tag only to count the children.
+    # BehaviorTree.CPP uses the tag only to check the number of children.
     written = NodeKind(tag.lower())
     severity = Severity.INFORMATION if written.children == known.kind.children else None
     article = "an" if known.kind is NodeKind.ACTION else "a"
@@ -46,7 +46,8 @@ def _finding(node: TreeNode, known: Node) -> Finding:
 
 
 def _refused(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Finding]:
-    """BehaviorTree.CPP looks up the tags of these children as names of nodes, by mistake."""
+    """Report generic tags such as `<Action ID="X">` directly in a `ReactiveSequence`. A bug of BehaviorTree.CPP looks
+    up these tags as names of nodes."""
     version = forest.settings.version
     if version is not None and version < LOOKED_UP_SINCE:
         return
@@ -59,7 +60,7 @@ def _refused(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[F
 
 
 def _compact(context: TreeContext, node: TreeNode) -> Fix:
-    """Write the name of a node as its tag."""
+    """A fix that writes the name of a node as its tag."""
     assert node.plugin is not None
     edits = list(rename_tag(node.element, node.plugin.value).edits)
     attribute = node.element.get("ID")

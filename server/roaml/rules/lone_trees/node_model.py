@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-model: see node_model.md."""
+"""The rule `node-model`, which node_model.md describes."""
 
 from __future__ import annotations
 

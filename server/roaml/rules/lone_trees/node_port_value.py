@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-port-value: see node_port_value.md."""
+"""The rule `node-port-value`, which node_port_value.md describes."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _CODE = re.compile(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
 
 
 def _is_code(text: str) -> bool:
-    """Whether a default is a C++ expression, which models use as a description for people."""
+    """Whether a default is a C++ expression. Models contain these as descriptions for readers; they are not values."""
     return bool(_CODE.match(text))
 
 
@@ -65,23 +65,25 @@ def _reference(setting: PortSetting) -> Iterator[Finding]:
     if opens and closes:
         name = inner[1:-1]
         if not name.strip():
-            yield RULE.at(setting.value.span, "the braces do not contain the name of a blackboard entry")
+            yield RULE.at(
+                setting.value.span, "the braces do not contain the name of a blackboard entry; write `{name}`"
+            )
         elif _NAME.match(name.strip("{}")) and name.strip("{}") != name:
             plain = f"{{{name.strip('{}')}}}"
-            message = f"`{inner}` has too many braces, which belong to the name of the entry; write `{plain}`"
+            message = f"`{inner}` has too many braces, which become part of the name of the entry; write `{plain}`"
             yield RULE.at(
                 setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
             )
         elif name != name.strip() and "{" not in name:
             plain = f"{{{name.strip()}}}"
-            message = f"the spaces belong to the name of the entry; write `{plain}`"
+            message = f"the spaces in the braces become part of the name of the entry; write `{plain}`"
             yield RULE.at(
                 setting.value.span, message, *replacements(setting.value.span, (plain,)), severity=Severity.WARNING
             )
     elif opens != closes and inner.count("{") != inner.count("}"):
         name = inner.strip("{}").strip()
         fixes = replacements(setting.value.span, (f"{{{name}}}",)) if _NAME.match(name) else ()
-        message = f"`{inner}` has only one of two braces, so it is a string and not an entry"
+        message = f"`{inner}` has only one of two braces, so it is a string and not an entry; add the other brace"
         yield RULE.at(setting.value.span, message, *fixes, severity=Severity.WARNING)
 
 
@@ -89,8 +91,8 @@ _DOLLAR = re.compile(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
 
 
 def _without_braces(node: TreeNode, port: Port | None, setting: PortSetting, names: Set[str]) -> Iterator[Finding]:
-    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` where the library
-    cannot convert a text itself."""
+    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` where
+    BehaviorTree.CPP itself cannot convert a text."""
     text, span = setting.value.value.strip(), setting.value.span
     dollar = _DOLLAR.match(text)
     name = dollar[1] if dollar else text
@@ -111,7 +113,7 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
     if port.direction is Direction.OUT:
         name = text.strip()
         fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
-        reason = f"`{name}` is a string" if name else "nothing is given"
+        reason = f"not the string `{name}`" if name else "not an empty value"
         message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
         yield RULE.at(span, message, *fixes, severity=_severity(known))
         return
@@ -130,7 +132,8 @@ def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]
 
 
 def _severity(known: Node) -> Severity:
-    """The severity of a finding: only a warning for models in files, which may differ from the node."""
+    """The severity of a finding: warning if the node is described by a model in a file, which may differ from the node,
+    otherwise error."""
     return Severity.ERROR if known.library or known.kind is NodeKind.SUBTREE else Severity.WARNING
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""restarted-node: see restarted_node.md."""
+"""The rule `restarted-node`, which restarted_node.md describes."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             for child in running[1:]:
                 first = running[0]
                 message = (
-                    f"`{_name(child)}` is halted at the next tick: `{name}` ticks from its first child on, and"
-                    f" `{_name(first)}` is RUNNING again then"
+                    f"`{_name(child)}` never ends: at the next tick, `{name}` ticks `{_name(first)}` first, which is "
+                    f"RUNNING again, and halts `{_name(child)}`"
                 )
                 related = [Related(first.element.name_span, "starts again at every tick")]
                 yield RULE.at(child.element.name_span, message, related=related)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""script-name: see script_name.md."""
+"""The rule `script-name`, which script_name.md describes."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for name, operator in _names(script) if not problems else ():
             plain = name.name.removeprefix("@")
             if entries.is_intended(own, name.name):
-                continue  # node-port-value reports the output port that should create it
+                continue  # node-port-value reports the output port that should create the entry
             if entries.entry(own, name.name) not in created and plain not in forest.host_entries:
                 yield _finding(name, operator, nearest_name(name.name, names.get(own, ())), _is_closed(forest, tree))
 
 
 def _names(script: Script) -> Iterator[tuple[Name, str]]:
-    """The names in a script, each with the operator that assigns to it, or ""."""
+    """The names in a script, each with the operator that assigns to it; an empty string if it is only read."""
     targets: set[int] = set()
     for expr in walk(script):
         if isinstance(expr, Assignment):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""script-syntax: see script_syntax.md."""
+"""The rule `script-syntax`, which script_syntax.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""script-type: see script_type.md."""
+"""The rule `script-type`, which script_type.md describes."""
 
 from __future__ import annotations
 

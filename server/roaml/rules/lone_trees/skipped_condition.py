@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""skipped-condition: see skipped_condition.md."""
+"""The rule `skipped-condition`, which skipped_condition.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-format: see tree_format.md."""
+"""The rule `tree-format`, which tree_format.md describes."""
 
 from __future__ import annotations
 
@@ -85,8 +85,8 @@ def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
 
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
-    """In version 3, values of a `SubTree` are names of entries without braces; in a `SubTreePlus` they are as in
-    version 4."""
+    """The edits that convert a subtree. In version 3, values of a `SubTree` are names of entries without braces; values
+    of a `SubTreePlus` are written as in version 4."""
     has_current = node.element.get("_autoremap") is not None
     for attribute in node.element.attributes:
         if attribute.name in _SHARING:

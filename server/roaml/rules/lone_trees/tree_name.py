@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-name: see tree_name.md."""
+"""The rule `tree-name`, which tree_name.md describes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _id(name: Name, kind_name: str) -> Iterator[Finding]:
     if not text:
         yield RULE.at(name.span, f"the name of a {kind_name} must not be empty")
     elif text in ("Root", "root"):
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {kind_name}")
+        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {kind_name}; choose another name")
     elif match := _FORBIDDEN.search(text):
         shown = "white space" if match[0].isspace() else f"`{match[0]}`"
         yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a {kind_name}")
@@ -59,15 +59,19 @@ def _instances(tree: Tree) -> Iterator[Finding]:
         if node.is_subtree:
             earlier = first.setdefault(node.name.value, node.name)
             if earlier is not node.name:
-                message = f"two `SubTree` of one tree must not have the same name `{node.name.value}`"
-                yield RULE.at(node.name.span, message, related=[Related(earlier.span, "the first one")])
+                message = (
+                    f"two `SubTree` of one tree must not have the same name `{node.name.value}`; rename one of them"
+                )
+                yield RULE.at(
+                    node.name.span, message, related=[Related(earlier.span, "the first `SubTree` with this name")]
+                )
 
 
 def _models(context: TreeContext) -> Iterator[Finding]:
     lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
     for extra in lists[1:]:
-        message = "only one `<TreeNodesModel>` is allowed; BehaviorTree.CPP reads only the first"
-        related = [Related(lists[0].name_span, "the first one")]
+        message = "only one `<TreeNodesModel>` is allowed; BehaviorTree.CPP reads only the first; move the models there"
+        related = [Related(lists[0].name_span, "the first `<TreeNodesModel>`")]
         yield RULE.at(extra.name_span, message, related=related, severity=Severity.WARNING)
     first: dict[str, Name] = {}
     for model in context.file.models:
@@ -77,16 +81,16 @@ def _models(context: TreeContext) -> Iterator[Finding]:
         earlier = first.setdefault(model.id.value, model.id)
         if earlier is not model.id:
             drop = remove(context.document, model.element)
-            message = f"`{model.id.value}` is described twice"
-            related = [Related(earlier.span, "the first one")]
+            message = f"`{model.id.value}` is described twice; remove one of the descriptions"
+            related = [Related(earlier.span, "the first description")]
             yield RULE.at(model.id.span, message, drop, related=related, severity=Severity.WARNING)
         ports: dict[str, Name] = {}
         for port in model.ports:
             if port.name is None:
                 continue
             if ports.setdefault(port.name.value, port.name) is not port.name:
-                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice"
-                related = [Related(ports[port.name.value].span, "the first one")]
+                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove one of them"
+                related = [Related(ports[port.name.value].span, "the first description")]
                 yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
             yield from _port(port.name)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-node: see unknown_node.md."""
+"""The rule `unknown-node`, which unknown_node.md describes."""
 
 from __future__ import annotations
 
@@ -57,18 +57,20 @@ def _check(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Fin
     elif old is not None:
         yield RULE.at(
             span,
-            f"`{name}` exists since version {old.since} of BehaviorTree.CPP; the settings name an older version",
+            f"`{name}` exists since version {old.since} of BehaviorTree.CPP, but the setting `behaviortree-cpp` names "
+            "an older version",
             severity=Severity.ERROR,
         )
     elif node.compact and name in _STRUCTURE:
-        drop = Fix("Remove it", (removal(context.source.text, node.element.span),), preferred=False)
+        drop = Fix(f"Remove `<{name}>`", (removal(context.source.text, node.element.span),), preferred=False)
         yield RULE.at(span, f"`<{name}>` is not a node, so it cannot be part of a tree", drop, severity=Severity.ERROR)
     else:
         yield from _unknown(context, forest, node, name)
 
 
 def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
-    """A program may register nodes that no model describes; a name similar to that of a node is always reported."""
+    """Report a node that no model describes. The program may register it, so this is an error only if the end tag has
+    another name; a name similar to that of a known node is always reported."""
     assert node.plugin is not None
     trees = tuple(forest.trees)
     close = node.element.close_name_span
@@ -86,7 +88,10 @@ def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) ->
         yield RULE.at(node.plugin.span, message, _renaming(node, near))
     elif forest.has_own_models or forest.libraries:
         severity = Severity.WARNING if forest.has_all_models else Severity.INFORMATION
-        message = f"no model describes the node `{name}`; `<TreeNodesModel>` and the setting `tree-models` can"
+        message = (
+            f"no model describes the node `{name}`; describe it in a `<TreeNodesModel>` or in a file of the setting "
+            "`tree-models`"
+        )
         yield RULE.at(node.plugin.span, message, severity=severity)
 
 

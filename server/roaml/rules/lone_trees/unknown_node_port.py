@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-node-port: see unknown_node_port.md."""
+"""The rule `unknown-node-port`, which unknown_node_port.md describes."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _identifier(node: TreeNode) -> Iterator[Finding]:
 
 
 def _conditions(node: TreeNode) -> Iterator[Finding]:
-    """Report unknown attributes that begin with `_`, which the library ignores."""
+    """Report unknown attributes that begin with `_`; BehaviorTree.CPP ignores them."""
     for attribute in node.element.attributes:
         if attribute.name in OLD_ATTRIBUTES and node.is_subtree:
             message = f"`{attribute.name}` is an attribute of version 3 and is ignored; version 4 has `_autoremap`"
@@ -84,8 +84,8 @@ def _conditions(node: TreeNode) -> Iterator[Finding]:
 
 
 def _extended(name: str) -> str | None:
-    """The attribute of which `name` is a part of at least three letters, or which is a part of it: `_onFail`,
-    `_postCondition`."""
+    """The known attribute that begins with `name` or with which `name` begins, for example `_onFailure` for `_onFail`.
+    `None` if there is none, or if `name` has fewer than four characters."""
     plain = name.lower()
     return next(
         (other for other in (*CONDITIONS, *AFTERWARDS) if len(plain) > 3 and _is_part(plain, other.lower())), None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unreached-node: see unreached_node.md."""
+"""The rule `unreached-node`, which unreached_node.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-tree: see unused_tree.md."""
+"""The rule `unused-tree`, which unused_tree.md describes."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None or forest.is_included:
         return
     if sum(len(file.trees) for _, file in forest.files) > len(forest.trees):
-        return  # a name is missing or not unique
+        return  # other rules report a name that is missing or not unique
     if any(name not in forest.trees for names in forest.subtrees.values() for name in names):
-        return  # a name may be misspelled, which is reported
+        return  # another rule reports a subtree that does not exist; its name may be misspelled
     own = [tree.id for tree in context.file.trees if tree.id is not None]
     main = context.file.main
     if main is not None and main.value in forest.trees:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-false-at-start: see event_false_at_start.md."""
+"""The rule `event-false-at-start`, which event_false_at_start.md describes."""
 
 from __future__ import annotations
 

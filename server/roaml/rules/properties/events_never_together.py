@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""events-never-together: see events_never_together.md."""
+"""The rule `events-never-together`, which events_never_together.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ignored-bounds: see ignored_bounds.md."""
+"""The rule `ignored-bounds`, which ignored_bounds.md describes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
     step = clock_step(context.system)
     for property_ in context.properties:
         if not any(faults_in(property_, step)):
-            continue  # observers measure the time
+            continue  # an observer measures these times
         for formula in walk(property_.expression):
             if isinstance(formula, (UnaryPath, BinaryPath)):
                 if formula.time_bounds is not None:

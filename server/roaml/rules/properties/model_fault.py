@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""model-fault: see model_fault.md. Reported where a model is run (`roaml.smc`)."""
+"""The rule `model-fault`, which model_fault.md describes. `roaml.smc` reports it where it runs a model."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""port-of-several-clients: see port_of_several_clients.md."""
+"""The rule `port-of-several-clients`, which port_of_several_clients.md describes."""
 
 from __future__ import annotations
 

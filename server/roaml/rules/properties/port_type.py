@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""port-type: see port_type.md."""
+"""The rule `port-type`, which port_type.md describes."""
 
 from __future__ import annotations
 

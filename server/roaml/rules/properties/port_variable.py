@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""port-variable: see port_variable.md."""
+"""The rule `port-variable`, which port_variable.md describes."""
 
 from __future__ import annotations
 

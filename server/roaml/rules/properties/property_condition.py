@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""property-condition: see property_condition.md."""
+"""The rule `property-condition`, which property_condition.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""property-form: see property_form.md."""
+"""The rule `property-form`, which property_form.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""property-time: see property_time.md."""
+"""The rule `property-time`, which property_time.md describes."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.TIME,
     Severity.ERROR,
-    "The times of a property cannot be measured.",
+    "The clock of the system cannot measure the times of a property.",
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-property-id: see repeated_property_id.md."""
+"""The rule `repeated-property-id`, which repeated_property_id.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def in_jani(context: PropertiesContext) -> Iterator[Finding]:
     for property_ in context.properties:
         if property_.name in context.taken and property_.origin is not None:
             file = context.taken[property_.name]
-            message = f"another property of the system is called `{property_.name}`, in {file}"
+            message = f"another property of the system is called `{property_.name}`, in {file}; rename one of them"
             yield RULE.at(property_.origin.span, message)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-property-port: see unknown_property_port.md."""
+"""The rule `unknown-property-port`, which unknown_property_port.md describes."""
 
 from __future__ import annotations
 

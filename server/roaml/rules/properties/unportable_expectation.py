@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unportable-expectation: see unportable_expectation.md."""
+"""The rule `unportable-expectation`, which unportable_expectation.md describes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,9 @@ def _numbers(property_: Property) -> Iterator[Span]:
 
 def in_xml(file: LinkedFile) -> Iterator[Finding]:
     names = [written.expect for written in file.file.properties if written.expect is not None]
-    expected = [name.span for name in names if read_comparison(name.value) is not None]  # else `property-form`
+    expected = [
+        name.span for name in names if read_comparison(name.value) is not None
+    ]  # otherwise `property-form` reports it
     yield from _reported(expected, IN_XML)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unsent-port: see unsent_port.md."""
+"""The rule `unsent-port`, which unsent_port.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unsupported-property: see unsupported_property.md."""
+"""The rule `unsupported-property`, which unsupported_property.md describes."""
 
 from __future__ import annotations
 

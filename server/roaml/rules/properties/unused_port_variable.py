@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-port-variable: see unused_port_variable.md."""
+"""The rule `unused-port-variable`, which unused_port_variable.md describes."""
 
 from __future__ import annotations
 

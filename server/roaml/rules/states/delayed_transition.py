@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""delayed-transition: see delayed_transition.md."""
+"""The rule `delayed-transition`, which delayed_transition.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-state: see duplicate_state.md."""
+"""The rule `duplicate-state`, which duplicate_state.md describes."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
         names = {state.id.value for state in chart.states if state.id}
         for state in chart.states:
             if state.id is not None and first.setdefault(state.id.value, state.id) is not state.id:
-                related = (Related(first[state.id.value].span, "the first one"),)
+                related = (Related(first[state.id.value].span, "the first state with this name"),)
                 name = unused(state.id.value, names)
                 names.add(name)
-                rename = Fix(f"Rename this one to `{name}`", (TextEdit(state.id.span, name),), preferred=False)
-                yield RULE.at(state.id.span, f"there are two states `{state.id.value}`", rename, related=related)
+                rename = Fix(f"Rename this state to `{name}`", (TextEdit(state.id.span, name),), preferred=False)
+                message = f"there are two states `{state.id.value}`; rename one of them"
+                yield RULE.at(state.id.span, message, rename, related=related)
 
 
 RULE = Rule("duplicate-state", Severity.ERROR, "Two states have the same name.", machine=check, plain=True)

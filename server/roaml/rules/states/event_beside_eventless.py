@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event-beside-eventless: see event_beside_eventless.md."""
+"""The rule `event-beside-eventless`, which event_beside_eventless.md describes."""
 
 from __future__ import annotations
 

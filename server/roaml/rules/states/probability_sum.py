@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""probability-sum: see probability_sum.md."""
+"""The rule `probability-sum`, which probability_sum.md describes."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _check(handler: Handler, text: str) -> Iterator[Finding]:
 
 
 def _span(given: list[Target]) -> Span:
-    """The span from the first to the last probability."""
+    """The span from the first probability to the last one."""
     spans = [target.probability.span for target in given if target.probability]
     return spans[0].cover(spans[-1])
 

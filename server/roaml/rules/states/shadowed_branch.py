@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadowed-branch: see shadowed_branch.md."""
+"""The rule `shadowed-branch`, which shadowed_branch.md describes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 else:
                     why = "whenever its condition holds, that of one of the earlier branches holds as well"
                 message = f"this branch is never executed: {why}; change one of the conditions"
-                related = [Related(branch.element.name_span, "tried first") for branch in earlier]
+                related = [Related(branch.element.name_span, "tested first") for branch in earlier]
                 yield RULE.at(branches[cover.number].element.name_span, message, related=related)
 
 

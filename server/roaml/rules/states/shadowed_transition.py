@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadowed-transition: see shadowed_transition.md."""
+"""The rule `shadowed-transition`, which shadowed_transition.md describes."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
 
 
 def _same_condition(context: MachineContext, chart: Chart, state: State) -> Iterator[Finding]:
-    """Report transitions whose conditions never hold unless the condition of an earlier one does."""
+    """Report transitions whose conditions hold only where the condition of an earlier transition holds."""
     for handlers in conditional(context.machine, state):
         yield from _in_order(context, condition_facts(chart), handlers)
 
@@ -71,7 +71,8 @@ def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Han
 
 
 def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Iterator[Fix]:
-    """Move the transition before the earlier one if it has a condition; otherwise remove it."""
+    """Fixes for a transition that is never taken: move it before the earlier transition if it has a condition,
+    otherwise remove it."""
     document, element = context.document, handler.element
     if handler.cond is not None:
         text = document.text[slice(*element.span)]

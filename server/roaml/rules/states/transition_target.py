@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""transition-target: see transition_target.md."""
+"""The rule `transition-target`, which transition_target.md describes."""
 
 from __future__ import annotations
 

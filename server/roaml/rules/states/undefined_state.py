@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""undefined-state: see undefined_state.md."""
+"""The rule `undefined-state`, which undefined_state.md describes."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _finding(name: Name, states: Collection[str], *more: Fix) -> Finding:
 
 
 def _add(context: MachineContext, chart: Chart, name: str, states: Collection[str]) -> Iterator[Fix]:
-    """Add a state after the others."""
+    """A fix that adds a state after the other states."""
     if VALID.match(name):
         edit = after(context.document, chart.states[-1].element, f'<state id="{name}" />')
         yield Fix(f"Add the state `{name}`", (edit,), preferred=not close_names(name, states))
@@ -59,7 +59,7 @@ def _states_below(root: Element) -> Iterator[str]:
 
 
 def _plain_references(document: Document, root: Element) -> Iterator[Name]:
-    """Check references in plain SCXML, where states are nested and a transition may lead to several of them."""
+    """The references to states in plain SCXML, where states are nested and a transition may have several targets."""
     for element in root.walk():
         attribute = element.get("target" if element.name == "transition" else "initial")
         if attribute is not None and attribute.has_value and element.name in ("scxml", "state", "transition"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unreachable-state: see unreachable_state.md."""
+"""The rule `unreachable-state`, which unreachable_state.md describes."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
             continue
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
-                message = f"no transition leads to the state `{state.id.value}`"
+                message = f"no transition leads to the state `{state.id.value}`, so it is never entered"
                 yield RULE.at(state.id.span, message, *_remove(context, chart, state), tags=(Tag.UNNECESSARY,))
 
 
 def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix]:
-    """Remove a state, unless another state, which is never entered either, leads to it."""
+    """A fix that removes a state. There is none if a transition of another unreachable state leads to the state."""
     others = [handler for other in chart.states if other is not state for handler in other.handlers]
     targets = [target.state.value for handler in others for target in handler.targets if target.state]
     if state.id is not None and state.id.value not in targets:

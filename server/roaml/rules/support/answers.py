@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Helpers of the rules about answers: the graphs of a machine, the place of a plugin in the tree, and the place where a
-finding about a path is reported: the handler that takes the step."""
+"""Helpers of the rules about answers to ticks, halts, requests and goals.
+
+They provide the graphs of a machine and the position of a plugin in the tree. A finding about a path is reported at the
+handler that takes the step (`place`).
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,7 @@ ELEMENTS = {
 def behaviors(context: MachineContext) -> Iterator[Behavior]:
     """The graphs of the machine and its threads, without those that are too large.
 
-    If a fault is likely, the graph follows the values of variables.
+    A graph distinguishes the values of variables only if a fault is likely, because that makes it larger.
     """
     for chart in context.machine.charts:
         behavior = explore(context.machine, chart)
@@ -55,21 +58,22 @@ def behaviors(context: MachineContext) -> Iterator[Behavior]:
 
 
 def plugins(context: MachineContext) -> list[SystemAutomaton]:
-    """The automata of the machine in the tree; none if it still uses the removed events."""
+    """The automata of the machine in the tree; none if the machine still uses the events that were removed from the
+    language."""
     if uses_removed_events(context.machine):
         return []
     return [automaton for automaton in context.automata if automaton.instance is not None]
 
 
 def is_spelled(context: MachineContext, duty: Duty) -> bool:
-    """Whether no element of the machine looks like a misspelled answer to a duty."""
+    """Whether no unknown element of the machine is probably a misspelled answer to a duty."""
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     elements = list(context.machine.element.walk())
     return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
 
 
 def answered_in(machine: Machine, duty: Duty) -> set[str]:
-    """The scopes of the charts that send answers to a duty."""
+    """The scopes of those charts of a machine (its own chart and its threads) that send answers to a duty."""
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     scopes = set()
     for chart in machine.charts:
@@ -82,10 +86,11 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
 
 
 def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
-    """The steps after which an answer never follows, one for each handler, with whether it follows on no path.
+    """The steps after which the answer to a duty is missing, at most one for each handler, each with whether it is
+    missing on all paths.
 
-    Steps that another finding explains are left out: an element that cannot be read might be the answer, and if one of
-    two conditions never decides (shadowed-transition), it was probably meant to be different.
+    Steps are left out if another finding explains them: an element that cannot be read may be the answer, and a
+    condition that never decides (shadowed-transition) is probably wrong.
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):
@@ -114,11 +119,11 @@ def _within(inner: Span, outer: Span) -> bool:
 
 
 def target_of(step: BehaviorStep) -> Iterator[Related]:
-    """The target that a step leads to, if its handler has several."""
+    """The target that a step leads to, if its handler has several targets; otherwise nothing."""
     if step.handler.is_probabilistic and not step.ignored:
         element = step.handler.targets[step.choice].element
         if element is not None:
-            yield Related(element.name_span, "on this way")
+            yield Related(element.name_span, "on this path")
 
 
 def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: BehaviorStep) -> bool:
@@ -158,7 +163,7 @@ _ASKS_ONCE = _SWITCHES | {
     *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
     *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
 }
-"""Nodes that do not tick a child again after it has ended, before they have ended themselves (docs/spec/nodes.md)."""
+"""Nodes that do not tick a child that has ended again until they have ended themselves (docs/spec/nodes.md)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """Nodes that halt their child only when they are halted."""
 _INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}
@@ -175,10 +180,10 @@ def is_ticked_again(system: System, automaton: SystemAutomaton) -> bool:
 
 
 def is_halted(system: System, automaton: SystemAutomaton, *, running: bool) -> bool:
-    """Whether a node may be halted while it is running, or while it is not."""
+    """Whether a node may be halted while it is running (if `running`) or while it is not running."""
     child = automaton
     for parent in ancestors(system, automaton):
-        if parent.path:  # a node that a plugin of the user describes
+        if parent.path:  # the parent is a plugin of the user
             return parent.outline.plugin.halts_children
         name = parent.outline.name
         if name in _INTERRUPTS or (not running and name not in _PASSES_HALTS):
@@ -203,25 +208,25 @@ def ancestors(system: System, automaton: SystemAutomaton) -> Iterator[SystemAuto
         number = above.instance.parent if above.instance else None
 
 
-class Deaf(NamedTuple):
+class UnhandledState(NamedTuple):
     """A state in which a tick or halt may arrive and is not handled.
 
     Attributes:
         name, span: the identifier of the state.
-        standing: the status of the node: `RUNNING`, `ENDED`, or `None` if it has not been ticked yet.
-        needs_time: whether the state is left, but only after time has passed.
+        tree_status: the status of the node: `RUNNING`, `ENDED`, or `None` if it has not been ticked yet.
+        needs_time: whether the machine leaves the state, but only after time has passed.
     """
 
     state: State
     name: str
     span: Span
-    standing: Phase | None
+    tree_status: Phase | None
     needs_time: bool
 
 
-def deaf(
+def unhandled_states(
     context: MachineContext, behavior: Behavior, automata: Iterable[SystemAutomaton], duty: Duty
-) -> Iterator[Deaf]:
+) -> Iterator[UnhandledState]:
     """The states in which at least one node of the plugin does not handle a tick or halt, without duplicates."""
     seen: set[State] = set()
     for automaton in automata:
@@ -229,21 +234,20 @@ def deaf(
         if context.system is not None and is_readable(context.system, automaton):
             ways.append((Instants(context.system, automaton).possible, True))
         for possible, needs_time in ways:
-            for state, standing in deaf_states(context, behavior, automaton, duty, possible):
+            for state, tree_status in _unhandled_by(context, behavior, automaton, duty, possible):
                 if state not in seen and state.id is not None:
                     seen.add(state)
-                    yield Deaf(state, state.id.value, state.id.span, standing, needs_time)
+                    yield UnhandledState(state, state.id.value, state.id.span, tree_status, needs_time)
 
 
-def deaf_states(
+def _unhandled_by(
     context: MachineContext, behavior: Behavior, automaton: SystemAutomaton, duty: Duty, possible: Possible = always
 ) -> Iterator[tuple[State, Phase | None]]:
-    """The states in which a tick or halt may arrive and is not handled, with the status of the node there: `RUNNING`,
-    `ENDED`, or `None` if it has not been ticked yet."""
+    """The states in which a tick or halt may arrive at `automaton` and is not handled, with the status of the node
+    there: `RUNNING`, `ENDED`, or `None` if it has not been ticked yet."""
     assert context.system is not None
     takes, tag = _HANDLED_BY[duty.kind]
-    deaf = [state for state in behavior.chart.states if not any(h.trigger is takes for h in state.handlers)]
-    if not deaf:
+    if all(any(handler.trigger is takes for handler in state.handlers) for state in behavior.chart.states):
         return
     may_come = _coming(context.system, automaton, duty)
     tree_status: dict[str, Phase | None] = {}
@@ -259,8 +263,8 @@ def deaf_states(
 
 
 def _is_for_errors(behavior: Behavior, state: State) -> bool:
-    """Whether a state without transitions is entered only if a condition holds: a plugin that checks its ports ends
-    there intentionally."""
+    """Whether a state has no transitions and is entered only if a condition holds. A plugin that checks its ports
+    enters this kind of state intentionally."""
     if any(handler.effective for handler in state.handlers):
         return False
     entering = [

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rewrite a plugin that waits within its tick: it returns RUNNING, and its status at a later tick."""
+"""A fix for plugins that wait for time to pass before they answer a tick: they return RUNNING instead, and the status
+at a later tick."""
 
 from __future__ import annotations
 
@@ -17,8 +18,8 @@ RUNNING = '<bt_return_status status="RUNNING" />'
 
 
 def rewritten(context: MachineContext, tick: Handler) -> Iterator[Fix]:
-    """The edits, if the rewrite is mechanical: the tick only starts an operation, and all handlers that end it answer
-    and lead to the same state."""
+    """The fix, if the rewrite is mechanical: the tick only starts an operation, and all handlers that end the operation
+    answer the tick and lead to the same state."""
     chart = context.machine.chart
     states = {state.id.value: state for state in chart.states if state.id}
     if tick.trigger is not ProtocolPart.BT_TICK or _answers(tick) or not _is_tidy(tick):
@@ -59,7 +60,7 @@ def _edits(
 
 
 def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
-    """The states in which the answer is waited for; `None` if one of them also has another purpose."""
+    """The states in which the plugin waits before it answers; `None` if one of them also has another purpose."""
     region: list[State] = []
     waiting = [target.state for target in tick.targets]
     while waiting:
@@ -83,7 +84,8 @@ def _fresh(name: str, names: set[str]) -> str:
 
 
 def _asked(state: str, answer: str) -> tuple[str, ...]:
-    """The handlers of a tick and a halt in a state."""
+    """The lines of a handler of ticks, which sends `answer`, and of a handler of halts; both stay in the state
+    `state`."""
     return (
         f'<bt_tick target="{state}">',
         f"    {answer}",
@@ -113,7 +115,7 @@ def _declared(context: MachineContext, variable: str) -> Edit:
 
 
 def _stored(handler: Handler, variable: str, done: str) -> Iterator[TextEdit]:
-    """Store the status instead of returning it, and lead to the state that returns it."""
+    """The edits that make a handler store the status instead of returning it, and lead to the state that returns it."""
     target = handler.element.get("target")
     assert target is not None
     yield TextEdit(target.value_span, done)

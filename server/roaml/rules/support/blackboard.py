@@ -14,8 +14,8 @@ from roaml.text import Span, TextEdit
 
 
 def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> Iterator[tuple[BoundPort, Span, str]]:
-    """Those of `ports` that nodes of this file have, each with the place where it is bound and the name of the variable
-    there.
+    """The ports in `ports` that belong to nodes of this file, each with the place where it is bound and the name of the
+    variable there.
 
     The place is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node with
     several instances is included once. Ports whose name is invalid are left out; port-value reports them.
@@ -51,7 +51,8 @@ def described(variable: str, written: str) -> str:
 
 
 def renamings(span: Span, written: str, variable: str, close: Iterable[str]) -> Iterator[Fix]:
-    """A fix for each variable of which `{written}` at `span` is probably a misspelling, in the main tree."""
+    """A fix for each name in `close` that replaces the reference `{written}` at `span`, the first one preferred. There
+    are none inside subtrees, where the variable has another name."""
     if written == variable:
         for number, name in enumerate(close):
             yield Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),), preferred=number == 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conditions that are tested in order: which of them can never decide because an earlier one holds."""
+"""Finds conditions that never decide: they are tested in order, and an earlier one always holds when they do."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class Covered(NamedTuple):
 
 
 def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
-    """The conditions that never decide, in order.
+    """The conditions that never decide, in the order of `conditions`.
 
-    Conditions that can never hold by themselves are left out. `None`, a condition that cannot be read and one that
-    draws a random number cover nothing.
+    A condition that can never hold by itself is left out. `None`, a condition that cannot be read, and a condition that
+    draws a random number do not cover other conditions.
     """
     left: tuple[Knowledge, ...] = (NOTHING,)
     for number, condition in enumerate(conditions):

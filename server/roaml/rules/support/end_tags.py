@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""End tags that differ from their start tags because the name in the start tag is wrong."""
+"""Removes findings about end tags that differ from their start tags because the name in the start tag is wrong."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from roaml.text import Span
 
 
 def without_misnamed_ends(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """The findings without those about end tags whose start tags are reported, and corrected, as the wrong ones."""
+    """The findings without those about end tags whose start tag has another finding with a fix, which changes both
+    tags."""
     wrong: set[Span | Symbol] = {f.span for f in findings if f.fixes and _is_certain(f)}
     return tuple(finding for finding in findings if not _is_at_wrong_start(finding, wrong))
 

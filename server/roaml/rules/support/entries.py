@@ -11,11 +11,11 @@ from roaml.forest.forest import Forest
 
 @functools.lru_cache(maxsize=8)
 def entries_of(forest: Forest) -> Entries:
-    """The entries of a forest, which is immutable and compared by identity."""
+    """The entries of a forest. The result is cached: a forest is immutable and compared by identity."""
     return find_entries(forest)
 
 
 @functools.lru_cache(maxsize=64)
 def names_of(entries: Entries, tree: str) -> frozenset[str]:
-    """The names of entries that the ports and scripts of a tree use."""
+    """The names of the entries that the ports and scripts of a tree may create."""
     return frozenset(use.name for use in entries.uses if use.tree == tree and use.creates)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data of events: which event variables are known at a place."""
+"""Event variables that are available at a place."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from roaml.model.value_types import ValuePlace, bound_in
 
 
 def known_here(place: ValuePlace) -> list[str]:
-    """The event variables that are known at a place."""
+    """The names of the event variables that are available at a place."""
     if place.handler is None:
         return []
     return [binding.name for binding in bound_in(place.handler, place.part)]

@@ -14,14 +14,15 @@ MAX_WRONG_LETTERS = 3
 
 
 def forest_of(context: TreeContext) -> Forest | None:
-    """The forest of a file that is checked without a system. A file of version 3 must be converted first: other
-    findings in it would only be consequences."""
+    """The forest of a file that is checked without a system; `None` for other files, and for files of version 3. The
+    latter must be converted first, and other findings in them would only be consequences."""
     forest = context.forest
     return None if forest is None or forest.is_version_3 else forest
 
 
 def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTERS) -> str | None:
-    """The known name that differs from `name` in a few letters, or only in upper and lower case or underscores.
+    """The known name that differs from `name` in at most `most` letters, or only in upper and lower case or
+    underscores. `None` if there is none.
 
     Users choose the names of nodes, and many are similar: `IsDoorClosed` is not a misspelling of `DoorClosed`. So
     a name that only has additional letters at one end may have at most one of them.

@@ -29,6 +29,8 @@ class Naming:
     Attributes:
         span: the place of the name, or its replacement; see `name_span` and `port_span`.
         literal: whether the name itself is written there.
+        use: the declaration that gets the name.
+        channel: the topic, service or action.
         related: for the port of a node, the declaration in its plugin.
     """
 
@@ -60,7 +62,7 @@ def named_here(context: MachineContext | TreeContext, kind: SymbolKind) -> Itera
 
 
 def other_kind(kind: SymbolKind) -> SymbolKind:
-    """The other side of a declaration kind."""
+    """The kind of the declarations on the other side, for example subscribers for publishers."""
     return OTHER_SIDE[kind]
 
 
@@ -104,7 +106,7 @@ def port_span(node: TreeNode, key: str) -> Span:
 
 
 def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceUse | None:
-    """The outline of a declaration."""
+    """The outline of a declaration in an automaton; `None` if there is none, as for a declaration without a handle."""
     return automaton.outline.use(declaration.kind, declaration.handle.value if declaration.handle else "")
 
 
@@ -122,7 +124,7 @@ def has_publisher(system: System, topic: Channel) -> bool:
 
 
 def response(declaration: Declaration, interface: InterfaceType) -> tuple[str, ...]:
-    """The lines that send a response with the zero of its type in each field."""
+    """The lines that send a response with the zero value of its type in each field."""
     assert declaration.handle is not None
     types = {".".join(path): type_ for path, type_ in leaves(interface.part("response"))}
     fields = [f'    <field name="{name}" expr="{zero_text(types[name])}" />' for name in interface.required("response")]

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An apparently missing part may only be misspelled: the rule about the misspelling reports it, and other rules
-do not."""
+"""Finds parts that are probably only misspelled. The rule about the misspelling reports them; other rules do not report
+that they are missing."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from functools import lru_cache
+from itertools import islice
 
 from roaml.language import HL_SCXML, ElementType, Grammar
 from roaml.model.machine import Machine
@@ -20,20 +21,22 @@ def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
 
 
 def only_missing(element: Element, type_: ElementType, name: str) -> tuple[str, ...]:
-    """The required attribute that `name` probably means: the only one that is missing, if `name` is the only unknown
-    one."""
-    names = [a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns"]
-    unknown = [attribute for attribute in names if attribute not in type_.attributes]
+    """The required attribute of which `name` is probably a misspelling: the only missing one, if `name` is the only
+    unknown attribute of the element. Otherwise empty."""
+    names = (a.name for a in element.attributes if ":" not in a.name and a.name != "xmlns")
+    unknown = list(islice((attribute for attribute in names if attribute not in type_.attributes), 2))
+    if unknown != [name]:
+        return ()
     missing = [a.name for a in type_.attributes.values() if a.required and element.get(a.name) is None]
-    return tuple(missing) if unknown == [name] and len(missing) == 1 and not type_.any_attribute else ()
+    return tuple(missing) if len(missing) == 1 and not type_.any_attribute else ()
 
 
 def declaration(machine: Machine, tag: str, name: str) -> bool:
     """Whether an element of a machine is probably intended to declare `name` with a `<tag>`, but cannot be read as a
     declaration.
 
-    It is a `<tag>` whose name is missing or misspelled, a `<tag>` in a place where it is ignored, or another element
-    instead of a `<tag>`.
+    This is true for a `<tag>` whose name is missing or misspelled, for a `<tag>` in a place where it is ignored, and
+    for an unknown element in the place of a `<tag>`.
     """
     meant = _meant(machine, tag)
     return "" in meant or name in meant
@@ -41,7 +44,8 @@ def declaration(machine: Machine, tag: str, name: str) -> bool:
 
 @lru_cache(maxsize=16)  # an unreadable declaration leads to a finding at each of its uses
 def _meant(machine: Machine, tag: str) -> frozenset[str]:
-    """The names that are probably meant; "" in the result means any name."""
+    """The names that unreadable elements are probably intended to declare with a `<tag>`. An empty string in the result
+    means that the name could be any."""
     read = {data.element for chart in machine.charts for data in chart.data if data.id}
     read |= {state.element for chart in machine.charts for state in chart.states if state.id}
     key = "key" if tag.startswith("bt_") else "id"
@@ -55,7 +59,7 @@ def _meant(machine: Machine, tag: str) -> frozenset[str]:
 
 
 def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[str]:
-    """The keys of the `<tag key="…">` that an element is probably meant to be."""
+    """The names that an element is probably intended to declare as `<tag key="…">`; an empty string means any name."""
     values = {attribute.name: attribute.value.strip() for attribute in element.attributes}
     said = values.get(key, "")
     if element.name == tag:
@@ -80,7 +84,7 @@ def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
 
 
 def is_hidden(root: Element, name: str, grammar: Grammar) -> bool:
-    """Whether there may be a `<name>` below `root` that is not read: its own name, or that of an element around it, is
-    misspelled."""
+    """Whether there may be a `<name>` below `root` that is not read, because its own name or the name of an element
+    around it is misspelled."""
     unknown = [element for element in root.walk() if not element.prefix and grammar.find(element.name) is None]
     return among(unknown, name, grammar) or any(inner.name == name for element in unknown for inner in element.walk())

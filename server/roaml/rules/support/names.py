@@ -10,6 +10,6 @@ from roaml.facts import Facts
 
 @dataclass(frozen=True, slots=True)
 class WrongName(Facts):
-    """`name`, which is written at the span of the finding, cannot be used there."""
+    """The facts of a finding: `name`, which is written at the span of the finding, is not valid there."""
 
     name: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about property files in XML, which report the problems of linking (`roaml.model.property_links`)."""
+"""Makes the rules about property files in XML, which report the problems that `roaml.model.property_links` finds."""
 
 from __future__ import annotations
 

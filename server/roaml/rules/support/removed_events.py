@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events between plugins and the tree in an older version of the language."""
+"""Events that an older version of the language used between plugins and the tree."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
 
 
 def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[Fix]:
-    """Declare the variable that receives a value with another base type, unless its bounds are numbers of another
-    kind."""
+    """A fix that declares the variable that receives a value with the base type `type_`. There is none if the bounds of
+    the variable are numbers of another kind."""
     data = declared_for(context, value)
     if data is None or data.id is None or data.type is None or data.type.name is None:
         return
@@ -44,8 +44,8 @@ def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[
 
 
 def wide_enough(number: int, type_: str) -> str | None:
-    """The smallest integer type that holds a number and all values of `type_`; if there is none, the smallest that
-    holds the number."""
+    """The smallest integer type that holds `number` and all values of `type_` or, if there is none, the smallest one
+    that holds `number`. `None` if no integer type holds the number."""
     low, high = INTEGER_RANGES[type_]
     like = sorted(INTEGER_RANGES, key=lambda name: name.startswith("int") is not type_.startswith("int"))
     for least, most in ((min(low, number), max(high, number)), (number, number)):

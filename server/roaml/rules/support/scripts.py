@@ -18,7 +18,8 @@ from roaml.xml_syntax.escapes import escape
 
 
 def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[ScriptProblem, ...]]]:
-    """Each script of a file that belongs to no system with its syntax errors, at their places in the file."""
+    """Each script of a file that belongs to no system, with its tree, its use, and its syntax errors at their places in
+    the file."""
     forest = forest_of(context)
     if forest is None:
         return
@@ -28,7 +29,7 @@ def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tup
 
 
 def all_scripts(context: TreeContext) -> Iterator[tuple[Attribute, Script, tuple[ScriptProblem, ...]]]:
-    """Each script with its syntax errors, also in a tree that belongs to a system."""
+    """Each script with its syntax errors, in trees with and without a system."""
     if context.system is None:
         yield from ((use.attribute, script, problems) for _, use, script, problems in scripts(context))
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Handlers of a state that are tested for the same event, and which of them are never taken."""
+"""Compares the triggers of handlers: handlers of a state with equal triggers are tested in order for the same event."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from roaml.roles import ProtocolPart
 from roaml.rules.support.conditions import covered
 
 Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
-"""The received part, its name and the result code; comparable within a state."""
+"""The part of the protocol that is received, its name, and the result code. Triggers can be compared within a state."""
 
 
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
-    """The handlers of a state with conditions, grouped by trigger."""
+    """The handlers of a state that have conditions, grouped by trigger; only groups of at least two handlers."""
     groups: dict[Trigger, list[Handler]] = {}
     for handler in state.handlers:
         key = trigger(machine, handler)
@@ -29,7 +29,7 @@ def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
 
 
 def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
-    """Whether a handler for the same trigger as `handler`, in its state, has a condition that never decides."""
+    """Whether a handler with the same trigger in the state of `handler` has a condition that never decides."""
     state = next((state for state in chart.states if handler in state.handlers), None)
     groups = conditional(machine, state) if state is not None else ()
     return any(
@@ -40,7 +40,7 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
 
 
 def trigger(machine: Machine, handler: Handler) -> Trigger | None:
-    """The trigger of a handler, comparable within its state; `None` if it is not a constant.
+    """The trigger of a handler, which can be compared with others of its state; `None` if it is not a constant.
 
     Two handles of one topic wait for the same message; results with different codes are different triggers.
     """
@@ -62,5 +62,5 @@ def trigger(machine: Machine, handler: Handler) -> Trigger | None:
 
 
 def chooses(handler: Handler) -> bool:
-    """Whether the trigger itself selects a child: a child index in a variable is one condition for each child."""
+    """Whether the child index of a handler is in a variable. The trigger is then also a condition on the variable."""
     return handler.child is not None and not handler.child.value.isdigit()

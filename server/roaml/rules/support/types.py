@@ -7,7 +7,7 @@ from roaml.expr.types import Array, EmptyArray, ScalarKind, Struct, Type, Unknow
 
 
 def phrase(type_: Type) -> str:
-    """A type as a noun phrase."""
+    """A noun phrase for a type, with its article, such as "an array (`int8[3]`)"."""
     if is_kind(type_, ScalarKind.STRING):
         return "a string"
     if isinstance(type_, EmptyArray):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""inexact-max-time: see inexact_max_time.md."""
+"""The rule `inexact-max-time`, which inexact_max_time.md describes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if value is None or written is None:
         return
     name, count = NAMES[unit], -(-end // unit)
-    message = f"`max_time` must be a whole number of {name}, because the clock counts in this unit of its timers"
+    message = f"`max_time` must be a whole number of {name}, because the timers need a clock with this unit"
     edits = (TextEdit(value.value_span, str(count)), TextEdit(written.value_span, name))
     place = Span(min(value.span.start, written.span.start), max(value.span.end, written.span.end))
     yield RULE.at(place, message, Fix(f"Round up to {count} {name}", edits, preferred=False))

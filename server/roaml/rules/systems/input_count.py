@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""input-count: see input_count.md."""
+"""The rule `input-count`, which input_count.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.rules.rule import Rule, SystemContext
 
 @dataclass(frozen=True, slots=True)
 class InputCount(Facts):
-    """The system lists no file of `kind`."""
+    """The facts of a finding: the system lists no file of the kind `kind`."""
 
     kind: FileKind
 
@@ -24,13 +24,13 @@ class InputCount(Facts):
 def check(context: SystemContext) -> Iterator[Finding]:
     trees = [f for f in context.files if f.required_kind is FileKind.TREE]
     for extra in trees[1:]:
-        related = (Related(trees[0].input.element.name_span, "the first one"),)
+        related = (Related(trees[0].input.element.name_span, "the first file of trees"),)
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     yield from _property_files(context)
     section = context.file.element.find("behavior_tree")
     kinds = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
-    # An input of unknown type, or a misspelled one, may be meant as the tree; other rules report it.
+    # An input with an unknown or misspelled type may be the tree; other rules report it.
     unread = "behavior_tree" in context.file.unread
     if section is not None and not unread and kinds and all(kind is FileKind.MACHINE for kind in kinds):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
@@ -45,7 +45,7 @@ def _property_files(context: SystemContext) -> Iterator[Finding]:
             continue
         original = first.setdefault(listed.path, listed)
         if original is not listed and listed.input.src is not None:
-            related = (Related(original.span, "the first one"),)
+            related = (Related(original.span, "the first `<input>` of this file"),)
             fix = remove(context.document, listed.input.element, "Remove this `<input>`", safe=True)
             message = f"`{listed.input.src.value}` is listed twice, so each of its properties would exist twice"
             yield RULE.at(listed.span, message, fix, related=related)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-parameter: see missing_parameter.md."""
+"""The rule `missing-parameter`, which missing_parameter.md describes."""
 
 from __future__ import annotations
 

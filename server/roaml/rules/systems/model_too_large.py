@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""model-too-large: see model_too_large.md."""
+"""The rule `model-too-large`, which model_too_large.md describes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if parts > limits.parts:
         message = (
             f"the translation of this system has about {parts:,} parts, but at most {limits.parts:,} are written: "
-            f"{size.parts[0].words} takes {size.parts[0].count:,}; divide it, or raise `max-parts`"
+            f"{size.parts[0].words} takes {size.parts[0].count:,}; divide the system, or raise `max-parts`"
         )
         yield _finding(context, size.parts[0], message)
 

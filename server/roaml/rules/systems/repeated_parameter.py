@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""repeated-parameter: see repeated_parameter.md."""
+"""The rule `repeated-parameter`, which repeated_parameter.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     newer, older = root.find("parameters"), root.find("mc_parameters")
     section = newer or older
     if newer is not None and older is not None:
-        related = (Related(newer.name_span, "this one is used"),)
+        related = (Related(newer.name_span, "this section is used"),)
         fix = Fix("Remove `<mc_parameters>`", (removal(context.source.text, older.span),), safe=True)
         yield RULE.at(
             older.name_span, "`<mc_parameters>` is ignored: `<parameters>` takes precedence", fix, related=related
@@ -24,8 +24,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
     last: dict[str, Element] = {}
     for element in reversed(section.elements if section else []):
         if last.setdefault(element.name, element) is not element:
-            related = (Related(last[element.name].name_span, "this one is used"),)
-            remove = Fix("Remove this one", (removal(context.source.text, element.span),), safe=True)
+            related = (Related(last[element.name].name_span, "this value is used"),)
+            remove = Fix(f"Remove this `<{element.name}>`", (removal(context.source.text, element.span),), safe=True)
             yield RULE.at(
                 element.name_span,
                 f"`<{element.name}>` is ignored: only the last value is used",

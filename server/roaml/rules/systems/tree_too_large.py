@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-too-large: see tree_too_large.md."""
+"""The rule `tree-too-large`, which tree_too_large.md describes."""
 
 from __future__ import annotations
 

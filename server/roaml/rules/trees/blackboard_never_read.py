@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-never-read: see blackboard_never_read.md."""
+"""The rule `blackboard-never-read`, which blackboard_never_read.md describes."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report variables that are written but not read. A property reads a variable as well; variables that are not
-    written either are left to another rule."""
+    """Report variables that are written but not read. A variable that a property observes is read.
+    blackboard-never-written reports variables that are not written either."""
     system = context.system
     if system is None:
         return
@@ -34,7 +34,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)
             else:
-                message = f"nobody reads {described(variable, written)}{did_you_mean(close)}"
+                message = f"no node reads {described(variable, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-never-written: see blackboard_never_written.md."""
+"""The rule `blackboard-never-written`, which blackboard_never_written.md describes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if bound.port.direction is Direction.OUT:
                 yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
             else:
-                message = f"nobody writes {described(variable, written)}{did_you_mean(close)}"
+                message = f"no node writes {described(variable, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
 
 

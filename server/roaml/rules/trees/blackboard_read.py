@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-read: see blackboard_read.md."""
+"""The rule `blackboard-read`, which blackboard_read.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""blackboard-type-conflict: see blackboard_type_conflict.md."""
+"""The rule `blackboard-type-conflict`, which blackboard_type_conflict.md describes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.rules.support.blackboard import places
 
 @dataclass(frozen=True, slots=True)
 class TypeConflict(Facts):
-    """`other_type` is the type of another port that is bound to the same variable as `port`."""
+    """The facts of a finding: `other_type` is the type of another port that is bound to the same variable as `port`."""
 
     port: str
     other_type: str
@@ -36,7 +36,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(
                     span,
                     f"`{variable}` is `{bound.port.type}` at the port `{bound.port.key}` and `{other.port.type}` at "
-                    f"`{other.port.key}` of `{other.automaton.outline.name}`",
+                    f"`{other.port.key}` of `{other.automaton.outline.name}`; use the same type",
                     related=_related(bound, other),
                     facts=TypeConflict(bound.port.key, other.port.type),
                 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-model: see duplicate_model.md."""
+"""The rule `duplicate-model`, which duplicate_model.md describes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
-from roaml.model.globals import global_variables
+from roaml.model.globals import event_names
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
 from roaml.model.system_file import ListedFile
@@ -36,8 +36,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
 
 def _generated(system: System) -> dict[str, str]:
     """The names of automata that the translation adds for events and threads, with phrases for them."""
-    events = {v.event for v in global_variables(system, lambda kind, name: None).values() if v.parameter == "valid"}
-    generated = {event: f"the event `{event}`, which is an automaton of the translation" for event in events}
+    generated = {
+        event: f"the event `{event}`, which is an automaton of the translation"
+        for event in event_names(system, lambda kind, name: None)
+    }
     for automaton in system.automata:
         for thread in automaton.outline.threads:
             servers = (use for use in automaton.outline.interfaces if use.handle == thread.server)
@@ -61,7 +63,7 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     src, earlier = listed.input.src, before.input.src
     assert src is not None
     assert earlier is not None
-    first = Related(earlier.span, "the first one")
+    first = Related(earlier.span, "the first `<input>`")
     kind_name = "node" if listed.input.section == "node_models" else "plugin"
     if before.path == listed.path:
         # A plugin that is listed twice still exists once; a node would exist twice.
@@ -71,9 +73,8 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
         message = f"`{src.value}` is listed twice{same}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
     named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
-    return RULE.at(
-        src.span, f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`", related=[first, named]
-    )
+    message = f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`; rename one of them"
+    return RULE.at(src.span, message, related=[first, named])
 
 
 RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-port: see invalid_port.md."""
+"""The rule `invalid-port`, which invalid_port.md describes."""
 
 from __future__ import annotations
 
@@ -26,9 +26,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if port.key is not None:
             before = first.setdefault(port.key.value, port.key)
             if before is not port.key:
-                related = (Related(before.span, "the first one"),)
-                fix = remove(context.document, port.element, "Remove this one")
-                yield RULE.at(port.key.span, f"there are two ports `{port.key.value}`", fix, related=related)
+                related = (Related(before.span, "the first declaration"),)
+                fix = remove(context.document, port.element, "Remove this declaration")
+                yield RULE.at(
+                    port.key.span,
+                    f"there are two ports `{port.key.value}`; remove or rename one of them",
+                    fix,
+                    related=related,
+                )
             yield from _key(port, port.key)
         written = port.element.get("type")
         if port.type is not None:
@@ -60,7 +65,7 @@ def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
     if base in BASE_TYPES or base in context.struct_names:
         yield RULE.at(type_.span, "a port holds a single value, so arrays and structs are not supported")
         return
-    # A name like `Point` is meant as a struct; it is not a misspelled base type.
+    # A name like `Point` is the name of a struct, not a misspelled base type.
     is_struct = base[:1].isupper() and base.lower() not in BASE_TYPES and base not in FOREIGN_TYPES
     candidates = close_names(base, () if is_struct else BASE_TYPES)
     close = (FOREIGN_TYPES[base],) if base in FOREIGN_TYPES else candidates

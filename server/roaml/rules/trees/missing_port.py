@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-port: see missing_port.md."""
+"""The rule `missing-port`, which missing_port.md describes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def missing_ports(node: TreeNode, plugin: MachineOutline, path: str) -> list[Por
     known.add(CHILDREN_COUNT)
     given = {attribute.name for attribute in node.element.attributes} | {setting.key.value for setting in node.ports}
     missing = [port for port in plugin.ports if port.key not in known and port.key not in given]
-    # A port that is only misspelled is reported as an unknown port.
+    # unknown-port reports a port that is only misspelled.
     strange = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]
     misspelled = {close for name in strange for close in close_names(name, [port.key for port in missing], 1)}
     return [port for port in missing if port.key not in misspelled]

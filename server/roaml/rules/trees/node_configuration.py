@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-configuration: see node_configuration.md."""
+"""The rule `node-configuration`, which node_configuration.md describes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     is_library_tree = context.system is not None and context.system.is_library_tree
     for node, key, text in _settings(context):
         if is_library_tree and key == "max_failures":
-            continue  # the library accepts any number
+            continue  # BehaviorTree.CPP accepts any number
         number = _number(text) if key in _COUNTS else None
         problem = _problem(node, key, number) if number is not None else None
         if problem is not None:

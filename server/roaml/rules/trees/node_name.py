@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""node-name: see node_name.md."""
+"""The rule `node-name`, which node_name.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""port-value: see port_value.md."""
+"""The rule `port-value`, which port_value.md describes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
 
 _TOO_LARGE = 1 << 63
-"""No model has an integer of this size or more."""
+"""The smallest positive integer that does not fit into 64 bits."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -136,7 +136,7 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
     """Check that all values that a `Switch` compares have the type of the first variable among them: string or int
     (docs/spec/nodes.md#control)."""
     if context.system is not None and context.system.is_library_tree:
-        return  # the library compares texts, and numbers
+        return  # BehaviorTree.CPP compares texts and numbers
     for node, automaton in instances(context):
         assert context.system is not None
         any_type = context.system.any_type(automaton)
@@ -196,7 +196,8 @@ class ConstantProblem:
 
 
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
-    """Why an input port cannot hold a constant, which is a string or an expression of the port's type."""
+    """The reason why an input port cannot hold the constant `text`; `None` if it can. A constant is a string or an
+    expression of the port's type."""
     type_ = BASE_TYPES.get(port.type)
     if type_ is None or is_kind(type_, ScalarKind.STRING):
         return None

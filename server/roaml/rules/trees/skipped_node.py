@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""skipped-node: see skipped_node.md."""
+"""The rule `skipped-node`, which skipped_node.md describes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 variable = blackboard_variable(skip.value) if skip else None
                 if skip is None or variable is not None or skip.value.strip() == "true":
                     when = f" if `{variable}` is true" if variable else ""
-                    message = f"after its first run this node returns SUCCESS{when}; BehaviorTree.CPP skips it"
+                    message = (
+                        f"after its first run, this node returns SUCCESS in the model{when}, but BehaviorTree.CPP "
+                        "skips it"
+                    )
                     yield RULE.at(node.plugin.span, message)
 
 

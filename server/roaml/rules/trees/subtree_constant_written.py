@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""subtree-constant-written: see subtree_constant_written.md."""
+"""The rule `subtree-constant-written`, which subtree_constant_written.md describes."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ def check(context: TreeContext) -> Iterator[Finding]:
     is_library_tree = context.system is not None and context.system.is_library_tree
     for node, automaton in instances(context):
         if is_library_tree and not automaton.path:
-            continue  # the library makes a variable with this first value
+            continue  # BehaviorTree.CPP creates a variable with this initial value
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)
             if port is None or port.direction is Direction.IN or setting.variable is None:
                 continue
             value = automaton.port(port.key)
             if isinstance(value, PortConstant):
-                message = f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written"
+                message = (
+                    f"`{setting.variable}` is the constant `{value.text}` in this subtree and cannot be written; "
+                    "pass a variable"
+                )
                 yield RULE.at(setting.value.span, message)
 
 

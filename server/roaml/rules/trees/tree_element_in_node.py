@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-element-in-node: see tree_element_in_node.md."""
+"""The rule `tree-element-in-node`, which tree_element_in_node.md describes."""
 
 from __future__ import annotations
 

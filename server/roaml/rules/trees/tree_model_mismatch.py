@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-model-mismatch: see tree_model_mismatch.md."""
+"""The rule `tree-model-mismatch`, which tree_model_mismatch.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tree-structure: see tree_structure.md."""
+"""The rule `tree-structure`, which tree_structure.md describes."""
 
 from __future__ import annotations
 
@@ -54,11 +54,12 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
     if len(same) > 1 and not (context.forest is not None and _is_first(context, tree)):
         here = [t.id.span for t in context.file.trees if t.id and t.id.value == tree.id.value and t is not tree]
         elsewhere = [Symbol(t.path, SymbolKind.TREE, t.id) for t in same if t.path != context.source.path]
-        related = [Related(span, "another one") for span in here]
-        related += [Related(symbol, "another one") for symbol in elsewhere]
+        related = [Related(span, "another tree with this name") for span in here]
+        related += [Related(symbol, "another tree with this name") for symbol in elsewhere]
         name = unused(tree.id.value, known)
-        rename = Fix(f"Rename this one to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
-        yield RULE.at(tree.id.span, f"there are {len(same)} trees `{tree.id.value}`", rename, related=related)
+        rename = Fix(f"Rename this tree to `{name}`", (TextEdit(tree.id.span, name),), preferred=False)
+        message = f"there are {len(same)} trees `{tree.id.value}`; give each tree its own name"
+        yield RULE.at(tree.id.span, message, rename, related=related)
 
 
 def _is_first(context: TreeContext, tree: Tree) -> bool:
@@ -127,7 +128,7 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
 
 
 def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
-    """The names of all trees that contain themselves, and of some between these trees."""
+    """The names of all trees that contain themselves, and of some trees that lie on paths between them."""
     left = {name: {inner for inner in inners if inner in uses} for name, inners in uses.items()}
     for _ in range(2):
         users: dict[str, set[str]] = {name: set() for name in left}
@@ -142,7 +143,7 @@ def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
                 left[user].discard(name)
                 if not left[user]:
                     ended.append(user)
-        left = {name: users[name] for name in left}  # once more, in the other direction
+        left = {name: users[name] for name in left}  # repeat in the other direction
     return left.keys()
 
 
@@ -163,7 +164,7 @@ def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
 
 
 def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
-    """The names from `start` by `first` back to `start`; empty if there is no such path."""
+    """The names on a path from `start` through `first` back to `start`; empty if there is no such path."""
     came_from = {first: start}
     stack = [first]
     while stack:
@@ -210,7 +211,7 @@ def _main(context: TreeContext) -> Iterator[Finding]:
 def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Finding]:
     """Report an ambiguous main tree, only if it is clear which trees no other tree uses.
 
-    A missing, repeated or unknown name is reported instead, and so is a tree that contains itself if no tree is left.
+    If a name is missing, repeated or unknown, or if every tree is part of a cycle, that error is reported instead.
     """
     trees = [tree for file in context.files for tree in file.trees]
     names = {tree.id for tree in trees}
@@ -236,13 +237,14 @@ def _has_misspelled_tree(context: TreeContext) -> bool:
 
 
 def _has_nameless_tree(context: TreeContext) -> bool:
-    """Whether a tree of a file without a system has no name although there are several, which is reported."""
+    """Whether a file without a system has several trees and one of them has no name; that error is reported."""
     names = [tree.id for file in context.files for tree in file.trees]
     return context.forest is not None and len(names) > 1 and "" in names
 
 
 def _another(context: TreeContext, main: Name, executed: str) -> Iterator[Finding]:
-    """Report a wrong name of the only tree, which is executed whatever its name is (docs/spec/trees.md#main-tree). See
+    """Report a `main_tree_to_execute` that does not name the only tree. The tree is executed whatever its name is
+    (docs/spec/trees.md#main-tree). Nothing is reported if the named tree may be in an unknown file, as in
     `_no_tree`."""
     known = context.system is not None or are_similar(main.value, executed)
     if known and not context.missing_includes:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""undeclared-port: see undeclared_port.md."""
+"""The rule `undeclared-port`, which undeclared_port.md describes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _declare(context: MachineContext, key: Name, direction: Direction) -> Iterator[Fix]:
-    """Declare a port, if its type can be inferred from its uses. Nodes of the tree must then set it."""
+    """A fix that declares a port, if its type can be inferred from its uses. Nodes of the tree must then set the
+    port."""
     type_ = _type_of(context, key)
     if type_ is not None:
         text = f'<bt_declare_port_{direction} key="{key.value}" type="{type_}" />'

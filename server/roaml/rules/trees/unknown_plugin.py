@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-plugin: see unknown_plugin.md."""
+"""The rule `unknown-plugin`, which unknown_plugin.md describes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
-    """Check the nodes of a tree; the plugins of a tree that no system lists are unknown."""
+    """Check that a node has a plugin. Nodes of a tree that no system lists are not checked: their plugins are
+    unknown."""
     system = context.system
     if system is None or node.plugin is None or system.plugin(node.plugin.value)[1] is not None:
         return
@@ -36,7 +37,7 @@ def _check(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
         return
     misplaced = name in [outline.name for _, outline in system.nodes]
     if not misplaced and not system.plugins_known:
-        return  # the error in the listed file that may contain the plugin is reported instead
+        return  # another rule reports the listed file that cannot be read and may contain the plugin
     close = close_names(name, [*(outline.name for _, outline in system.plugins), *library_plugins()])
     hint = did_you_mean(close) or "; list its file in `<behavior_tree>` of the system"
     if misplaced:

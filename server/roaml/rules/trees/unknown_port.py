@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-port: see unknown_port.md."""
+"""The rule `unknown-port`, which unknown_port.md describes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
         edit = removal(context.source.text, setting.attribute.span)
         if key.value == CHILDREN_COUNT:
             if CHILDREN_COUNT not in keys and path:
-                continue  # a plugin without the port does not read it; nodes of BehaviorTree.CPP have it
+                continue  # no effect: a user's plugin that does not declare the port cannot read it
             message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
         elif key.value not in keys and plugin.all_ports:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-remap: see unknown_remap.md."""
+"""The rule `unknown-remap`, which unknown_remap.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""untranslatable-tree: see untranslatable_tree.md."""
+"""The rule `untranslatable-tree`, which untranslatable_tree.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-plugin: see unused_plugin.md."""
+"""The rule `unused-plugin`, which unused_plugin.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-port: see unused_port.md."""
+"""The rule `unused-port`, which unused_port.md describes."""
 
 from __future__ import annotations
 

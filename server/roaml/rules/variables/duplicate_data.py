@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""duplicate-data: see duplicate_data.md."""
+"""The rule `duplicate-data`, which duplicate_data.md describes."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for data in chart.data:
             if data.id is not None and (before := first.setdefault(data.id.value, data)) is not data:
                 assert before.id is not None
-                related = (Related(before.id.span, "the first one"),)
+                related = (Related(before.id.span, "the first declaration"),)
                 same = _written(context, data) == _written(context, before)
-                fix = remove(context.document, data.element, "Remove this one", preferred=same)
-                yield RULE.at(data.id.span, f"there are two variables `{data.id.value}`", fix, related=related)
+                fix = remove(context.document, data.element, "Remove this declaration", preferred=same)
+                message = f"there are two variables `{data.id.value}`; remove or rename one of them"
+                yield RULE.at(data.id.span, message, fix, related=related)
         yield from _flattened(context, chart.scope, {name: data.id for name, data in first.items() if data.id})
 
 

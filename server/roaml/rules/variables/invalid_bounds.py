@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-bounds: see invalid_bounds.md."""
+"""The rule `invalid-bounds`, which invalid_bounds.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""invalid-name: see invalid_name.md."""
+"""The rule `invalid-name`, which invalid_name.md describes."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def check_tree(context: TreeContext) -> Iterator[Finding]:
             empty = f"`{use.port}` names {_a(kind_name)} and cannot be empty"
             message = _with_spaces(text, kind_name) if text else empty
             related = (Related(automaton.symbol(use), "used here"),)
-            # A default is reported at the name of the node, which is no wrong name.
+            # A default is reported at the name of the node, and that name is not the wrong one.
             is_here = any(setting.key.value == use.port for setting in node.ports)
             facts = WrongName(text) if is_here else None
             findings[RULE.at(port_span(node, use.port), message, related=related, facts=facts)] = None

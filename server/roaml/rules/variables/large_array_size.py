@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""large-array-size: see large_array_size.md."""
+"""The rule `large-array-size`, which large_array_size.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""machine-name: see machine_name.md."""
+"""The rule `machine-name`, which machine_name.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""missing-type: see missing_type.md."""
+"""The rule `missing-type`, which missing_type.md describes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _fix(data: Data) -> Iterator[Fix]:
-    """Add the type that the initial value suggests."""
+    """A fix that adds the type that the initial value suggests."""
     attribute, type_ = data.element.get("id"), _type_of_value(data)
     if type_ is None or attribute is None or not attribute.has_value:
         return

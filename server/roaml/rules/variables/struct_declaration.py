@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""struct-declaration: see struct_declaration.md."""
+"""The rule `struct-declaration`, which struct_declaration.md describes."""
 
 from __future__ import annotations
 
@@ -37,17 +37,21 @@ def check(context: StructsContext) -> Iterator[Finding]:
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
-    """Report another, different declaration of the struct, in this file or another file of the system."""
+    """Report a second, different declaration of a struct, in this file or in another file of the system."""
     name, outline = declaration.name, declaration.outline
     assert name is not None
     same = [other for other in context.outlines if other.name == name.value]
     here = [d for d in context.declarations if d.name and d.name.value == name.value]
     if first is not name:
-        message = f"there are two structs `{name.value}`; only the last one is used"
-        yield RULE.at(name.span, message, severity=Severity.WARNING, related=(Related(first.span, "the first one"),))
+        message = f"there are two structs `{name.value}`; only the last declaration is used"
+        yield RULE.at(
+            name.span, message, severity=Severity.WARNING, related=(Related(first.span, "the first declaration"),)
+        )
     elif len(same) > len(here) and any(other != outline for other in same):
         which = "this" if outline == same[-1] else "the last"
-        message = f"there is another struct `{name.value}` in the system, with other members; {which} one is used"
+        message = (
+            f"there is another struct `{name.value}` in the system, with other members; {which} declaration is used"
+        )
         yield RULE.at(name.span, message, severity=Severity.WARNING)
 
 
@@ -89,8 +93,9 @@ def _members(declaration: StructDeclaration) -> Iterator[Finding]:
                     f"`{name.value}` is not a valid member name: only letters, digits and `_`, and no `_` at the end",
                 )
             elif first.setdefault(name.value, name) is not name:
-                related = (Related(first[name.value].span, "the first one"),)
-                yield RULE.at(name.span, f"there are two members `{name.value}`", related=related)
+                related = (Related(first[name.value].span, "the first member with this name"),)
+                message = f"there are two members `{name.value}`; rename one of them"
+                yield RULE.at(name.span, message, related=related)
         if type_ is not None and type_.name is not None:
             several = len(type_.name.dimensions) > 1
             if several and type_.name.base not in BASE_TYPES:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""undeclared-variable: see undeclared_variable.md."""
+"""The rule `undeclared-variable`, which undeclared_variable.md describes."""
 
 from __future__ import annotations
 
@@ -67,15 +67,15 @@ def _answers(value: TypedValue) -> Iterable[str]:
 
 
 def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[Fix]:
-    """Declare the variable, if its type can be inferred from its uses."""
+    """A fix that declares the variable, if its type can be inferred from its uses."""
     type_ = inferred_type(context, value, name)
     if type_ is not None:
         yield declaration(context, value.place.chart, name, str(type_), zero_text(type_))
 
 
 def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scalar | None:
-    """The base type of an undeclared name, inferred from the values that are assigned to it, the targets that it is
-    assigned to, or the other operands beside it."""
+    """The base type of an undeclared name, inferred from the values that are assigned to it, the variables that it is
+    assigned to, or the operands next to it. `None` if its type cannot be inferred."""
     if not isinstance(value.value, Expression):
         return None
     tree = value.value.tree
@@ -115,7 +115,8 @@ def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], requ
 
 
 def _closer(beside: Type, result_type: Type | None) -> Type:
-    """The more reliable type: that of the other operand, or that of the result if the other operand is a literal."""
+    """The more reliable of two types: the type of the other operand or, if that operand is a literal, the type of the
+    result."""
     if (
         isinstance(beside, Scalar)
         and not beside.name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unenforced-bounds: see unenforced_bounds.md."""
+"""The rule `unenforced-bounds`, which unenforced_bounds.md describes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unknown-type: see unknown_type.md."""
+"""The rule `unknown-type`, which unknown_type.md describes."""
 
 from __future__ import annotations
 
@@ -30,8 +30,13 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
 
 
 def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
-    """The finding for an invalid type; `None` if it is valid. `complete` means that there are no other structs, in
-    declarations that cannot be read. A machine that is checked `alone` cannot know the structs of its system."""
+    """The findings for a type that does not exist; none if the type is valid.
+
+    Args:
+        structs: the names of the known structs.
+        complete: whether these are all structs; otherwise some declarations cannot be read.
+        alone: whether the machine is checked without a system, so that its structs are unknown.
+    """
     if type_.name is None:
         yield _no_type(type_)
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""unused-variable: see unused_variable.md."""
+"""The rule `unused-variable`, which unused_variable.md describes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         values = [value.value for value in context.typed.values if value.place.chart is chart]
         if any(isinstance(value, Expression) and value.broken for value in values):
-            continue  # what seems unused may be used in the part that could not be read
+            continue  # the part that cannot be read may use the variable
         used = _used(values, chart)
         for data in chart.data:
             if data.id is not None and data.id.value not in used:
@@ -27,7 +27,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
-    """Remove a variable, with the comment that states its type."""
+    """A fix that removes a variable together with the comment that states its type."""
     title, text = "Remove the variable", context.source.text
     if not data.comment_type or data.type is None:
         return remove(context.document, data.element, title, preferred=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""document-type: see document_type.md."""
+"""The rule `document-type`, which document_type.md describes."""
 
 from __future__ import annotations
 

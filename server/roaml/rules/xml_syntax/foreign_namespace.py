@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""foreign-namespace: see foreign_namespace.md."""
+"""The rule `foreign-namespace`, which foreign_namespace.md describes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ def check(context: FileContext) -> Iterator[Finding]:
         fix = Fix("Remove the attribute", (removal(context.source.text, declared.span),), safe=True)
         fixes = [] if root.prefix else [fix]
         yield RULE.at(
-            declared.span, "this kind of file has no namespace; other tools may not be able to read it", *fixes
+            declared.span,
+            "this kind of file has no namespace, and other tools may not be able to read it; remove the attribute",
+            *fixes,
         )
 
 

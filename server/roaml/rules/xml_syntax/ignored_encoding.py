@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ignored-encoding: see ignored_encoding.md."""
+"""The rule `ignored-encoding`, which ignored_encoding.md describes."""
 
 from __future__ import annotations
 

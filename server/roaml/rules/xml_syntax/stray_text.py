@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""stray-text: see stray_text.md."""
+"""The rule `stray-text`, which stray_text.md describes."""
 
 from __future__ import annotations
 

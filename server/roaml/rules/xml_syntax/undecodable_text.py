@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""undecodable-text: see undecodable_text.md."""
+"""The rule `undecodable-text`, which undecodable_text.md describes."""
 
 from __future__ import annotations
 

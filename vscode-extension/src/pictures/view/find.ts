@@ -16,7 +16,7 @@ export function isArrow(key: string): key is Arrow {
     return key in WAYS;
 }
 
-/** The index of the nearest node in a direction; a sideways distance is weighted more. */
+/** The index of the nearest node in a direction. Sideways distances have a greater weight. */
 export function neighbour(nodes: readonly DrawnNode[], from: number, direction: Arrow): number | undefined {
     const start = nodes.find((node) => node.index === from);
     if (!start) return nodes[0]?.index;
@@ -35,7 +35,7 @@ export function neighbour(nodes: readonly DrawnNode[], from: number, direction: 
     return best;
 }
 
-/** The indexes of the nodes that contain all words of a text, ignoring case; a state contains its transitions. */
+/** The indexes of the nodes that contain all words of a text, ignoring case. A state contains its transitions. */
 export function search(picture: Picture, text: string): number[] {
     const words = text
         .toLowerCase()
@@ -69,18 +69,18 @@ export function fit(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
 }
 
-/** The view that shows as much of a drawing as is legible, from its beginning. */
+/** The view that shows as much of a drawing as is legible, beginning at its start. */
 export function fitLegibly(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(LEGIBLE, scaleOf(drawing, width, height)));
 }
 
-/** The view at a scale: in the middle where the drawing is smaller than the window, otherwise at its beginning. */
+/** The view at a scale. A drawing that is smaller than the window is centred; others are shown from their start. */
 function at(drawing: Area, width: number, height: number, scale: number): Sight {
     const start = (size: number, window: number) => (size <= window ? (size - window) / 2 : -MARGIN / scale);
     return { scale, x: start(drawing.width, width / scale), y: start(drawing.height, height / scale) };
 }
 
-/** The index of the drawing that suits a window best: it is legible as a whole, or else at least in its width. */
+/** The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width. */
 export function bestDrawing(drawings: readonly Area[], width: number, height: number): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);

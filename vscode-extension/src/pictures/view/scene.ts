@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The drawing of the server as elements of the document, with roles and names for readers of the screen. */
+/** The drawing of the server as elements of the document, with roles and names for screen readers. */
 
 import type { Drawing, Picture, Words } from "../contract";
 import { edgeHint, edgeWords, nodeWords } from "./words";
 
 const SVG = "http://www.w3.org/2000/svg";
 
-/** The elements of a drawing by the index of the node or edge; an edge may have a line and a row of text. */
+/** The elements of a drawing, by the index of the node or edge. An edge may consist of a line and a row of text. */
 export interface Scene {
     readonly root: SVGGElement;
     readonly nodes: ReadonlyMap<number, SVGGElement>;
@@ -43,7 +43,7 @@ export function sceneOf(picture: Picture, drawing: Drawing, words: Words): Scene
     return { root, nodes, edges };
 }
 
-/** Invisible wide lines under the lines of a group: they are easy to point at. */
+/** Invisible wide lines under the lines of a group, which are easy to point at. */
 function wideLines(group: SVGGElement): SVGPathElement[] {
     return [...group.querySelectorAll<SVGPathElement>(":scope > .line")].map((line) =>
         element("path", { d: line.getAttribute("d") ?? "", class: "wide" }),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view in a panel: draws the pictures that the extension sends, and sends it the actions of the user. */
+/** The view in a panel: draws the pictures that the extension sends, and sends the actions of the user to it. */
 
 import {
     DIRECTIONS,
@@ -33,7 +33,7 @@ class View {
     private picture: Picture | undefined;
     /** The index of the drawing that is shown. */
     private shown = 0;
-    /** Whether the user has chosen what is visible. */
+    /** Whether the user has changed the visible part, by scrolling or zooming. */
     private moved = false;
     private scene: Scene | undefined;
     private sight: Sight = { x: 0, y: 0, scale: 1 };
@@ -107,7 +107,7 @@ class View {
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
 
-    /** Draw the picture in the direction that is shown. */
+    /** Draw the picture in the current direction. */
     private draw(): void {
         const { picture, drawing, words } = this;
         if (!picture || !drawing || !words) return;
@@ -126,7 +126,7 @@ class View {
         return bestDrawing(this.picture?.drawings ?? [], width, height);
     }
 
-    /** Adapt the drawing to a new size of the window, unless the user has chosen what is visible. */
+    /** Adapt the drawing to a new size of the window, unless the user has changed the visible part. */
     private refit(): void {
         if (this.moved || !this.picture) return;
         const best = this.best();
@@ -316,7 +316,7 @@ class View {
         });
     }
 
-    /** Whether the view has handled the key. */
+    /** Handle a key; return whether the view uses it. */
     private key({ key, ctrlKey, metaKey }: KeyboardEvent): boolean {
         const typing = document.activeElement === this.input;
         if (typing) {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The words for the parts of a picture: for readers of the screen, for hovers, and for the legend. */
+/** The words for the parts of a picture: for screen readers, for hovers, and for the legend. */
 
 import type { EdgeKind, NodeKind, Picture, PictureEdge, PictureNode, Words } from "../contract";
 
-/** A node for readers of the screen. */
+/** The description of a node for screen readers. */
 export function nodeWords(node: PictureNode, words: Words): string {
     return [words.kinds[node.kind], node.label, ...node.details].filter((text) => text !== "").join(", ");
 }
 
-/** An edge for readers of the screen. */
+/** The description of an edge for screen readers. */
 export function edgeWords(picture: Picture, edge: PictureEdge, words: Words): string {
     const chance = edge.probabilistic ? [words.byChance] : [];
     const ends = `${labelOf(picture, edge.source)} → ${labelOf(picture, edge.target)}`;
     return [ends, words.kinds[edge.kind], ...edge.labels, ...chance].join(", ");
 }
 
-/** What a hover over an edge shows: the ends, the type of an interface, all its text, its file and line. */
+/** The hover of an edge: its ends, the type of its interface, its whole text, and its file and line. */
 export function edgeHint(picture: Picture, edge: PictureEdge): string {
     const channel = picture.nodes.find(
         (node) => isChannel(node.kind) && (node.id === edge.source || node.id === edge.target),
@@ -30,7 +30,7 @@ export function edgeHint(picture: Picture, edge: PictureEdge): string {
     return [...lines.slice(0, 1), ...edge.labels, ...lines.slice(1)].join("\n");
 }
 
-/** The sender, the interface and the receivers; an edge has only one of them. */
+/** The sender, the interface and the receivers, although an edge of the picture has only one of its ends there. */
 function throughChannel(picture: Picture, edge: PictureEdge, channel: PictureNode): string {
     const others = picture.edges.filter(({ source, target }) =>
         edge.source === channel.id ? target === channel.id : source === channel.id,
@@ -94,7 +94,7 @@ function isChannel(kind: NodeKind): boolean {
 function labelOf(picture: Picture, id: string): string {
     const node = picture.nodes.find((candidate) => candidate.id === id);
     if (node?.kind !== "choice") return node?.label ?? "";
-    // A choice has no name: it is part of the transition that leads to it.
+    // A choice has no name, because it is a part of the transition that leads to it.
     const source = picture.edges.find(({ target }) => target === id)?.source;
     return source === undefined ? "" : labelOf(picture, source);
 }

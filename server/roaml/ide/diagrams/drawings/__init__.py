@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings of diagrams: where each part is, and how it looks.
+"""Drawings of diagrams: the position and the style of each part.
 
-The same drawings are shown by the editor and written by the command line. A drawing has one of two directions, so that
-it fits a wide place as well as a tall one.
+The editor and the command line use the same drawings. A drawing has one of two directions, for an area that is wider
+than high, or higher than wide.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ _PAINTERS: Mapping[DiagramKind, Callable[[Picture, LayoutDirection], Drawing]] =
 }
 
 PAGE = (1200.0, 900.0)
-"""The width and height of the place for a drawing in a document."""
+"""The width and height of the area for a drawing in a document, in pixels."""
 
 
 def draw(kind: DiagramKind, picture: Picture, direction: LayoutDirection) -> Drawing:
-    """The drawing of a diagram in a direction."""
+    """The drawing of a diagram with a direction."""
     return _PAINTERS[kind](picture, direction)
 
 
 def draw_for(kind: DiagramKind, picture: Picture, width: float, height: float) -> Drawing:
-    """The drawing in the direction in which it is larger in a place of this size; at equal sizes, the smaller area."""
+    """The drawing that needs to be reduced least to fit into an area of this size. If both directions need the same
+    factor, the drawing with the smaller area is returned."""
     drawings = [draw(kind, picture, direction) for direction in LayoutDirection]
     return max(drawings, key=lambda drawing: (scale(drawing, width, height), -drawing.size.width * drawing.size.height))
 
 
 def scale(drawing: Drawing, width: float, height: float) -> float:
-    """The factor by which a drawing is reduced to fit; 1 if it fits."""
+    """The factor by which a drawing is reduced to fit into an area; 1 if it fits without a reduction."""
     return min(1.0, width / max(1.0, drawing.size.width), height / max(1.0, drawing.size.height))

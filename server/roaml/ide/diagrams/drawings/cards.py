@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cards: blocks of text below each other, their size, and their items at a place."""
+"""Cards: rows of text below each other, their size, and the items to draw at a position."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _INDENT = 10.0
 
 @dataclass(frozen=True, slots=True)
 class TextLine:
-    """A line of a block; `indent` in pixels."""
+    """A line of a row; `indent` is in pixels."""
 
     text: str
     size: float = SMALL
@@ -37,12 +37,13 @@ class TextLine:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A block of lines that represents edges, or belongs to the card itself if there are none.
+    """Lines of a card that represent edges of the diagram, or that describe the node itself if `edges` is empty.
 
     Attributes:
-        has_bar: whether a bar in its tone is left of the lines.
-        is_joined: whether it continues the row above.
-        hint: the whole text, if the lines show less.
+        edges: the indices of the edges in the diagram.
+        has_bar: whether a bar in the row's tone is drawn on the left of the lines.
+        is_joined: whether there is no distance to the row above.
+        hint: the complete text if the lines show only a part of it, otherwise "".
     """
 
     lines: tuple[TextLine, ...]
@@ -62,8 +63,8 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """Rows below each other; `ruled`: whether a line separates the first row from the others. `side` is the width that
-    is free on the left of the first row, for a badge."""
+    """Rows below each other. `ruled` is true if a line separates the first row from the others. `side` is the free
+    width on the left of the first row, for a badge."""
 
     rows: tuple[Row, ...]
     ruled: bool = False
@@ -88,7 +89,7 @@ class Card:
         return 0.0 if self.rows[index].is_joined else _ROW_DISTANCE
 
     def items(self, box: Box) -> tuple[Item, ...]:
-        """The rows in a box of at least the size of the card."""
+        """The items of the rows in a box, which is at least as large as the card."""
         items: list[Item] = []
         y = box.y + (box.height - sum(self._heights())) / 2
         for index, row in enumerate(self.rows):
@@ -128,7 +129,7 @@ def title(text: str, width: float) -> tuple[TextLine, ...]:
 def paragraph(
     text: str, width: float, role: str = "text", *, limit: int = 0, bold: bool = False
 ) -> tuple[TextLine, ...]:
-    """A text in small letters; further lines are indented."""
+    """The lines of a text in small letters, wrapped to a width. All lines except the first are indented."""
     if not text:
         return ()
     lines = wrap(text, SMALL, width - _INDENT, bold=bold, limit=limit)
@@ -136,5 +137,5 @@ def paragraph(
 
 
 def is_shortened(lines: Sequence[TextLine], *texts: str) -> bool:
-    """Whether lines show less than the texts."""
+    """Whether the lines contain only a part of the texts."""
     return sum(len("".join(line.text.split())) for line in lines) < sum(len("".join(text.split())) for text in texts)

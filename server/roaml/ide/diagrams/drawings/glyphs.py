@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symbols of the kinds of tree nodes, as strokes in the unit square; they need no font."""
+"""Symbols for the kinds of tree nodes, as strokes in the unit square, so that no font is needed."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _CONTROLS = (("Sequence", _SEQUENCE), ("Fallback", _FALLBACK), ("Parallel", _PAR
 
 
 def badge(node: DiagramNode, x: float, y: float) -> tuple[Shape, Glyph] | None:
-    """The symbol of a node in a square of its color; `None` if its kind has none."""
+    """The symbol of a node in a square with the color of its kind; `None` if the kind has no symbol."""
     strokes = _KINDS.get(node.kind)
     if strokes is None:
         return None

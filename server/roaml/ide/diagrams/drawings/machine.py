@@ -2,9 +2,9 @@
 """The drawing of a state machine.
 
 - A state is a card with its entry and exit actions. Transitions from a state to itself are rows of its card.
-- All transitions from one state to another are rows of one label on one line.
-- A choice is a small junction; one whose targets are all its own state is a row of the card.
-- Each action thread is a frame around its own drawing.
+- All transitions from one state to another share a line; its label has a row for each of them.
+- A choice is a small junction. If all its targets are the state from which it comes, it is a row of the state's card.
+- An action thread is a drawing of its own in a frame.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNodeKind, EdgeKind, P
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
-"""The widths of lines of text."""
+"""The maximum widths of lines of text in cards and labels, in pixels."""
 LABEL_PADDING = 7.0
 MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
 _JUNCTION, _DOT = 14.0, 10.0
@@ -48,7 +48,7 @@ def draw_machine(picture: Picture, direction: LayoutDirection) -> Drawing:
 
 
 def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing:
-    """The chart of an action thread in its frame."""
+    """The drawing of an action thread in its frame; `index` is the node of the thread."""
     node = picture.nodes[index]
     chart = _Chart(picture, node.id).drawing(direction)
     heading = Card((Row((*title(" ".join((node.label, *(f"({d})" for d in node.details))), 400.0),)),))
@@ -65,7 +65,7 @@ def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing
 
 
 class _Chart:
-    """The states of the machine itself, or those of one thread."""
+    """The chart of the machine, or that of one thread."""
 
     def __init__(self, picture: Picture, frame: str) -> None:
         self._picture = picture
@@ -83,7 +83,7 @@ class _Chart:
         }
 
     def _inlined_choices(self) -> frozenset[str]:
-        """The choices that always return to the state from which they come."""
+        """The choices whose targets are all the state from which they come."""
         origin = {edge.target: edge.source for _, edge in self._edges if not edge.probabilistic}
         choices = {
             name for name, index in self._index.items() if self._picture.nodes[index].kind is DiagramNodeKind.CHOICE
@@ -147,7 +147,8 @@ class _Chart:
         return Drawing(layout.size, tuple(groups), nodes)
 
     def _bundles(self) -> list[tuple[str, str, list[tuple[int, DiagramEdge]]]]:
-        """The edges that are drawn as lines, grouped by their ends, in the order of the first of each."""
+        """The edges that are drawn as lines, grouped by source and target, in the order of the first edge of each
+        group."""
         bundles: dict[tuple[str, str], list[tuple[int, DiagramEdge]]] = {}
         for index, edge in self._edges:
             if edge.source != edge.target:
@@ -163,7 +164,7 @@ class _Chart:
 
 
 def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined: bool = False) -> Row:
-    """A transition: its trigger, its condition and its actions."""
+    """The row for a transition: its trigger, its condition and its actions."""
     lines: list[TextLine] = []
     heads, guards = _split(edge)
     if heads:
@@ -182,24 +183,24 @@ def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined:
 
 
 def _label(edges: Sequence[tuple[int, DiagramEdge]]) -> Card:
-    """The label of a line; it has no rows if there is nothing to say."""
-    told = [(index, edge) for index, edge in edges if edge.labels or edge.actions]
-    return Card(tuple(_row(index, edge, LABEL_WIDTH) for index, edge in told), padding=LABEL_PADDING)
+    """The label of a line, with a row for each edge that has labels or actions."""
+    labelled = [(index, edge) for index, edge in edges if edge.labels or edge.actions]
+    return Card(tuple(_row(index, edge, LABEL_WIDTH) for index, edge in labelled), padding=LABEL_PADDING)
 
 
 def _split(edge: DiagramEdge) -> tuple[str, list[str]]:
-    """What is written bold, and the conditions."""
+    """The labels of an edge without its conditions, which are written in bold, and the conditions."""
     guards = [text for text in edge.labels if text.startswith("[")]
     return " ".join(text for text in edge.labels if text not in guards), guards
 
 
 def _tone(edges: Sequence[tuple[int, DiagramEdge]]) -> Tone:
-    """The tone of a line: that of its transitions if they are of one kind."""
+    """The tone of a line: the common tone of its transitions, or `PLAIN` if they have different tones."""
     tones = {Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN) for _, edge in edges}
     return tones.pop() if len(tones) == 1 else Tone.PLAIN
 
 
 def _kinds(edges: Sequence[tuple[int, DiagramEdge]]) -> str:
-    """The kinds of edges, for the style sheet; "" if there are several."""
+    """The common kind of edges, for the style sheet; "" if they have different kinds."""
     kinds = {f"{edge.kind.value} chance" if edge.probabilistic else edge.kind.value for _, edge in edges}
     return kinds.pop() if len(kinds) == 1 else ""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drawing of a ROS graph: nodes and plugins, the interfaces between them, and plain events.
 
-The color of a line is that of what it carries: messages of a topic, a service, an action, or plain events. Its arrow
-leads to the receiver.
+The color of a line shows whether it represents a topic, a service, an action, or plain events. Its arrow points to the
+receiver.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 
 CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
-"""The widths of lines of text; they are small where nodes are side by side."""
+"""The maximum widths of lines of text in cards, in pixels. They are smaller if nodes are drawn side by side."""
 LABEL_WIDTH = 150.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 _CHANNELS: Mapping[DiagramNodeKind, Tone] = {
@@ -67,7 +67,7 @@ def _card(node: DiagramNode, width: float) -> Card:
 
 
 def _label(number: int, edge: DiagramEdge) -> Card | None:
-    """The names of plain events; other edges have no label."""
+    """The label of an edge with the names of its plain events; `None` for other edges, which have no label."""
     if not edge.labels:
         return None
     lines = tuple(line for text in edge.labels for line in paragraph(text, LABEL_WIDTH, bold=True))

@@ -62,7 +62,8 @@ def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
 def _with_blackboard(
     tree: Mapping[str, Box], size: Extent, variables: Mapping[str, Extent]
 ) -> tuple[dict[str, Box], Extent]:
-    """The boxes with those of the entries of the blackboard, in rows below the tree."""
+    """The boxes of the tree's nodes and of the entries of the blackboard, which are placed in rows below the tree; and
+    the size of the whole drawing."""
     boxes = dict(tree)
     if not variables:
         return boxes, size
@@ -96,7 +97,7 @@ def _card(picture: Picture, node: DiagramNode) -> Card:
 
 
 def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
-    """The rows of the ports; those that are bound to the blackboard represent edges."""
+    """The rows of the ports. The row of a port that is bound to the blackboard represents an edge."""
     bound: dict[str, list[int]] = {}
     for number, edge in enumerate(picture.edges):
         if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
