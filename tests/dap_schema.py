@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schema of the Debug Adapter Protocol, as a judge of the messages of the adapter."""
+"""Validates messages of the adapter with the schema of the Debug Adapter Protocol."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The door of the library: what its signatures name can be imported from it, and a check stays light."""
+"""The public interface of the library: all names in its signatures can be imported from it, and a check imports few
+modules."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ import inspect
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -44,7 +46,7 @@ HEAVY = (
     "ssl",
     "urllib.request",
 )
-"""What a check must not import."""
+"""Modules that a check must not import."""
 
 
 def test_every_name_can_be_imported() -> None:
@@ -74,7 +76,7 @@ def test_answers_name_what_can_be_imported(kind: type) -> None:
 
 
 def named_in(function: object) -> set[str]:
-    """The names in a signature, but those of Python and its standard library."""
+    """The names in a signature, without those of Python and its standard library."""
     return {name for text in function.__annotations__.values() for name in names_of(str(text))}  # type: ignore[attr-defined]
 
 
@@ -93,3 +95,41 @@ print(*(name for name in {HEAVY!r} if name in sys.modules))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == ""
+
+
+NOT_FOR_JANI = ("lxml", "multiprocessing", "roaml.expr.tree", "roaml.scxml.model", "roaml.views.story", "xml.etree")
+"""What a quick verification of a model in JANI does not need."""
+
+
+def test_a_verification_of_jani_imports_little(tmp_path: Path) -> None:
+    model = tmp_path / "model.jani"
+    model.write_text(COIN)
+    code = f"""
+import sys
+from as2fm_lsp.cli.main import run
+run(["verify", {str(model)!r}, "--jobs", "1"])
+print(*(name for name in {NOT_FOR_JANI!r} if name in sys.modules))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "two" in done.stdout
+    assert done.stdout.splitlines()[-1] == ""
+
+
+COIN = """{
+    "jani-version": 1, "name": "coin", "type": "dtmc", "actions": [],
+    "variables": [{
+        "name": "n", "type": {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 2}, "initial-value": 0
+    }],
+    "automata": [{
+        "name": "A", "locations": [{"name": "l"}], "initial-locations": ["l"],
+        "edges": [{"location": "l", "guard": {"exp": {"op": "<", "left": "n", "right": 1}}, "destinations": [
+            {"location": "l", "probability": {"exp": 0.5}, "assignments": [{"ref": "n", "value": 1}]},
+            {"location": "l", "probability": {"exp": 0.5}, "assignments": [{"ref": "n", "value": 2}]}
+        ]}]
+    }],
+    "system": {"elements": [{"automaton": "A"}], "syncs": [{"synchronise": [null]}]},
+    "properties": [{"name": "two", "expression": {
+        "op": "filter", "fun": "values", "states": {"op": "initial"},
+        "values": {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 2}}}
+    }}]
+}"""

@@ -8,7 +8,7 @@ import sys
 
 
 def main() -> None:
-    from as2fm_lsp.cli.main import run  # noqa: PLC0415 - so that an interrupt during start-up is quiet, too
+    from as2fm_lsp.cli.main import run  # noqa: PLC0415 - so that an interrupt during start-up prints no traceback
 
     spare_the_collector()
     sys.exit(run(sys.argv[1:]))

@@ -23,7 +23,7 @@ from lsprotocol import types
 log = logging.getLogger(__name__)
 
 _LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
-"""Also matches after the rest of an invalid message, so that the next message is found."""
+"""A header with the length. It may follow the rest of an invalid message, so that the next message is recognised."""
 
 _FIELD = re.compile(rb"[A-Za-z-]+:")
 """The beginning of a header line."""

@@ -51,7 +51,7 @@ def _wait_on_linux(process_id: int) -> None:
         descriptor = os.pidfd_open(process_id)
     except ProcessLookupError:
         return
-    except (OSError, OverflowError):  # an old kernel, or one that does not allow it
+    except (OSError, OverflowError):  # old kernels do not support this, others may forbid it
         _look_again_and_again(process_id)
         return
     try:
@@ -68,7 +68,7 @@ def _look_again_and_again(process_id: int) -> None:
 def _is_alive(process_id: int) -> bool:
     try:
         os.kill(process_id, 0)
-    except PermissionError:  # it runs as another user
+    except PermissionError:  # the process runs as another user
         return True
     except (OSError, OverflowError):
         return False

@@ -117,7 +117,7 @@ def _register(server: Server) -> None:
 
     @context.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:
-        if session.client_settings:  # the client, during its own start, would receive duplicate requests
+        if session.client_settings:  # without them, a check follows when they have arrived
             diagnostics.schedule()
         await asyncio.gather(client.watch_files(WATCHED), fetch_settings(context))
         tell_problems(context)

@@ -55,8 +55,8 @@ class Moment:
     def snapshot(self, path: str) -> Snapshot:
         """The snapshot in which a file is analysed.
 
-        It is the first of: the innermost folder around the file in which a system uses the file; any folder in which a
-        system uses it; the innermost folder around it; the workspace for a file outside all folders.
+        The workspace is the first one that exists of these: the innermost folder around the file in which a system uses
+        it, any folder in which a system uses it, the innermost folder around it, a workspace outside all folders.
         """
         near = sorted((folder for folder in self._folders if is_below(path, folder)), key=len, reverse=True)
         for folder in dict.fromkeys((*near, *self._folders)):
@@ -224,7 +224,7 @@ class Session:
         """The configuration in a folder, with the client's settings added."""
         settings, problems = find_settings(folder) if is_on_disk(folder) else (Settings(), ())
         settings, mistakes = settings_from(_kebab(self._client_settings), folder, settings)
-        if not settings.origin:  # otherwise they are among the diagnostics of that file
+        if not settings.origin:  # errors in a configuration file are its diagnostics
             self.problems += problems
         self.problems += [f"In the editor's settings: {mistake.message}." for mistake in mistakes]
         return replace(settings, ament_prefixes=ament_prefixes())

@@ -167,7 +167,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
     def greet(connection: socket.socket) -> None:
         try:
             client = _admitted(connection, token)
-        except (OSError, ValueError, RecursionError) as error:  # it has disconnected, or has sent invalid JSON
+        except (OSError, ValueError, RecursionError) as error:  # the client has disconnected, or has sent invalid JSON
             log.warning("a connection was refused: %s", error)
             client = None
         finally:

@@ -53,12 +53,12 @@ _DOCUMENTS = (
     types.NOTEBOOK_DOCUMENT_DID_CHANGE,
     types.NOTEBOOK_DOCUMENT_DID_CLOSE,
 )
-"""Features that `Session` implements and pygls would do again."""
+"""Notifications that `Session` handles. The handlers of pygls for them are not called."""
 
 _MAX_NAME_CHARACTERS = 60
 
 _MAX_UNANSWERED = 1000
-"""The maximum number of pending requests to the client: one that never answers must not fill the memory."""
+"""The maximum number of pending requests to the client: a client that never answers must not fill the memory."""
 
 
 class Protocol(LanguageServerProtocol):
@@ -259,7 +259,7 @@ class Endpoint(LanguageServer):
             await asyncio.sleep(0)
 
     def _refuse(self, message: object, error: JsonRpcException) -> None:
-        """Answer an invalid message, or one at the wrong time, if it expects an answer."""
+        """Answer a message that is invalid or not allowed at this time, if it expects an answer."""
         if is_answered(message):
             self.protocol._send_data(error_response(message, error))
         else:
@@ -274,6 +274,6 @@ class Endpoint(LanguageServer):
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Log an error for which nothing waits; a cancelled wait is not an error."""
+    """Log an error that no coroutine waits for. A cancelled request is not an error."""
     if not isinstance(context.get("exception"), JsonRpcRequestCancelled):
         loop.default_exception_handler(context)

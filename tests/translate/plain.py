@@ -16,7 +16,8 @@ from typing import Any
 from reach import reachable
 
 from roaml.expr import tree as expr
-from roaml.scxml.model import Assign, Automaton, If, Network, Role, Send, Statement, Transition
+from roaml.scxml.events import Role
+from roaml.scxml.model import Assign, Automaton, If, Network, Send, Statement, Transition
 
 CLOCK_STEP = "global_timer_tick_event"
 TIMER = "ros_time_rate."

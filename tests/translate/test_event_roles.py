@@ -14,7 +14,8 @@ from translating import lowered
 
 from roaml import api
 from roaml.jani.writer import write
-from roaml.scxml.model import Body, EventRole, If, Network, ScxmlEvent, Send, bodies, statements
+from roaml.scxml.events import EventRole, ScxmlEvent
+from roaml.scxml.model import Body, If, Network, Send, bodies, statements
 from roaml.scxml.names import automaton_role, is_synchronising, role_of
 from roaml.to_jani import translate
 

@@ -10,7 +10,7 @@ import pytest
 from as2fm_lsp.verification import stuck_report
 from roaml import api
 from roaml.rules import BY_CODE
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.smc.run import Options
 from roaml.verification import stuck
 from roaml.views.event_words import said

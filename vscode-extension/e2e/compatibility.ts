@@ -9,12 +9,12 @@ import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 const XML_EXTENSION = `
 const vscode = require("vscode");
 exports.activate = () => {
-    const found = vscode.languages.createDiagnosticCollection("xml");
+    const diagnostics = vscode.languages.createDiagnosticCollection("xml");
     const look = (document) => {
         if (document.languageId !== "xml") return;
         const bad = document.getText().includes("<ill");
         const range = new vscode.Range(0, 0, 0, 1);
-        found.set(document.uri, bad ? [new vscode.Diagnostic(range, "XML extension: not well-formed")] : []);
+        diagnostics.set(document.uri, bad ? [new vscode.Diagnostic(range, "XML extension: not well-formed")] : []);
     };
     vscode.workspace.textDocuments.forEach(look);
     vscode.workspace.onDidOpenTextDocument(look);

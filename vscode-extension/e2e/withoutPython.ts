@@ -60,8 +60,10 @@ async function install(
 function programs(...names: string[]): string {
     const folder = temporaryFolder("path");
     for (const name of names) {
-        const found = ["/bin", "/usr/bin"].map((each) => path.join(each, name)).find((file) => fs.existsSync(file));
-        if (found !== undefined) fs.symlinkSync(found, path.join(folder, name));
+        const program = ["/bin", "/usr/bin"]
+            .map((directory) => path.join(directory, name))
+            .find((file) => fs.existsSync(file));
+        if (program !== undefined) fs.symlinkSync(program, path.join(folder, name));
     }
     return folder;
 }

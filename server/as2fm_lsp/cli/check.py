@@ -70,7 +70,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
         return _usage(*map(unknown_rule, unknown))
     paths = [*options.paths, *([] if stdin is None else [stdin])]
     settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
-    if problems and not settings.origin:  # otherwise they are among the diagnostics
+    if problems and not settings.origin:  # errors in a configuration file are reported as diagnostics
         for problem in problems:
             complain(problem)
         return USAGE

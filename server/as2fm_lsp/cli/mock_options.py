@@ -17,7 +17,7 @@ def add_mock_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("trees without a system")
     add = group.add_argument
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
-        "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE stands for any text; may be "
+        "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "
         "repeated")  # fmt: skip
     add("--mocks", metavar="FILE", help="mocks from a file, one in each line")
     add("--entry", action="append", default=[], metavar="NAME=VALUE", help="the blackboard entry NAME has this "

@@ -21,7 +21,7 @@ UNEXPECTED_END = 1
 """The exit status that the protocol requires if a server ends without a `shutdown` request."""
 
 SWITCH_INTERVAL_S = 0.001
-"""After this time, a computation gives a turn to the thread that reads what the client sends."""
+"""The time in s after which a computation lets the thread run that reads the messages of the client."""
 
 TOKEN = "AS2FM_TOKEN"
 """The environment variable with the token of a client, so that it need not be read from the log."""

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 import threading
 import time
@@ -67,6 +66,8 @@ class StatusLine:
 
     @staticmethod
     def _write(text: str) -> None:
+        import shutil  # noqa: PLC0415 - only terminals need it
+
         width = shutil.get_terminal_size().columns - 1
         sys.stderr.write(_CLEAR + text[:width])
         sys.stderr.flush()

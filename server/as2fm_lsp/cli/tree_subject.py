@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A tree without a system as the subject of `verify` and `simulate`."""
+"""Reading a tree without a system for `verify` and `simulate`."""
 
 from __future__ import annotations
 

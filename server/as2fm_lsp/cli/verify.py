@@ -10,7 +10,6 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -36,7 +35,7 @@ from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
-from as2fm_lsp.verification.report import as_json, as_junit, as_text
+from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
@@ -58,6 +57,8 @@ from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from roaml.mocks.network import MockedTree
     from roaml.project.settings import Settings
     from roaml.smc.story import Story
@@ -134,7 +135,7 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
-    if limits.method == ADAPTIVE:  # a fixed number: all measurements are made on the same traces
+    if limits.method == ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
         limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
@@ -208,18 +209,18 @@ class _Verification:
         asked = verifier.sharing()
         if not asked:
             return {}
-        payloads = [verifier.checker.payload(each) for each in asked] if self.state is not None else []
+        payloads = [verifier.checker.payload(property_) for property_ in asked] if self.state is not None else []
         tallies = [Tally() for _ in asked]
         if self.state is not None:
             tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
-        by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
+        by_name = {property_.question.name: payload for property_, payload in zip(asked, payloads, strict=False)}
 
-        def watch(each: CompiledProperty, so_far: Tally) -> None:
+        def watch(property_: CompiledProperty, so_far: Tally) -> None:
             shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
-            if each is shown:
-                bar.together(each.question, so_far, len(asked))
+            if property_ is shown:
+                bar.together(property_.question, so_far, len(asked))
             if self.state is not None:
-                self.state.keep(each.question.name, by_name[each.question.name], so_far)
+                self.state.keep(property_.question.name, by_name[property_.question.name], so_far)
 
         began = time.monotonic()
         bar.begin(asked[0].question, self.limits, tallies[0])
@@ -231,8 +232,8 @@ class _Verification:
             seconds = time.monotonic() - began
             results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
         if self.state is not None:
-            for each, tally in zip(asked, tallies, strict=True):
-                self.state.keep(each.question.name, by_name[each.question.name], tally, now=True)
+            for property_, tally in zip(asked, tallies, strict=True):
+                self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
         self.faults += [result.fault for result in results if result.fault is not None]
         return {result.name: self._with_shown_path(result) for result in results}
 
@@ -317,6 +318,8 @@ class _Verification:
             row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
             return as_json(self.results, entries, stuck=row, tree=self._tree_row())
         if self.options.format == "junit":
+            from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
+
             return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
         # A story of a stuck trace ends with the waiting automata.
         is_told = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
@@ -459,7 +462,7 @@ class _Verification:
         else:
             text = self._story_texts(stories)
         if file == STANDARD_OUTPUT:
-            # Programs read standard output; the story is for users.
+            # With a format for programs, standard output contains only the results.
             print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
         else:
             write_file(file, text)
@@ -609,7 +612,7 @@ def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | 
 
 
 def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:
-    """The texts of the files that a target was read from."""
+    """A function that returns the text of a file from which a target was read."""
 
     def source_of(path: str) -> SourceFile:
         source = target.source_of(path)

@@ -134,7 +134,7 @@ class Adapter:
         return None
 
     def _attach(self, arguments: Arguments) -> Body:
-        raise RequestError("a model cannot be attached to; use `launch`")
+        raise RequestError("`attach` is not supported; use `launch`")
 
     def _load(self, launch: Launch) -> None:
         session = self._session

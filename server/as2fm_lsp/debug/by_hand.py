@@ -23,7 +23,7 @@ _BEGINNING = re.compile(r"\s*(publish|call|send)\s+(\S*)")
 
 
 def is_command(text: str) -> bool:
-    """Whether a line of the console sends something, such as `publish /topic {data: 1}`."""
+    """Whether a line of the console is a command that sends an event, such as `publish /topic {data: 1}`."""
     return _COMMAND.fullmatch(text) is not None
 
 
@@ -40,7 +40,7 @@ class ByHandRequests:
         }
 
     def execute(self, text: str, frame: Frame | None) -> str:
-        """Execute a line of the console for which `is_command` is true; returns what has happened.
+        """Execute a line of the console for which `is_command` is true; return a description of the effect.
 
         Raises:
             WatchError, RequestError: it is not possible.

@@ -12,7 +12,7 @@ from as2fm_lsp.handlers.first_error import counted
 from as2fm_lsp.handlers.parameters import document_uri
 from roaml import api
 from roaml.project.analysis import Analysis
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.scxml.writer import WrittenLine, write_lines
 
 METHOD = "as2fm/plainScxml"

@@ -180,7 +180,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
 
 def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
     """The commands that the client offers for a result."""
-    client, unwanted, wanted = context.client, unwanted_trace(result), witness_trace(result)
+    client, unwanted, witness = context.client, unwanted_trace(result), witness_trace(result)
     if client.set_expectation and result.has_no_expectation and result.answer is not None:
         yield types.Command("Set expectation", client.set_expectation, arguments=[uri, name])
     if client.show_counterexample and unwanted is not None:
@@ -189,7 +189,7 @@ def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator
         traces = result.traces
         run = {} if traces is None else {"seed": traces.options.seed, "trace": unwanted.trace}
         yield types.Command("Debug counterexample", client.debug_counterexample, arguments=[uri, name, run])
-    if client.show_witness and wanted is not None:
+    if client.show_witness and witness is not None:
         yield types.Command("Show witness", client.show_witness, arguments=[uri, name])
 
 

@@ -30,8 +30,8 @@ def remarks(answer: Answer) -> list[str]:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
     if tally.late:
         lines.append(
-            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), where something "
-            "was still to come; a longer time may satisfy them"
+            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), because an event "
+            "that the property requires has not occurred; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
     if opened:

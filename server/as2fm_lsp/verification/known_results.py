@@ -93,7 +93,7 @@ class KnownResults:
         """Whether there is a result for a system."""
         return system in self._known
 
-    # A user verifies one property after the other: they share the translation.
+    # Properties that a user verifies one after the other share the translation.
 
     def target(self, texts: Texts) -> VerificationTarget | None:
         """The last translation, if it was made from these texts."""

@@ -9,9 +9,12 @@ them once.
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
 from roaml.jani.model import Model
-from roaml.views.story import PlaceOf
+
+if TYPE_CHECKING:
+    from roaml.views.story import PlaceOf
 
 _NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")

@@ -21,7 +21,7 @@ from roaml.smc.stored import tally_from_json
 
 VERSION = 4
 MAX_STATE_BYTES = 64 * MEGABYTE
-"""The maximum size of the file, in bytes; the state of some hundred properties takes a few million."""
+"""The maximum size of the file, in bytes; the state of some hundred properties takes a few MB."""
 WRITE_INTERVAL_S = 1.0
 
 
@@ -62,7 +62,7 @@ class SavedState:
         except ValueError as error:
             raise StateError(f"{self.path} is damaged: {name}: {error}; remove it to start again") from None
         if known.get("options") != repr(self.options):
-            # A user who changes the options knows the results so far.
+            # The user may have changed the options because of the results so far.
             tally.is_finished, tally.accepted, tally.is_revised = False, None, tally.traces > 0
         return tally
 

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from roaml.jani.node import Origin
 from roaml.smc.end import End
 from roaml.verification.stuck import WARNING, Look, Stuck
-from roaml.views.story import PlaceOf
-from roaml.views.waiting import help_line
+
+if TYPE_CHECKING:
+    from roaml.views.story import PlaceOf
 
 PROBABILITY = "probability of getting stuck"
 NOT_STUCK = "does not get stuck"
@@ -57,6 +58,8 @@ def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
     for wait in stuck.waits:
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
         lines.append(f"{wait.who} {wait.what}{place}")
+    from roaml.views.waiting import help_line  # noqa: PLC0415 - most systems do not get stuck
+
     line = help_line(stuck.waits)
     return [*lines, line] if line else lines
 

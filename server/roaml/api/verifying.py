@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 class ConstantError(ValueError):
-    """A constant cannot have this value, or a model does not declare the constant or parameter; the message contains
-    the reason."""
+    """Raised if a constant cannot have the given value, or if a model does not declare the constant or parameter. The
+    message contains the reason."""
 
 
 def target(
@@ -74,7 +74,7 @@ def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
 
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
-    """The target for a system, which is translated first, or for a model."""
+    """The verification target of a system, which is translated for it, or of a JANI model."""
     from roaml.verification.target import VerificationTarget, target_of  # noqa: PLC0415
 
     if isinstance(subject, VerificationTarget):
@@ -117,7 +117,7 @@ def verifier(
     *,
     only_uniform: bool = False,
 ) -> Verifier:
-    """A verification of single properties that can be observed, interrupted and continued.
+    """A verifier, which verifies properties one by one. A verification can be observed, interrupted and continued.
 
     Args:
         subject, properties, options, expectations, only_uniform: as for `verify`.

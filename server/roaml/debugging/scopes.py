@@ -71,16 +71,16 @@ class Values:
 
     def scopes(self, frame: Frame) -> list[ScopeEntries]:
         """The scopes of a frame that are not empty."""
-        found = []
+        own_scopes = []
         if frame.instance >= 0:
-            found.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
+            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
             message = self.message(frame.instance)
             if message:
                 entries = (ScopeEntry(name, value, type_of(value), name) for name, value in message.items())
-                found.append(ScopeEntries("Message", tuple(entries), "arguments"))
+                own_scopes.append(ScopeEntries("Message", tuple(entries), "arguments"))
         if frame.node:
-            found.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
-        return [scope for scope in (*found, *self.shared_scopes()) if scope.entries]
+            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
+        return [scope for scope in (*own_scopes, *self.shared_scopes()) if scope.entries]
 
     def shared_scopes(self) -> Iterator[ScopeEntries]:
         """The scopes that all frames have."""
@@ -105,7 +105,7 @@ class Values:
             value = typed_value(name, type_, stored)
             if value is not None and _is_stored(name, stored):
                 shown |= {
-                    each for each in stored if each == name or each.startswith((f"{name}{SEPARATOR}", f"{name}."))
+                    part for part in stored if part == name or part.startswith((f"{name}{SEPARATOR}", f"{name}."))
                 }
                 yield ScopeEntry(name, value, str(type_), name, WatchedVariable(instance, name))
         for name, value in untyped_values({n: v for n, v in stored.items() if n not in shown}).items():
@@ -205,9 +205,9 @@ class Values:
         own = known.get
 
         def value(name: str) -> Value | None:
-            found = own(name)
-            if found is not None or name not in shared:
-                return found
+            own_value = own(name)
+            if own_value is not None or name not in shared:
+                return own_value
             plain = shared[name]
             return plain if not isinstance(plain, list) else untyped_values({name: plain}).get(name)
 
@@ -215,7 +215,7 @@ class Values:
 
 
 def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
-    return name in stored or any(each.startswith(f"{name}{SEPARATOR}") for each in stored)
+    return name in stored or any(part.startswith(f"{name}{SEPARATOR}") for part in stored)
 
 
 def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:

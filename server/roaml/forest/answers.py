@@ -72,7 +72,7 @@ class Possible:
 
     def _tree(self, name: str) -> Answers:
         if name not in self._trees:
-            self._trees[name] = ANYTHING  # during its analysis, for trees that contain themselves
+            self._trees[name] = ANYTHING  # used during the analysis, if the tree contains itself
             _, tree = self.forest.trees[name]
             if len(tree.roots) == 1 and self._depth < MAX_SUBTREES:
                 self._depth += 1

@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
-
-from lxml import etree
+from typing import TYPE_CHECKING, Any
 
 from roaml.language.resources import schema_path
 from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValueRole
+
+if TYPE_CHECKING:
+    from lxml import etree
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
@@ -59,8 +60,8 @@ class PortType:
 
     Attributes:
         type: a base type or "any".
-        required: whether it must be set.
-        default: its value if it is not set.
+        required: whether the port must be set.
+        default: the value of the port if it is not set.
         constant: whether its value must be a constant.
         alias_of: the port of which this is another name, or "".
     """
@@ -195,6 +196,8 @@ class Grammar:
     @cached_property
     def validator(self) -> etree.XMLSchema:
         """The compiled schema (libxml2)."""
+        from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
+
         return etree.XMLSchema(etree.parse(str(schema_path(self.schema))))
 
     def child(self, parent: ElementType, name: str) -> ElementType | None:
@@ -261,9 +264,11 @@ class _Shape:
 
 
 class _Reader:
-    """Reads one schema file."""
+    """Reads one schema file into tables."""
 
     def __init__(self, schema: str) -> None:
+        from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
+
         top = etree.parse(str(schema_path(schema))).getroot()
         self.named: dict[tuple[str, str], Any] = {
             (_local(node), name): node for node in top if isinstance(node.tag, str) and (name := node.get("name"))
@@ -400,7 +405,7 @@ class _Reader:
 
 
 def _local(node: Any) -> str:
-    return str(etree.QName(node).localname)
+    return str(node.tag).rpartition("}")[2]
 
 
 def _documentation(node: Any) -> str:

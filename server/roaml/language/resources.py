@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-import importlib.resources
 from pathlib import Path
 
 
 def schema_path(name: str) -> Path:
     """The file `name` of `schemas/`."""
+    import importlib.resources  # noqa: PLC0415 - models in JANI do not need it
+
     installed = importlib.resources.files("roaml") / "schemas" / name
     if isinstance(installed, Path) and installed.is_file():
         return installed

@@ -8,10 +8,7 @@ Kinds, ports, types and defaults of nodes are defined only in the XML files of t
 from __future__ import annotations
 
 import functools
-import importlib.resources
 from typing import Any
-
-from lxml import etree
 
 from roaml.libraries.node import Absent, Library, Node, Port, Renamed
 from roaml.roles import UNBOUNDED, Direction, NodeKind
@@ -37,7 +34,11 @@ LIBRARIES = ("nav2",)
 @functools.cache
 def library(name: str) -> Library:
     """The library with this name: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
+    import importlib.resources  # noqa: PLC0415 - models in JANI do not need it
+
     data = (importlib.resources.files(__name__) / f"{name}.xml").read_bytes()
+    from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
+
     return _read(etree.fromstring(data))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS service: one request at a time
+"""The handler between the clients and the server of a ROS service. It handles one request at a time
 (docs/spec/plain-scxml.md#service-automaton)."""
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
 from roaml.model.system import Channel, sanitise
 from roaml.roles import ProtocolPart
-from roaml.scxml.model import Automaton, Role, Send, State
+from roaml.scxml.events import Role
+from roaml.scxml.model import Automaton, Send, State
 from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name
 
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)

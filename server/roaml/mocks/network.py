@@ -28,20 +28,8 @@ from roaml.mocks.unfolding import unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
 from roaml.roles import NodeKind
-from roaml.scxml.model import (
-    Assign,
-    Automaton,
-    Data,
-    EventRole,
-    Network,
-    Role,
-    ScxmlEvent,
-    Send,
-    State,
-    Statement,
-    Target,
-    Transition,
-)
+from roaml.scxml.events import EventRole, Role, ScxmlEvent
+from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
 from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
 from roaml.text import Location
 

@@ -14,61 +14,14 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
+from roaml.scxml.events import Role, ScxmlEvent
 from roaml.text import Location
-
-
-class Role(enum.Enum):
-    """The role of an automaton in the system. The translation to JANI depends on it (docs/spec/jani.md#discarding)."""
-
-    MACHINE = "machine"
-    TREE_ROOT = "root of the behavior tree"
-    BLACKBOARD = "blackboard"
-    HANDLER = "service or action handler"
-    CLOCK = "clock"
-
-
-class EventRole(enum.Enum):
-    """The purpose of an event. The translation to JANI depends on it (docs/spec/jani.md#event-automata)."""
-
-    PLAIN = "plain"
-    """An event that a receiver discards if it does not wait for the event."""
-    BLOCKING = "blocking"
-    """An event that waits for its receivers."""
-    TIMER_TICK = "tick of a timer"
-    CLOCK_STEP = "step of the clock"
-    BLACKBOARD_READ = "read of the blackboard"
-    BLACKBOARD_WRITE = "write to the blackboard"
-
-    @property
-    def is_synchronising(self) -> bool:
-        """Whether the event waits for its receivers (docs/spec/jani.md#synchronising-names)."""
-        return self in (EventRole.BLOCKING, EventRole.CLOCK_STEP)
-
-    @property
-    def is_internal(self) -> bool:
-        """Whether the event has neither buffer nor variables."""
-        return self in (EventRole.TIMER_TICK, EventRole.CLOCK_STEP)
-
-
-@dataclass(frozen=True, slots=True)
-class ScxmlEvent:
-    """An event. Events with equal names have the same role.
-
-    Attributes:
-        after: the name of an event; while it waits for its receivers, this event cannot be received. "" if there is no
-            such event.
-    """
-
-    name: str
-    role: EventRole = EventRole.PLAIN
-    after: str = ""
 
 
 @dataclass(frozen=True, slots=True)

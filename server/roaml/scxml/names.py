@@ -12,7 +12,7 @@ import re
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
-from roaml.scxml.model import EventRole, Role, ScxmlEvent
+from roaml.scxml.events import EventRole, Role, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
 

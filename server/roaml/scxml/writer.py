@@ -15,7 +15,8 @@ from typing import NamedTuple
 from xml.sax.saxutils import escape
 
 from roaml.expr.format import format_expr
-from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Role, Send, State, Target, Transition
+from roaml.scxml.events import Role
+from roaml.scxml.model import Assign, Automaton, Body, Data, If, Network, Send, State, Target, Transition
 from roaml.text import Location
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from roaml.jani.expressions import Boolean, Integer, Name, Real
 from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.scxml.names import CLOCK_ACTION, automaton_role, is_timer, received_by, sent_by
 from roaml.simulation.run import Decision, Enabled, EnabledEdges
 from roaml.simulation.words import resting, tree_text, who

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.scxml.names import CLOCK_ACTION, STATUSES, TreeEventKind, automaton_role, read_tree_event, received_by
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of

@@ -4,22 +4,22 @@
 from __future__ import annotations
 
 import hashlib
-import multiprocessing
 import pickle
 import signal
 import threading
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from multiprocessing.connection import wait
-from multiprocessing.synchronize import Event
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
 
-SLICE = 200_000
+if TYPE_CHECKING:
+    from multiprocessing.synchronize import Event
+
+STEPS_BETWEEN_PULSES = 200_000
 """The number of steps after which Python can handle an interrupt: some hundredths of a second."""
 
 
@@ -128,9 +128,9 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
         verdict = kernel.begin(task.seed, trace, task.scheduler)
         limit = 0
         while verdict == UNKNOWN and kernel.ending() == End.DECIDED and limit < task.max_steps:
-            limit = min(limit + SLICE, task.max_steps)
+            limit = min(limit + STEPS_BETWEEN_PULSES, task.max_steps)
             verdict = kernel.advance(limit)
-            if pulse is not None and (limit > SLICE or not trace & 63):
+            if pulse is not None and (limit > STEPS_BETWEEN_PULSES or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
             problem = TraceProblem(trace, *kernel.problem())
@@ -160,6 +160,8 @@ def start_worker(stopping: Event) -> None:
         stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
             that is killed may leave an incomplete result, for which the main process would wait for ever.
     """
+    import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+
     global _stopping  # noqa: PLW0603
     _stopping = stopping
     # Only the main process handles interrupts from the keyboard, and notifies its workers. If the main process is
@@ -171,6 +173,8 @@ def start_worker(stopping: Event) -> None:
 
 
 def _end_with(sentinel: int) -> None:
+    from multiprocessing.connection import wait  # noqa: PLC0415 - most questions are answered without workers
+
     wait([sentinel])
     signal.raise_signal(signal.SIGTERM)
 

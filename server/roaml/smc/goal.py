@@ -53,7 +53,7 @@ _MIRRORED = {
     BinaryOperator.GREATER: BinaryOperator.LESS,
     BinaryOperator.GREATER_EQUAL: BinaryOperator.LESS_EQUAL,
 }
-"""Each comparison, with the operator for exchanged sides."""
+"""Comparison -> the operator with the same meaning after an exchange of the two sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ class ObserverOutputs:
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
-        activity = tuple(each for each in (self.asked, self.opened) if each is not None)
+        activity = tuple(expression for expression in (self.asked, self.opened) if expression is not None)
         return (*(expression for _, expression in self.open), *activity)
 
 

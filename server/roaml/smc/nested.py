@@ -273,7 +273,7 @@ class _Recogniser:
             return self.response(self.request(clause, close), ScopeKind.BETWEEN, conditions)
         if key_of(close) not in parts_of(end, "or"):
             raise NestingError
-        # At `close`: since a trigger, without `end` up to then, `stays` was not violated.
+        # The formula says at `close`: since a trigger after which `end` did not hold, `stays` was not violated.
         is_open = Since(observed.Not(Atom(RIGHT)), observed.And(Atom(OPEN), observed.Not(Atom(RIGHT))))
         violated = observed.And(observed.Not(observed.Or(Atom(LEFT), Atom(RIGHT))), is_open)
         formula = implies(Atom(CLOSE), observed.Not(once(violated)))

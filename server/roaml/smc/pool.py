@@ -7,24 +7,24 @@ if a worker dies, its batch is run again.
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from concurrent.futures import TimeoutError as FutureTimeoutError
-from multiprocessing.synchronize import Event
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, start_worker
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import Compiled
 
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
+    from multiprocessing.synchronize import Event
+
 WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started, because most questions are answered in less time."""
-ATTEMPTS = 5
+MAX_CONSECUTIVE_LOSSES = 5
 """The maximum number of consecutive losses of workers without progress."""
-_TICK = 0.1
+_POLL_INTERVAL_S = 0.1
 
 Pulse: TypeAlias = Callable[[int, int], None]
 
@@ -92,6 +92,8 @@ class Pool:
         yield from self._distributed(waiting, pulse)
 
     def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, BatchOutcome]]:
+        from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
+
         running: deque[tuple[Task, Future[BatchOutcome] | None]] = deque()
         lost = 0
         try:
@@ -110,7 +112,7 @@ class Pool:
                     if self.is_own and not isinstance(error, BrokenExecutor):
                         raise
                     lost += 1
-                    if lost > ATTEMPTS:
+                    if lost > MAX_CONSECUTIVE_LOSSES:
                         raise WorkersLostError(f"worker processes end repeatedly: {error}") from error
                     if self.is_own:
                         self._stop()
@@ -128,6 +130,9 @@ class Pool:
 
     def _submit(self, task: Task) -> Future[BatchOutcome] | None:
         """Submit a batch; return `None` if this fails because workers have just been lost."""
+        import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+        from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
+
         if self.executor is None:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
@@ -139,11 +144,14 @@ class Pool:
             return None
 
     def _wait(self, task: Task, future: Future[BatchOutcome] | None, pulse: Pulse | None) -> BatchOutcome:
+        from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
+        from concurrent.futures import TimeoutError as FutureTimeoutError  # noqa: PLC0415
+
         if future is None:
             raise BrokenExecutor("a worker has ended")
         while True:
             try:
-                return future.result(timeout=_TICK)
+                return future.result(timeout=_POLL_INTERVAL_S)
             except (FutureTimeoutError, TimeoutError):
                 if future.done():
                     raise

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain SCXML -> JANI (docs/spec/jani.md): every automaton becomes an automaton, every event a buffer of size one.
+"""Translates plain SCXML to JANI (docs/spec/jani.md). Every automaton becomes a JANI automaton, and every event becomes
+a JANI automaton that is a buffer of size one.
 
-Depends on `roaml.scxml` and `roaml.jani`, not on HL-SCXML, ROS or files.
+The package depends on `roaml.scxml` and `roaml.jani`, but not on HL-SCXML, ROS or files.
 """
 
 from roaml.to_jani.network import translate

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments of plain SCXML -> JANI (docs/spec/jani.md#assignments): the elements of an array and all its lengths are
-assigned at once."""
+"""Translates assignments of plain SCXML to JANI (docs/spec/jani.md#assignments). The elements of an array and all its
+lengths are assigned simultaneously."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Write = tuple[LValue, Expression]
 
 
 def assigned(location: Expr, value: Expr, scope: JaniScope) -> list[Write]:
-    """The assignments for `location := value`; the values are those before it."""
+    """The simultaneous assignments for `location := value`."""
     if isinstance(location, Member) and location.name == "length":
         array = scope.stored(location.object)
         if array is not None and array.dimensions > 0:
@@ -45,7 +45,8 @@ def _content(target: Stored, value: Expr, scope: JaniScope) -> Iterator[Write]:
 
 
 def _grown(target: Stored) -> Iterator[Write]:
-    """Writing an element makes the array, and every array around it, at least long enough to contain it."""
+    """The assignments that increase the lengths of an array, and of all enclosing arrays, so that they contain the
+    element `target`."""
     for depth in reversed(range(len(target.indexes))):
         length = at(jani.Name(length_name(target.variable, depth + 1)), *target.indexes[:depth])
         needed = jani.Binary(BinaryOperator.ADD, target.indexes[depth], Integer(1))

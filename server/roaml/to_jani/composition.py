@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Event automata, and the synchronisation of all automata (docs/spec/jani.md#event-automata).
+"""Creates the automata of events, and the synchronisations of all automata (docs/spec/jani.md#event-automata).
 
-- Each event has one buffer: a sent event waits in its automaton until all receivers take it at once.
-- The clock steps, and timers fire, only while no event waits; the blackboard is read only while no write to it waits;
-  a goal is received only while no cancel request waits (`ScxmlEvent.after`).
+- The automaton of an event is its buffer: a sent event waits there until all receivers receive it in one step.
+- The clock makes a step, and timers fire, only while no event waits. The blackboard is read only while no write to it
+  waits. A goal is received only while no cancel request waits (`ScxmlEvent.after`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Destination, Edge, Element, Location, Sync, System
-from roaml.scxml.model import EventRole
+from roaml.scxml.events import EventRole
 from roaml.scxml.names import (
     CLOCK_ACTION,
     RECEIVED,
@@ -31,10 +31,11 @@ def has_automaton(event: EventUsage) -> bool:
 
 
 def event_automaton(event: EventUsage, has_clock: bool, others_wait: bool) -> Automaton:
-    """The buffer of an event; if the event has no receiver, the buffer accepts everything.
+    """The automaton that buffers an event. If the event has no receiver, the automaton discards it.
 
     Args:
-        others_wait: whether other events are received only while this one does not wait.
+        has_clock: whether the model has a clock, which must wait for the event.
+        others_wait: whether there are events that are received only while this event does not wait.
     """
     origin = event.origin
 
@@ -58,13 +59,15 @@ def event_automaton(event: EventUsage, has_clock: bool, others_wait: bool) -> Au
 
 
 def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Mapping[str, EventUsage]) -> System:
-    """
+    """The parallel composition of all automata, with their synchronisations.
+
     Args:
         automata: all automata, including those of events.
-        buffers: event -> index of its automaton.
+        buffers: name of an event -> the index of its automaton.
+        table: name of an event -> its usage.
     """
     waited_for = {name: index for name, index in buffers.items() if table[name].receivers}
-    # Created once: every timer waits for all of them.
+    # The entries are created only once, because every timer waits for all events.
     calm = {name: (index, CLOCK_ENABLE) for name, index in waited_for.items()}
     syncs: list[Sync] = []
     for event in table.values():
@@ -78,7 +81,7 @@ def compose(automata: Sequence[Automaton], buffers: Mapping[str, int], table: Ma
         elif event.name in buffers:
             syncs += _communication(event, buffers, table)
     known = {on_receive(event.event) for event in table.values()}
-    # The clock's step to itself is no communication: it sends alone.
+    # The clock sends its step only to itself, so the action is not synchronised with an event automaton.
     known |= {on_send(event.event) for event in table.values() if event.role is not EventRole.CLOCK_STEP}
     for index, automaton in enumerate(automata[: len(automata) - len(buffers)]):
         own = dict.fromkeys(edge.action for edge in automaton.edges if edge.action and edge.action not in known)

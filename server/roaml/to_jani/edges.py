@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The moves of one automaton -> locations and edges (docs/spec/jani.md#edges).
+"""Translates the moves of one automaton to locations and edges (docs/spec/jani.md#edges).
 
-- Probabilities and step bounds depend on the number of edges of a move: assignments join the edge before them; a
-  `send`, each branch of an `if` and each draw of a random number is a separate edge.
-- Between two states an automaton receives nothing.
+- The number of edges of a move affects probabilities and step bounds, so it is fixed: an assignment is part of the edge
+  before it, but each `send`, each branch of an `if` and each draw of a random number is a separate edge.
+- An automaton receives no events while it is between two states.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
-from roaml.scxml.model import Assign, Body, If, Role, Send, State
+from roaml.scxml.events import Role
+from roaml.scxml.model import Assign, Body, If, Send, State
 from roaml.scxml.names import on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
@@ -44,7 +45,7 @@ class _Way:
         self.assignments += [Assignment(target, value, index, origin=origin) for target, value in writes]
 
     def send(self, writes: Iterable[Write], origin: Origin) -> None:
-        """Add simultaneous assignments at the beginning."""
+        """Add assignments that are executed simultaneously, before all others."""
         self.assignments += [Assignment(target, value, origin=origin) for target, value in writes]
 
 
@@ -76,9 +77,11 @@ class Flow:
 
 
 def flow_of(behavior: AutomatonMoves, table: Mapping[str, EventUsage], max_array_size: int, random_values: int) -> Flow:
-    """The flow of an automaton. Transitions on an event that no automaton sends are left out.
+    """The locations and edges of an automaton. Transitions on an event that no automaton sends are left out.
 
     Args:
+        table: name of an event -> its usage.
+        max_array_size: the maximum number of elements of an array without a bound.
         random_values: the number of values of `Math.random()` (docs/spec/expressions.md#random).
     """
     return _FlowBuilder(behavior, table, max_array_size, random_values).build()
@@ -122,7 +125,7 @@ class _FlowBuilder:
         return self.scopes[event]
 
     def location(self, stem: str, origin: Origin) -> str:
-        """A new location, named `stem` unless a state of the user has that name."""
+        """Add a location and return its name: `stem`, with `'` appended if a state of the user has that name."""
         name = stem
         while name in self.locations:
             name += "'"
@@ -132,8 +135,11 @@ class _FlowBuilder:
     # ------------------------------------------------------------------- states
 
     def state(self, moves: Sequence[Move]) -> dict[str, list[Expression | None]]:
-        """Add the edges of all transitions of a state. Returns the conditions of those on each event, `None` for
-        none."""
+        """Add the edges of all transitions of a state.
+
+        Returns:
+            Name of an event -> the conditions of the transitions on it; `None` for a transition without a condition.
+        """
         conditions: dict[str, list[Expression | None]] = {}
         for move in moves:
             scope, earlier = self.scope(move.event), conditions.setdefault(move.event, [])
@@ -156,7 +162,8 @@ class _FlowBuilder:
             self.run(outcome.body, way, tag, outcome.state, scope)
 
     def start(self, body: Body, initial: str) -> str:
-        """The location from which the initial state's `<onentry>` is executed."""
+        """Add the edges that execute the `<onentry>` of the initial state, and return the location at which they
+        begin."""
         origin = self.behavior.automaton.origin
         first = self.location(f"{initial}{FIRST}", origin)
         way = _Way(_CERTAIN, origin)
@@ -167,7 +174,7 @@ class _FlowBuilder:
     def discarding(
         self, state: State, handled: Mapping[str, Sequence[Expression | None]], events: Iterable[str]
     ) -> None:
-        """Self-loops that discard the events which a state does not handle (docs/spec/jani.md#discarding)."""
+        """Add the loops that discard the events which a state does not handle (docs/spec/jani.md#discarding)."""
         if self.behavior.automaton.role in (Role.TREE_ROOT, Role.HANDLER) or None in handled.get("", ()):
             return
         for event in events:
@@ -180,7 +187,7 @@ class _FlowBuilder:
     # ------------------------------------------------------------------- bodies
 
     def run(self, body: Body, way: _Way, tag: str, final: str, scope: JaniScope) -> None:
-        """Continue `way` with everything in `body`; it ends in the location `final`."""
+        """Add all statements of `body` to `way` and to new edges. The last edge ends in the location `final`."""
         for i, statement in enumerate(body):
             stem = f"{tag}-{i}"
             match statement:
@@ -193,7 +200,7 @@ class _FlowBuilder:
         way.location = final
 
     def next_way(self, source: str, action: str, origin: Origin, guard: Expression | None = None) -> _Way:
-        """A new edge with one destination, which is returned."""
+        """Add an edge with one destination, and return the destination."""
         way = _Way(None, origin)
         self.drafts.append(_Draft(source, action, guard, [way], origin))
         return way
@@ -245,7 +252,7 @@ class _FlowBuilder:
 
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
-    """The condition that `cond` holds and none of the earlier conditions does."""
+    """The condition that `cond` holds and none of the earlier conditions holds; `None` if it is always true."""
     terms = [] if cond is None else [cond]
     return all_of([*terms, *(negated(condition) for condition in earlier if condition is not None)])
 
@@ -258,7 +265,7 @@ def _count_draws(expr: Expr) -> int:
 
 
 def _with_numbers(expr: Expr, numbers: Iterator[float]) -> Expr:
-    """`expr` with each `Math.random()` replaced by the next number."""
+    """A copy of `expr` in which each call of `Math.random()` is replaced by the next number of `numbers`."""
     if is_draw(expr):
         return Number(expr.span, next(numbers), True)
     return map_children(expr, lambda part: _with_numbers(part, numbers))

@@ -10,11 +10,12 @@ from roaml.jani.model import Action, Edge, Model, Sync
 from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER
 
 TIME_OVER_ACTION = "__as2fm__time_is_over"
-"""The last step of the clock. It has a separate action, because no time passes in it."""
+"""The action of the last step of the clock. It is a separate action, because no time passes in this step."""
 
 
 def with_end_of_time(model: Model) -> Model:
-    """The model with the action `TIME_OVER_ACTION` for the last step of the clock."""
+    """A copy of the model in which the last step of the clock has the action `TIME_OVER_ACTION`. A model without a
+    clock, or with this action, is returned unchanged."""
     index = next((i for i, automaton in enumerate(model.automata) if automaton.name == CLOCK), None)
     if index is None or any(action.name == TIME_OVER_ACTION for action in model.actions):
         return model

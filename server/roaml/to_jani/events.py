@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All events of a network: their senders, their receivers, and the types of their parameters
+"""Collects all events of a network, with their senders, their receivers and the types of their parameters
 (docs/spec/jani.md#global-variables)."""
 
 from __future__ import annotations
@@ -12,18 +12,21 @@ from roaml.expr.infer import infer
 from roaml.expr.tree import Expr, Name, walk
 from roaml.expr.types import UNKNOWN, Struct, Type
 from roaml.scxml.event_data import Round, infer_in_rounds, parameter_types
-from roaml.scxml.model import Body, EventRole, ScxmlEvent, Send, statements
+from roaml.scxml.events import EventRole, ScxmlEvent
+from roaml.scxml.model import Body, Send, statements
 from roaml.text import Location
 from roaml.to_jani.moves import AutomatonMoves
 
 
 @dataclass(slots=True)
 class EventUsage:
-    """
+    """An event of a network with its uses.
+
     Attributes:
-        params: name -> type, in the order of their first sending.
-        senders, receivers: indexes of automata, in order.
-        origin: the origin of the first `<send>`; otherwise of the first transition on it.
+        origin: the origin of the first `<send>` of the event; if there is none, of the first transition on it.
+        params: parameter -> its type, in the order in which the parameters are first sent.
+        places: parameter -> the place where it is first sent.
+        senders, receivers: the indexes of automata, in order; the values of the dictionaries are not used.
     """
 
     event: ScxmlEvent
@@ -43,7 +46,7 @@ class EventUsage:
 
 
 def event_table(behaviors: Sequence[AutomatonMoves]) -> dict[str, EventUsage]:
-    """All events by name, in the order of their first occurrence."""
+    """Name of an event -> its usage, in the order of the first occurrences."""
     table = _occurrences(behaviors)
     for name, params in infer_in_rounds(lambda known: _infer_params(behaviors, known)).items():
         table[name].params.update(params)
@@ -77,11 +80,12 @@ def _sent(body: Body, index: int, table: dict[str, EventUsage]) -> None:
 
 
 EventParams: TypeAlias = Mapping[str, Mapping[str, Type]]
-"""Event -> parameter -> type."""
+"""Name of an event -> parameter -> its type."""
 
 
 def _infer_params(behaviors: Sequence[AutomatonMoves], known: EventParams) -> Round[EventParams, Mapping[str, Type]]:
-    """The types of everything that is sent, if received events carry `known`."""
+    """One round of the inference: the types of all parameters that are sent, on the assumption that received events
+    have the parameters `known`."""
     sent: dict[str, list[tuple[str, Type]]] = {}
     forwarded: set[str] = set()
     for behavior in behaviors:

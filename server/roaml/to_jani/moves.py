@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The behaviour of an automaton, transition by transition: all statements that are executed between two states in one
-sequence.
+"""Collects the moves of an automaton: each transition, with all statements that are executed until the next state.
 
-The body of a move is `<onexit>` of the source, the transition's own body, `<onentry>` of the target
-(docs/spec/jani.md#transitions). The start is a move as well if the initial state has an `<onentry>`.
+The body of a move is the `<onexit>` of the source, the body of the transition, and the `<onentry>` of the target
+(docs/spec/jani.md#transitions). If the initial state has an `<onentry>`, the start is a move, too.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class MoveOutcome:
-    """One target of a transition with all statements on the way."""
+    """One target of a transition, with all statements that are executed until it is entered."""
 
     state: str
     probability: float
@@ -27,7 +26,7 @@ class MoveOutcome:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A transition; `number` counts those of its state from 0."""
+    """A transition with its outcomes. `number` is its index among the transitions of its state."""
 
     source: str
     number: int
@@ -36,16 +35,17 @@ class Move:
 
     @property
     def event(self) -> str:
-        """The name of the event; "" for none."""
+        """The name of the event; "" for an eventless transition."""
         return self.transition.event.name if self.transition.event else ""
 
 
 @dataclass(frozen=True, slots=True)
 class AutomatonMoves:
-    """
+    """The moves of an automaton.
+
     Attributes:
-        start: the statements that the initial state executes first; `None` if there are none.
-        moves: the moves of each state, in document order.
+        start: the `<onentry>` of the initial state, which is executed at the start; `None` if it is empty.
+        moves: each state with its moves, in document order.
     """
 
     automaton: Automaton
@@ -53,7 +53,7 @@ class AutomatonMoves:
     moves: tuple[tuple[State, tuple[Move, ...]], ...]
 
     def bodies(self) -> Iterator[tuple[str, Body]]:
-        """Every body with the event whose data it may read, transitions first, the start last."""
+        """Every body with the name of the event whose data it may read ("" for none). The start is last."""
         for _, moves in self.moves:
             for move in moves:
                 for outcome in move.outcomes:

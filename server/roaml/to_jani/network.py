@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A network of plain automata -> one JANI model (docs/spec/jani.md)."""
+"""Translates a network of automata in plain SCXML to one JANI model (docs/spec/jani.md)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
-from roaml.scxml.model import Data, EventRole, Network, Role
+from roaml.scxml.events import EventRole, Role
+from roaml.scxml.model import Data, Network
 from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
@@ -31,11 +32,12 @@ def translate(
     *,
     has_activity: bool = False,
 ) -> Model:
-    """The JANI model of a network: its automata, one for each event, and the given properties.
+    """The JANI model of a network: its automata, an automaton for each event, observers and properties.
 
     Args:
-        observed_properties: those for which observers are added.
-        has_activity: whether observers also say whether their property was triggered.
+        properties: the properties that are formulas of JANI.
+        observed_properties: the properties for which observers are added.
+        has_activity: whether observers also store whether their property was triggered.
     """
     behaviors = [behavior_of(automaton) for automaton in network.automata]
     table = event_table(behaviors)
@@ -96,7 +98,8 @@ def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
 
 
 def _global_shapes(event: EventUsage, max_array_size: int) -> Iterator[tuple[str, tuple[ArrayShape, Location]]]:
-    """The variables of an event: its flag, its parameters and their lengths (docs/spec/jani.md#global-variables)."""
+    """The names, shapes and origins of the variables of an event: its flag, its parameters and their lengths
+    (docs/spec/jani.md#global-variables)."""
     yield f"{event.name}.valid", (ArrayShape(BOOL), event.origin)
     for param, type_ in event.params.items():
         name, origin = f"{event.name}__{param}", event.places[param]

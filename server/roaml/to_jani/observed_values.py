@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The values that an observer reads: those of its property's variables, and the conditions over them
+"""The values that an observer reads: the variables of its property, and the conditions on them
 (docs/spec/jani.md#observers).
 
-A variable is read where the translation stores the parameter of its event. If several events, one sender or a constant
-determine the value, the observer has a separate variable, the copy, which it assigns when an event is sent.
+The value of a variable is usually read from the global variable in which the translation stores the parameter of its
+event. If several events, the events of a single sender, or constants of events determine the value, the observer has a
+separate variable, a copy. It assigns the copy when an event is sent.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _CONSTANTS = JaniScope({}, "", {})
 
 @dataclass(frozen=True, slots=True)
 class _Copy:
-    """A variable of the observer."""
+    """A variable of the observer in which it stores the value of a variable of the property."""
 
     name: str
     shape: ArrayShape
@@ -37,11 +38,12 @@ class _Copy:
 
 @dataclass(frozen=True, slots=True)
 class ObservedValues:
-    """
+    """The values that the observer of one property reads.
+
     Attributes:
-        values: the value of each variable that has one, by its id, as an expression over global variables.
-        copies: the copies, by the ids of the variables.
-        shapes: the shapes of the global variables, including copies.
+        values: id of a variable -> its value as an expression over global variables; without event variables.
+        copies: id of a variable -> its copy; without variables that have none.
+        shapes: the shapes of the global variables, including the copies.
         declared: the declarations of the copies.
     """
 
@@ -52,7 +54,11 @@ class ObservedValues:
     declared: tuple[Variable, ...]
 
     def conditions(self, true_events: frozenset[str]) -> dict[str, Expression]:
-        """The conditions of the property in the letter in which these event variables are true."""
+        """Input of the observer -> the condition of the property as an expression.
+
+        Args:
+            true_events: the ids of the event variables that are true in the step; the others are false.
+        """
         scope = JaniScope(self.shapes, "", {})
 
         def value(name: Name) -> Expr:
@@ -61,7 +67,7 @@ class ObservedValues:
         return {name: scope.scalar(_replaced(condition, value)) for name, condition in self.property.conditions.items()}
 
     def at_start(self) -> dict[str, bool]:
-        """Whether the conditions of the property are true at the start of the trace."""
+        """Input of the observer -> whether the condition of the property is true at the start of the trace."""
         initial = {variable.id: variable.initial for port in self.property.ports for variable in port.variables}
 
         def value(name: Name) -> Expr:
@@ -73,7 +79,7 @@ class ObservedValues:
         }
 
     def assigned_on(self, event: PortEvent, variable: ObservedVariable) -> Iterator[tuple[LValue, Expression]]:
-        """The assignment to the copy of a variable when an event is sent; empty if it has no copy."""
+        """The assignments to the copy of a variable when `event` is sent; empty if the variable has no copy."""
         copy = self.copies.get(variable.id)
         if copy is not None:
             value = self._sent(event, variable)
@@ -86,16 +92,17 @@ class ObservedValues:
         parameter = f"{event.name}__{variable.parameter}"
         if parameter in self.shapes:
             return Name(_NOWHERE, parameter)
-        # No sender sets the field.
+        # No automaton sends this parameter, so it has its default value.
         return Boolean(_NOWHERE, False) if is_kind(variable.type, ScalarKind.BOOL) else Number(_NOWHERE, 0, False)
 
 
 def observed_values(
     property_: ObservedProperty, prefix: str, shapes: Mapping[str, ArrayShape], size: int
 ) -> ObservedValues:
-    """
+    """The values that the observer of a property reads.
+
     Args:
-        prefix: the prefix of the names of the observer's variables.
+        prefix: the beginning of the names of the variables of the observer.
         shapes: the shapes of the global variables of the model.
         size: the capacity of arrays that are sent.
     """
@@ -121,7 +128,8 @@ def observed_values(
 def _stored(
     port: ObservedPort, variable: ObservedVariable, initial: Expr, shape: ArrayShape, shapes: Mapping[str, ArrayShape]
 ) -> Expr | None:
-    """The value of a variable where the translation stores it; `None` if the observer needs a copy."""
+    """The global variable of the translation that contains the value of `variable`; `None` if the observer needs a
+    copy."""
     if len(port.events) != 1 or not variable.parameter:
         return None
     (event,) = port.events
@@ -144,7 +152,7 @@ def _declared(copy: _Copy, initial: Expr, origin: Location) -> Iterator[Variable
 
 
 def _is_zero(initial: Expr, shape: ArrayShape) -> bool:
-    """Whether a variable that is not assigned yet has this value."""
+    """Whether `initial` is the value that a variable of this shape has before its first assignment."""
     array = _CONSTANTS.array(initial)
     if array is not None:
         return isinstance(array, Listed) and not array.elements
@@ -152,5 +160,5 @@ def _is_zero(initial: Expr, shape: ArrayShape) -> bool:
 
 
 def _replaced(expr: Expr, value: Callable[[Name], Expr]) -> Expr:
-    """The expression with values substituted for its names."""
+    """A copy of `expr` in which each name is replaced by its value."""
     return value(expr) if isinstance(expr, Name) else map_children(expr, lambda child: _replaced(child, value))

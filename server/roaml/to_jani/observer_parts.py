@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An observer in JANI: its variables, its assignments at a letter, and the formula that says that its property holds
-(docs/spec/jani.md#observers)."""
+"""The parts of an observer in JANI: its variables, its assignments, and the path formula for its property
+(docs/spec/jani.md#observers).
+
+A letter (docs/spec/xml-properties.md#letters) is one step that an observer takes part in: a step of the clock, or the
+sending of an event.
+"""
 
 from __future__ import annotations
 
@@ -36,11 +40,11 @@ from roaml.scxml.names import ASKED, OBSERVER_SUFFIX, OPEN, OPENED, PENDING, obs
 _OBSERVING = "observing"
 """The only location of an observer."""
 _OVER = "over"
-"""A variable of the observer: the clock has ended."""
+"""The name of the variable of an observer that is true after the last step of the clock."""
 
 
 def next_index(model: Model) -> int:
-    """An index of assignments above all others."""
+    """The smallest index of assignments that is greater than all indices in the model."""
     return 1 + max((assignment.index for assignment in _assignments(model)), default=-1)
 
 
@@ -55,7 +59,8 @@ def _assignments(model: Model) -> Iterator[Assignment]:
 
 
 def free_prefix(property_: str, model: Model) -> str:
-    """A prefix of names, derived from the name of a property, that no automaton and no variable of the model has."""
+    """A prefix for the names of an observer, derived from the name of its property. No name of an automaton or variable
+    in the model begins with it."""
     names = [*(automaton.name for automaton in model.automata), *(variable.name for variable in model.variables)]
     prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", property_)
     while any(name == prefix or name.startswith((f"{prefix}__", f"{prefix}.")) for name in names):
@@ -71,12 +76,13 @@ def with_observer(
     syncs: Iterable[Sync],
     origin: Origin | None,
 ) -> Model:
-    """The model with an observer as its last element: an automaton with one location.
+    """A copy of the model with an observer as its last element. The observer is an automaton with one location.
 
     Args:
-        prefix: begins its name.
-        edges: action -> the assignments of its edge.
-        syncs: all synchronisations, including those of the observer.
+        prefix: the beginning of the name of the observer.
+        edges: action of the observer -> the assignments of the edge.
+        variables: the variables of the observer.
+        syncs: all synchronisations of the new model.
     """
     automaton = Automaton(
         f"{prefix}{OBSERVER_SUFFIX}",
@@ -101,11 +107,12 @@ def _edge(action: str, assignments: Iterable[Assignment], origin: Origin | None)
 
 
 class ObserverParts:
-    """
+    """Creates the parts of the observer of one property.
+
     Args:
-        prefix: begins the names of the observer's variables.
+        prefix: the beginning of the names of the variables of the observer.
         has_clock: whether the model has a clock.
-        has_activity: whether the observer also says whether the property was triggered.
+        has_activity: whether the observer also stores whether the property was triggered.
     """
 
     def __init__(
@@ -125,7 +132,7 @@ class ObserverParts:
     def _named(self, register: str) -> str:
         outputs = self.outputs
         if outputs.exercised is not None and register == outputs.exercised.name:
-            # Without requests, all that can be missing is the scope.
+            # Without requests, the property can only be vacuous because its scope is never opened.
             register = ASKED if self._has_requests() else OPENED
         return observer_variable(self.prefix, register)
 
@@ -143,7 +150,8 @@ class ObserverParts:
             due = self.outputs.due if self.is_timed else program.FALSE
             needed = {self.outputs.violated.name} | _registers(self.outputs.pending) | _registers(due)
         if self.has_activity:
-            needed |= {each.name for each in (self.outputs.exercised, self.outputs.opened) if each is not None}
+            activity = (self.outputs.exercised, self.outputs.opened)
+            needed |= {register.name for register in activity if register is not None}
         while True:
             read = {
                 name
@@ -156,9 +164,10 @@ class ObserverParts:
             needed |= read
 
     def variables(self, at_start: Mapping[str, bool]) -> Iterator[Variable]:
-        """
+        """The declarations of the variables of the observer, with their initial values.
+
         Args:
-            at_start: the inputs of the observer at the start of a trace.
+            at_start: the values of the inputs of the observer at the start of a trace.
         """
         state = begin(self.observer, at_start)
         for register in self.observer.registers:
@@ -178,10 +187,11 @@ class ObserverParts:
     # --------------------------------------------------------- assignments
 
     def letter(self, conditions: Mapping[str, Expression], index: int, *, is_tick: bool) -> Iterator[Assignment]:
-        """The assignments at a letter, from an index on.
+        """The assignments of the observer at a letter.
 
         Args:
-            conditions: what the inputs of the observer are.
+            conditions: input of the observer -> its value as an expression.
+            index: the index of the first assignment; the others follow.
             is_tick: whether the letter is a step of the clock.
         """
         letter: dict[program.Expression, Expression] = {program.Tick(): _literal(is_tick)}
@@ -198,12 +208,12 @@ class ObserverParts:
         yield from self._ends(index)
 
     def end_of_time(self, index: int) -> Iterator[Assignment]:
-        """The assignments when the clock ends."""
+        """The assignments of the observer at the last step of the clock. `index` is the index of the first one."""
         yield self._assign(_OVER, _literal(True), index)
         yield from self._ends(index + 1)
 
     def _ends(self, index: int) -> list[Assignment]:
-        """The verdict of the property if the trace ends now."""
+        """The assignments that store the verdict of the property for the case that the trace ends now."""
         if not self.is_pending:
             return []
         pending = self._translated(self.outputs.pending, {})
@@ -223,9 +233,10 @@ class ObserverParts:
     def _translated(
         self, expression: program.Expression, letter: Mapping[program.Expression, Expression]
     ) -> Expression:
-        """
+        """An expression of the observer's program as a JANI expression.
+
         Args:
-            letter: the inputs and the tick.
+            letter: the values of the inputs, and whether the letter is a step of the clock.
         """
         match expression:
             case program.Literal():
@@ -246,7 +257,7 @@ class ObserverParts:
     # ---------------------------------------------------------- the property
 
     def path(self) -> Formula:
-        """The formula over paths that says that the property holds."""
+        """The path formula, over the variables of the observer, that is true if the property holds."""
         path: Formula
         if self.is_reachability:
             assert self.outputs.satisfied is not None
@@ -262,7 +273,7 @@ class ObserverParts:
 
 
 def _is_existence(property_: Property) -> bool:
-    """Whether the property requires an event or condition at some time."""
+    """Whether the property only requires that a condition is true at some time of the whole trace."""
     return (
         isinstance(property_, PatternProperty)
         and property_.pattern is Pattern.EXISTENCE

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties in XML -> automata that observe the others, and properties about their variables
+"""Translates properties in XML to observers, and to JANI properties about the variables of the observers
 (docs/spec/jani.md#observers).
 
-- An observer joins existing synchronisations, in its only location and without a guard: it removes no step of the model
-  and adds none.
-- Its assignments are executed after all others of a synchronisation, so they read the values that are sent.
+- An observer is an automaton that takes part in existing synchronisations. It has one location and no guards, so it
+  neither removes nor adds steps of the model.
+- The assignments of an observer are executed after all others of a synchronisation, so they read the values that are
+  sent.
 """
 
 from __future__ import annotations
@@ -53,13 +54,14 @@ def observed(
     *,
     has_activity: bool = False,
 ) -> Model:
-    """The model with an observer and a property for each of the properties; two properties for one with assumptions.
+    """A copy of the model with an observer and a JANI property for each of `properties`. A property with assumptions
+    has a second JANI property, about its assumptions.
 
     Args:
-        has_activity: whether observers also say whether the property was triggered.
         shapes: the shapes of the global variables.
         size: the capacity of arrays that are sent.
-        owners: the automaton of the machine, for each automaton that is a thread of one.
+        owners: automaton of an action thread -> the automaton of its machine.
+        has_activity: whether observers also store whether the property was triggered.
     """
     if not properties:
         return model
@@ -74,7 +76,7 @@ def observed(
 
 
 def _assumptions(properties: Iterable[ObservedProperty]) -> Iterable[ObservedProperty]:
-    """The assumptions of all properties, each once."""
+    """The assumptions of all properties, without duplicates."""
     return {assumed.name: assumed for property_ in properties for assumed in property_.assumptions}.values()
 
 
@@ -87,7 +89,7 @@ def _formulas(properties: Iterable[ObservedProperty], paths: Mapping[str, Formul
 
 
 def _minimum(name: str, paths: Sequence[Formula], origin: Origin, comment: str | None = None) -> Property:
-    """The minimum probability that all formulas hold."""
+    """The property `name`: the minimum probability that all path formulas hold."""
     path = paths[0]
     for another in paths[1:]:
         path = BinaryFormula(JaniBinary.AND, path, another)
@@ -99,7 +101,7 @@ def _minimum(name: str, paths: Sequence[Formula], origin: Origin, comment: str |
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Listener:
-    """A port and one of its events. Listeners are compared by identity."""
+    """A port together with one of its events. Listeners are compared by identity."""
 
     port: ObservedPort
     event: PortEvent
@@ -146,14 +148,16 @@ class _ObserverWriter:
     # --------------------------------------------------------------- edges
 
     def _joined(self) -> Iterator[Sync]:
-        """All synchronisations; the observer has an edge for each combination of listeners to one."""
+        """All synchronisations, in which the observer takes part if it is concerned. The edges of the observer are
+        added."""
         index = len(self.model.automata)
         for sync in self.model.system.syncs:
             action = self._action_in(sync)
             yield replace(sync, participants=(*sync.participants, (index, action))) if action else sync
 
     def _action_in(self, sync: Sync) -> str:
-        """The observer's action in a synchronisation; "" if the observer does not take part."""
+        """The action of the observer in a synchronisation; "" if it does not take part. Its edge is added if it is
+        new."""
         for participant, action in sync.participants:
             if action in self.listeners and sync.result == action:
                 return self._heard(action, sync)
@@ -168,7 +172,8 @@ class _ObserverWriter:
         return ""
 
     def _heard(self, action: str, sync: Sync) -> str:
-        """The observer's action when events are sent: one for each combination of listeners."""
+        """The action of the observer if an event is sent in a synchronisation; "" if no port listens to it. Each
+        combination of listeners has its own action and edge."""
         heard = tuple(listener for listener in self.listeners[action] if self._is_sender(listener.event, sync))
         if not heard:
             return ""
@@ -179,7 +184,7 @@ class _ObserverWriter:
         return letters[heard]
 
     def _is_sender(self, event: PortEvent, sync: Sync) -> bool:
-        """Whether the sender of the event, or one of its threads, takes part in a synchronisation."""
+        """Whether the sender that the port selects, or a thread of it, takes part in a synchronisation."""
         if not event.sender:
             return True
         names = (self.model.automata[participant].name for participant, _ in sync.participants)
@@ -199,5 +204,5 @@ class _ObserverWriter:
         self.edges[action] = [*assignments, *letter]
 
     def path(self) -> Formula:
-        """The formula over paths that says that the property holds."""
+        """The path formula that is true if the property holds."""
         return self.parts.path()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties in the form in which they are checked (docs/spec/jani.md#properties).
+"""Converts JANI properties of users to the form in which they are checked (docs/spec/jani.md#properties).
 
-- Comparisons with an array literal are expanded.
-- Bounds on time and rewards are kept, although the model counts steps and has no rewards: `roaml.smc.forms` reports
-  properties with them. Without its bounds, a property would have another meaning.
+- Comparisons with an array literal are replaced by comparisons of lengths and elements.
+- Bounds on time and rewards are kept, because a property has a different meaning without them. `roaml.smc.forms`
+  reports properties with these bounds, as the model has only steps and no rewards.
 - Only path formulas and operators keep their comments.
 """
 
@@ -22,7 +22,8 @@ from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
 
 
 def expanded(property_: Property, variables: Mapping[str, ArrayShape]) -> Property:
-    """The property with expanded comparisons; `variables` are the global variables."""
+    """The property in which comparisons with array literals are replaced. `variables` contains the shapes of the global
+    variables."""
 
     def change(node: Node) -> Node:
         match node:

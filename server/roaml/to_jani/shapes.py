@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The storage of values: scalars unchanged, strings and arrays with fixed capacities and separate lengths.
+"""The storage of values in JANI. A scalar is one variable. A string or array has a fixed capacity, and separate
+variables for its lengths.
 
-An array `a` of n dimensions has the companions `a.d1_len`, an int, ..., `a.dn_len`, an array of n - 1 dimensions: its
-element i is the length of row i (docs/spec/jani.md#array-storage).
+An array `a` of n dimensions has the companion variables `a.d1_len` to `a.dn_len`. `a.d1_len` is an int; `a.dk_len` is
+an array of k - 1 dimensions with the lengths of the rows in dimension k (docs/spec/jani.md#array-storage).
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ _ITERATOR = "__array_iterator_dim_"
 
 @dataclass(frozen=True, slots=True)
 class ArrayShape:
-    """`capacities` are the maximum numbers of elements in each dimension, outermost first; empty for scalars."""
+    """The shape of a variable. `capacities` contains the maximum number of elements in each dimension, the outermost
+    first; it is empty for a scalar."""
 
     base: BasicType
     capacities: tuple[int, ...] = ()
@@ -37,7 +39,7 @@ class ArrayShape:
         return ArrayShape(self.base, self.capacities[1:])
 
     def lengths(self, array: str) -> Iterator[tuple[str, ArrayShape]]:
-        """The companion variables of an array of this shape with their shapes."""
+        """The names and shapes of the companion variables of `array`, an array of this shape."""
         for k in range(self.dimensions):
             yield length_name(array, k + 1), ArrayShape(INT, self.capacities[:k])
 
@@ -50,8 +52,8 @@ def length_name(array: str, dimension: int) -> str:
 
 
 def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape:
-    """The shape of a variable. A parameter of an event has the capacity `max_array_size` in every dimension
-    (docs/spec/jani.md#global-variables)."""
+    """The shape of a variable of type `type_`. If it is a parameter of an event (`sent`), it has the capacity
+    `max_array_size` in every dimension (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
     if isinstance(element, EmptyArray) or is_kind(element, ScalarKind.STRING):
         bounds = (*bounds, None)
@@ -67,7 +69,7 @@ def jani_type(shape: ArrayShape) -> JaniType:
 
 
 def zero(shape: ArrayShape) -> Expression:
-    """The value of a variable before anything is stored in it."""
+    """The value that a variable of this shape has before its first assignment."""
     value = _ZEROS[shape.base]
     for capacity in reversed(shape.capacities):
         value = ArrayValue((value,) * capacity)
@@ -75,7 +77,8 @@ def zero(shape: ArrayShape) -> Expression:
 
 
 def constructed_zero(shape: ArrayShape) -> Expression:
-    """The zero of a shape, written with array constructors, so that its size does not grow with the capacities."""
+    """The value of `zero`, written with array constructors, so that the size of the expression does not depend on the
+    capacities."""
     value = _ZEROS[shape.base]
     for k in range(shape.dimensions, 0, -1):
         value = ArrayConstructor(f"{_ITERATOR}{k}", Integer(shape.capacities[k - 1]), value)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas about paths inside others -> automata that observe the variables of the formulas
-(docs/spec/properties.md#nested).
+"""Replaces nested path formulas by observers of the variables of the formulas (docs/spec/properties.md#nested).
 
-- An observer takes part in every step that can change a variable of its formula and, if the formula has bounds on the
-  time, in the steps of the clock. It removes no step of the model and adds none.
-- Its assignments are executed after all others of a step, so they read the state after the step.
+- An observer takes part in every step that can change a variable of its formula, and in the steps of the clock if the
+  formula has time bounds. It neither removes nor adds steps of the model.
+- The assignments of an observer are executed after all others of a step, so they read the state after the step.
 """
 
 from __future__ import annotations
@@ -30,18 +29,18 @@ from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
 from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer
 
 _LETTER, _TICK, _END = "__as2fm__letter", "__as2fm__tick", "__as2fm__end"
-"""The actions of an observer: some variable may have changed; the clock makes a step; the time ends."""
+"""The actions of an observer: for a step that may change a variable, for a step of the clock, and for its last step."""
 _SILENT = "__as2fm__step_"
-"""Begins the action of an edge that had none, so that observers can join it."""
+"""The beginning of the names of actions that silent edges get, so that observers can take part in them."""
 _Step: TypeAlias = tuple[str, str]
-"""An automaton and its action."""
+"""The name of an automaton, and one of its actions."""
 
 
 def with_state_observers(model: Model, step: int | None = None) -> Model:
-    """The model with observers for the nested formulas of its properties, which then are not nested.
+    """A copy of the model in which observers replace the nested path formulas of its properties.
 
-    Properties whose nested formulas have other forms than those of the patterns are kept, and so are those whose
-    variables are transient or have no initial value.
+    A property is kept unchanged if a nested formula does not have the form of a pattern, or if it uses variables that
+    are transient or have no initial value.
 
     Args:
         step: the step of the clock in ns; `None` if there is no clock.
@@ -65,7 +64,7 @@ def _without_nesting(model: Model, property_: Property, step: int | None) -> tup
         collected = _replaced(property_, step, collect)
         if not formulas:
             return model, collected
-        # If there is more than the observer's property, it is not vacuous where that is.
+        # The observer decides whether the property is vacuous only if it observes a whole path formula.
         is_whole = any(
             isinstance(part, Probability) and part.path is placeholder for part in walk(collected.expression)
         )
@@ -77,7 +76,12 @@ def _without_nesting(model: Model, property_: Property, step: int | None) -> tup
 
 
 def _replaced(property_: Property, step: int | None, observe: Callable[[ObservedFormula], Formula]) -> Property:
-    """The property with formulas over the variables of observers instead of nested ones."""
+    """The property in which formulas over the variables of observers replace the nested path formulas.
+
+    Args:
+        step: the step of the clock in ns; `None` if there is no clock.
+        observe: returns the formula that replaces a nested formula.
+    """
 
     def change(node: Node) -> Node:
         return replace(node, path=_path(node.path, step, observe)) if isinstance(node, Probability) else node
@@ -115,7 +119,7 @@ class _Writer:
         self.initial = _initial_values(model, self.functions)
 
     def observe(self, formula: ObservedFormula) -> Formula:
-        """Add an observer, and return the formula over paths that says that its property holds."""
+        """Add an observer for `formula`, and return the path formula that is true if `formula` holds."""
         is_timed = _reads_time(formula)
         if is_timed:
             self.model = with_end_of_time(self.model)
@@ -155,7 +159,7 @@ def _reads_time(formula: ObservedFormula) -> bool:
 
 
 def _initial_values(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
-    """The initial values of the constants and variables that have one."""
+    """The initial values of the constants and variables whose initial values are known."""
     values: dict[str, Value] = {}
     declared = [(constant.name, constant.value) for constant in model.constants]
     declared += [(variable.name, variable.initial_value) for variable in model.variables]
@@ -164,18 +168,20 @@ def _initial_values(model: Model, functions: Mapping[str, Function]) -> dict[str
             try:
                 values[name] = evaluate(expression, values, functions)
             except EvaluationError:
-                continue  # A formula that reads it has no initial value, either.
+                continue  # A formula that reads the variable has no initial value, and is reported.
     return values
 
 
 def _action_of(
     sync: Sync, elements: Sequence[str], writing: AbstractSet[_Step], *, is_timed: bool, has_end: bool
 ) -> str:
-    """The action of an observer in a synchronisation; "" if it does not take part.
+    """The action of an observer in a synchronisation; "" if the observer does not take part.
 
     Args:
-        elements: the automata of the elements of the system.
-        writing: the steps that can change a variable of the observer.
+        elements: the names of the automata of the elements of the system.
+        writing: the steps that can change a variable of the formula.
+        is_timed: whether the observer takes part in the steps of the clock.
+        has_end: whether the observer takes part in the last step of the clock.
     """
     steps = {(elements[i], action) for i, action in sync.participants}
     if is_timed and (CLOCK, CLOCK_ACTION) in steps:
@@ -186,7 +192,7 @@ def _action_of(
 
 
 def _writing_steps(model: Model, names: AbstractSet[str]) -> set[_Step]:
-    """The steps that assign some variables."""
+    """The steps that assign a variable in `names`."""
     return {
         (automaton.name, edge.action)
         for automaton in model.automata
@@ -206,7 +212,7 @@ def _root(target: Expression) -> str:
 
 
 def _with_named_steps(model: Model, names: AbstractSet[str]) -> Model:
-    """The model with actions for the silent edges that write some variables."""
+    """A copy of the model in which silent edges that assign a variable in `names` have actions."""
     automata, syncs, actions = [], list(model.system.syncs), list(model.actions)
     for automaton in model.automata:
         if not any(edge.action is None and _writes(edge, names) for edge in automaton.edges):

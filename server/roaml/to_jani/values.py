@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions of plain SCXML -> JANI (docs/spec/jani.md#values).
+"""Translates expressions of plain SCXML to JANI (docs/spec/jani.md#values).
 
-- Strings are arrays of their UTF-8 bytes. An array (`ArrayForm`) is several JANI values: its elements and its lengths.
-- `-x` is `0 - x`; nothing else is folded or simplified.
+- A string is an array of its UTF-8 bytes. An array (`ArrayForm`) is several JANI values: its elements and its lengths.
+- `-x` becomes `0 - x`. Expressions are not simplified.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ _MAX_OPERANDS_IN_A_ROW = 100
 
 
 def all_of(terms: Sequence[Expression]) -> Expression | None:
-    """The conjunction of the terms; `None` if there are none. Many terms are combined as a balanced tree: readers of
-    JANI, including that of this library, limit the nesting of brackets."""
+    """The conjunction of the terms; `None` if there are none. Many terms are combined as a balanced tree, because
+    readers of JSON, including the one of this library, limit the nesting of brackets."""
     if len(terms) > _MAX_OPERANDS_IN_A_ROW:
         middle = len(terms) // 2
         first, second = all_of(terms[:middle]), all_of(terms[middle:])
@@ -106,7 +106,7 @@ def at(array: Expression, *indexes: Expression) -> Expression:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """A variable, or the part of one at `indexes`."""
+    """An array that is stored in a variable, or the element of it at `indexes`."""
 
     variable: str
     shape: ArrayShape
@@ -121,7 +121,7 @@ class Stored:
         return at(jani.Name(self.variable), *self.indexes)
 
     def lengths(self, dimension: int) -> Expression:
-        """The length variable of the part's dimension `dimension` (from 1)."""
+        """The length of this array in the dimension `dimension`, which begins at 1."""
         return at(jani.Name(length_name(self.variable, len(self.indexes) + dimension)), *self.indexes)
 
     def element(self, index: Expression) -> Stored:
@@ -130,14 +130,14 @@ class Stored:
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """A literal: its elements are scalars or, with several dimensions, further literals."""
+    """An array literal. Its elements are scalars or, if it has several dimensions, array literals."""
 
     elements: tuple[Expression | Listed, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """One of two arrays."""
+    """One of two arrays, depending on a condition."""
 
     test: Expression
     then: ArrayForm
@@ -158,7 +158,7 @@ def length_of(array: ArrayForm) -> Expression:
 
 
 def elements_as(array: ArrayForm, shape: ArrayShape) -> Expression:
-    """The JANI value of an array, with literals padded with zeros to the capacities of `shape`
+    """The elements of an array as a JANI value. Literals are padded with zeros to the capacities of `shape`
     (docs/spec/jani.md#assignments)."""
     match array:
         case Stored():
@@ -176,7 +176,8 @@ def elements_as(array: ArrayForm, shape: ArrayShape) -> Expression:
 
 
 def lengths_as(array: ArrayForm, shape: ArrayShape, dimension: int) -> Expression:
-    """The value of the companion `dk_len` with k = `dimension` for a variable of `shape` that holds the array."""
+    """The lengths of an array as a JANI value: the value of the companion variable `dk_len`, with k = `dimension`, of a
+    variable of shape `shape` that stores the array."""
     match array:
         case Stored():
             return array.lengths(dimension)
@@ -197,7 +198,8 @@ def lengths_as(array: ArrayForm, shape: ArrayShape, dimension: int) -> Expressio
 
 
 def as_base(value: Expression, shape: ArrayShape) -> Expression:
-    """A literal as it is stored: in an array of reals, whole numbers are reals (docs/spec/jani.md#values)."""
+    """A literal in the form in which it is stored: an int literal becomes a real in an array of reals
+    (docs/spec/jani.md#values)."""
     if shape.base is not REAL:
         return value
     match value:
@@ -213,12 +215,12 @@ def as_base(value: Expression, shape: ArrayShape) -> Expression:
 
 @dataclass(frozen=True, slots=True)
 class JaniScope:
-    """The meaning of names in one place.
+    """The names that expressions in one place can use.
 
     Attributes:
-        variables: the variables of the automaton.
-        event: the event of `_event.data`; "" for none.
-        params: the parameters of that event.
+        variables: variable of the automaton -> its shape.
+        event: the name of the event to which `_event.data` refers; "" if there is none.
+        params: parameter of this event -> its shape.
     """
 
     variables: Mapping[str, ArrayShape]
@@ -226,9 +228,9 @@ class JaniScope:
     params: Mapping[str, ArrayShape]
 
     def stored(self, expr: Expr) -> Stored | None:
-        """The variable or parameter that `expr` is, or is a part of; `None` for other expressions.
+        """The variable or parameter to which `expr` refers, with the indexes; `None` for other expressions.
 
-        A parameter that is never sent has no variable; an event that is never sent is never received either.
+        A parameter that is never sent has no variable.
         """
         indexes: list[Expression] = []
         while isinstance(expr, Index):
@@ -243,7 +245,7 @@ class JaniScope:
         return None
 
     def array(self, expr: Expr) -> ArrayForm | None:
-        """The array that `expr` is; `None` if it is a scalar."""
+        """The array that is the value of `expr`; `None` if the value is a scalar."""
         match expr:
             case String():
                 return Listed(tuple(Integer(byte) for byte in expr.value.encode("utf-8", "surrogatepass")))
@@ -263,7 +265,7 @@ class JaniScope:
         return None
 
     def part(self, expr: Index) -> ArrayForm | None:
-        """A row of a literal with a literal index."""
+        """The row of an array literal at a literal index; `None` for other expressions."""
         array = self.array(expr.object)
         if isinstance(array, Listed) and isinstance(expr.index, Number):
             row = array.elements[int(expr.index.value)] if expr.index.value < len(array.elements) else None
@@ -271,7 +273,8 @@ class JaniScope:
         return None
 
     def element(self, expr: Expr) -> Expression | Listed:
-        """An element of an array literal. Negative numbers are literals here (docs/spec/jani.md#values)."""
+        """An element of an array literal. A negative number in it becomes a negative literal
+        (docs/spec/jani.md#values)."""
         array = self.array(expr)
         if isinstance(array, Listed):
             return array
@@ -312,7 +315,7 @@ class JaniScope:
         return ZERO
 
     def length(self, expr: Member) -> Expression:
-        """`.length` of an array; the value of a parameter with that name."""
+        """The length of an array; for an object that is not an array, the value of its parameter named `length`."""
         array = self.array(expr.object)
         return self.read(expr) if array is None else length_of(array)
 
@@ -348,8 +351,8 @@ class JaniScope:
 
 
 def equal_arrays(left: ArrayForm, right: ArrayForm) -> Expression:
-    """Equal lengths and equal elements. Storm and other tools do not support equality of arrays
-    (docs/spec/jani.md#array-equality)."""
+    """The condition that two arrays have equal lengths and equal elements. It compares elements, because Storm and
+    other tools do not support the equality of arrays (docs/spec/jani.md#array-equality)."""
     if isinstance(left, Chosen):
         return jani.Conditional(left.test, equal_arrays(left.then, right), equal_arrays(left.otherwise, right))
     if isinstance(right, Chosen):
@@ -395,7 +398,7 @@ def _equal_literals(left: Listed, right: Listed) -> Expression:
 
 
 def _equal_stored(left: Stored, right: Stored) -> Expression:
-    """The equality of two stored arrays; elements beyond the length are ignored."""
+    """The condition that two stored arrays are equal. Elements beyond the length are ignored."""
     same = [equal(left.lengths(1), right.lengths(1))]
     depth = len(left.indexes)
     capacity = min(left.shape.capacities[depth], right.shape.capacities[len(right.indexes)])

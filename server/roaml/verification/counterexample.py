@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS
@@ -12,7 +13,9 @@ from roaml.smc.run import Seen
 from roaml.text import Location
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
-from roaml.views.story import StoryLine, heading, lines
+
+if TYPE_CHECKING:
+    from roaml.views.story import StoryLine
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +85,8 @@ def _told(result: Result, seen: Seen | None, place_of: Callable[[Location], str]
         return None
     story = traces.story(seen.trace)
     verdict = VERDICTS.get(story.recording.verdict, "fault")
+    from roaml.views.story import heading, lines  # noqa: PLC0415 - most verifications do not need a story
+
     told = lines(story, place_of or _path_and_line(traces.target))
     return Counterexample(heading(story), verdict, seen.trace, tuple(told))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
@@ -20,7 +20,9 @@ from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
 from roaml.verification.target import VerificationTarget
-from roaml.views.waiting import Wait, advice, rule, waits
+
+if TYPE_CHECKING:
+    from roaml.views.waiting import Wait
 
 WARNING, ERROR = "warning", "error"
 LEVELS = (WARNING, ERROR)
@@ -31,7 +33,7 @@ MAX_STEPS_PER_TRACE = 100_000
 MAX_STEPS = 1_000_000
 """The number of steps after which no further traces are generated; this many steps take a tenth of a second."""
 BATCH_SIZE = 10
-"""The number of traces that are generated regardless of their steps."""
+"""The number of traces in a batch. The number of steps is checked after each batch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +57,15 @@ class Stuck:
     @property
     def advice(self) -> str:
         """How the system can be fixed; "" if unknown."""
+        from roaml.views.waiting import advice  # noqa: PLC0415 - most systems do not get stuck
+
         return advice(self.waits)
 
     @property
     def rule(self) -> str:
         """The rule that reports the cause in the model; "" if there is none."""
+        from roaml.views.waiting import rule  # noqa: PLC0415 - most systems do not get stuck
+
         return rule(self.waits)
 
     @property
@@ -141,6 +147,8 @@ def stuck_in(
     ended = answer.tally.ends.get(End.STUCK)
     if ended is None:
         return None
+    from roaml.views.waiting import waits  # noqa: PLC0415 - most systems do not get stuck
+
     recorder = Recorder(checker, asked, answer.options.seed, answer.options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
     time = time_of(target, recorder)

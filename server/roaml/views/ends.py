@@ -60,7 +60,7 @@ def _mark(automaton: Automaton, location: str) -> End:
 
 
 def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
-    """Property -> the variables of its observers that contain more than its formula (docs/spec/jani.md#observers)."""
+    """Property -> the variables of its observer that its formula does not read (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
     observers = {automaton.name for automaton in model.automata}
     outputs = {}

@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
-from roaml.scxml.model import Role
+from roaml.scxml.events import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     CLOCK,

@@ -54,7 +54,7 @@ export class Workbench {
             ];
             execFileSync(process.execPath, [MAIN, ...install, ...folders], { stdio: "pipe", env: environment });
         }
-        for (const each of options.extensions ?? []) addExtension(path.join(home, "extensions"), each);
+        for (const extension of options.extensions ?? []) addExtension(path.join(home, "extensions"), extension);
         const port = await freePort();
         const server = spawn(
             process.execPath,
@@ -173,7 +173,7 @@ export function temporaryFolder(name: string): string {
     const folder = fs.realpathSync(fs.mkdtempSync(path.join(os.tmpdir(), `as2fm-${name}-`)));
     if (folders.length === 0) {
         process.once("exit", () => {
-            for (const each of folders) fs.rmSync(each, { recursive: true, force: true, maxRetries: 3 });
+            for (const folder of folders) fs.rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
         });
     }
     folders.push(folder);

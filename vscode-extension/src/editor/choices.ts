@@ -102,7 +102,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
     }
 
     dispose(): void {
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     private async update(session: vscode.DebugSession): Promise<void> {

@@ -69,8 +69,8 @@ export function registerCommands(parts: Parts): void {
         vscode.commands.registerCommand(SHOW_REFERENCES, (uri: string, position: Position, places: Location[]) => {
             const convert = server.client?.protocol2CodeConverter;
             if (!convert) return undefined;
-            const [at, found] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
-            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, found);
+            const [at, locations] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
+            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, locations);
         }),
     );
     context.subscriptions.push(
@@ -138,9 +138,9 @@ async function showOfSystem(
     kind: "tree" | "ros" | "system",
     document: vscode.TextDocument,
 ): Promise<void> {
-    const found = await parts.documents.about(document);
+    const about = await parts.documents.about(document);
     // A tree that belongs to no system is shown alone.
-    const uri = kind === "tree" && found.systems.length === 0 ? document.uri : await parts.documents.system(document);
+    const uri = kind === "tree" && about.systems.length === 0 ? document.uri : await parts.documents.system(document);
     if (uri) await parts.pictures.open(kind, uri);
 }
 
@@ -155,21 +155,21 @@ async function migrateSystem({ server, documents }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     if (!system || !server.client) return;
     await vscode.workspace.saveAll();
-    const found = await server.ask(migrate, { textDocument: { uri: system.toString() } });
-    if (!found) return;
-    if (found.problem !== "") {
-        void vscode.window.showErrorMessage(found.problem);
+    const migration = await server.ask(migrate, { textDocument: { uri: system.toString() } });
+    if (!migration) return;
+    if (migration.problem !== "") {
+        void vscode.window.showErrorMessage(migration.problem);
         return;
     }
-    const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(found.edit ?? undefined);
-    if (!edit || found.files.length === 0) {
+    const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(migration.edit ?? undefined);
+    if (!edit || migration.files.length === 0) {
         void vscode.window.showInformationMessage(vscode.l10n.t("There is nothing to migrate."));
         return;
     }
     const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
     const question = vscode.l10n.t("Migrate {0} to the current dialect?", vscode.workspace.asRelativePath(system));
     const detail = [
-        ...found.files,
+        ...migration.files,
         "",
         vscode.l10n.t("Comments and layout are kept; Undo reverts the migration."),
     ].join("\n");

@@ -49,24 +49,24 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
 
     /** Show the trace that contradicts a property or, as a witness, one that supports it. */
     async show(system: string, property: string, witness = false): Promise<void> {
-        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
-        if (!found) {
+        const trace = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
+        if (!trace) {
             const text = witness
                 ? vscode.l10n.t("There is no trace that speaks for {0}, or it has not been verified.", property)
                 : vscode.l10n.t("There is no trace that contradicts {0}, or it has not been verified.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }
-        this.shown = found;
+        this.shown = trace;
         this.system = system;
-        this.view.description = found.property;
-        this.view.message = found.stale
-            ? vscode.l10n.t("{0} The files have changed since then.", `${found.heading}.`)
-            : `${found.heading}.`;
+        this.view.description = trace.property;
+        this.view.message = trace.stale
+            ? vscode.l10n.t("{0} The files have changed since then.", `${trace.heading}.`)
+            : `${trace.heading}.`;
         await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
         this.changed.fire(undefined);
         await vscode.commands.executeCommand(`${VIEW}.focus`);
-        const last = found.steps.at(-1);
+        const last = trace.steps.at(-1);
         if (!last) return;
         await this.view.reveal(last, { focus: true, select: true });
         await this.showStep(last);
@@ -92,7 +92,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         const { Expanded, None } = vscode.TreeItemCollapsibleState;
         const label = entry.who === "" ? entry.what : `${entry.who}: ${entry.what}`;
         const item = new vscode.TreeItem(label, entry.details.length > 0 ? Expanded : None);
-        item.description = [entry.time, entry.place].filter((each) => each !== "").join(" · ");
+        item.description = [entry.time, entry.place].filter((text) => text !== "").join(" · ");
         item.tooltip = [label, item.description, ...entry.details].join("\n");
         if (entry.uri !== undefined) {
             item.iconPath = new vscode.ThemeIcon("debug-stackframe-dot");
@@ -111,7 +111,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     }
 
     dispose(): void {
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     private async showStep(step: Step): Promise<void> {

@@ -44,7 +44,7 @@ export class PicturePanels implements vscode.Disposable {
         if (!panel) {
             panel = new PicturePanel(kind, this.context, this.server, this.log, column);
             panel.light(this.lit, this.litEdges);
-            panel.highlighted = this.highlights.find((each) => each.kind === kind);
+            panel.highlighted = this.highlights.find((highlight) => highlight.kind === kind);
             this.panels.set(kind, panel);
             panel.onDispose(() => this.panels.delete(kind));
         }
@@ -54,7 +54,8 @@ export class PicturePanels implements vscode.Disposable {
     /** Highlight nodes in all open pictures and in those that are opened later. Earlier highlights are removed. */
     async highlight(highlights: readonly Highlight[]): Promise<void> {
         this.highlights = highlights;
-        for (const [kind, panel] of this.panels) await panel.highlight(highlights.find((each) => each.kind === kind));
+        for (const [kind, panel] of this.panels)
+            await panel.highlight(highlights.find((highlight) => highlight.kind === kind));
     }
 
     /** Light what a run does in all open pictures and in those that are opened later, instead of what was lit. */
@@ -66,7 +67,7 @@ export class PicturePanels implements vscode.Disposable {
 
     dispose(): void {
         clearTimeout(this.timer);
-        for (const each of [...this.subscriptions, ...this.panels.values()]) each.dispose();
+        for (const disposable of [...this.subscriptions, ...this.panels.values()]) disposable.dispose();
     }
 
     private refreshSoon(): void {
@@ -138,10 +139,10 @@ class PicturePanel implements vscode.Disposable {
         if (!this.uri) return;
         const asked = ++this.asked;
         const uri = this.uri.toString();
-        const found = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
-        if (asked !== this.asked || found === undefined) return;
-        this.picture = found ?? undefined;
-        this.panel.title = found ? `${titleOf(this.kind)}: ${found.title}` : titleOf(this.kind);
+        const picture = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
+        if (asked !== this.asked || picture === undefined) return;
+        this.picture = picture ?? undefined;
+        this.panel.title = picture ? `${titleOf(this.kind)}: ${picture.title}` : titleOf(this.kind);
         this.here = this.partAtCaret(vscode.window.activeTextEditor);
         this.shownUri = this.asServerSays(this.uri);
         this.draw();

@@ -58,7 +58,7 @@ def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-u
     text = _visible(entry.source.text[line.start + cut : min(line.end, line.start + cut + _MAX_COLUMNS)])
     if cut:
         text, start, end = f"…{text[1:]}", start - cut, end - cut
-    # Tabs are kept in the line of carets, so that it is aligned with the one above.
+    # Tabs are kept in the line of carets, so that each caret is below its character.
     margin = "".join("\t" if character == "\t" else " " * _columns(character) for character in text[:start])
     carets = "^" * max(1, sum(map(_columns, text[start:end])))
     return [f"{place.line:5} | {text}", f"{'':5} | {margin}{paint(carets, color)}"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The code actions at a place: quick fixes of its diagnostics, refactorings, and all fixes of a kind at once."""
+"""The code actions at a place: quick fixes of its diagnostics, refactorings, and actions that apply several fixes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Listing files in a system file."""
+"""Edits that list files in a system file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def add_input(analysis: Analysis, system: str, section: str, type_: str, path: s
 
 
 def move_input(analysis: Analysis, system: str, listed: ListedFile, section: str, type_: str) -> tuple[TextEdit, ...]:
-    """The edits that list a file in another section. A section that would be empty is removed."""
+    """The edits that move a file to another section of a system file. A section that would be empty is removed."""
     source, file = analysis.source(system), analysis.system_file(system)
     if source is None or file is None:
         return ()

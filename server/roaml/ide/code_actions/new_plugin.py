@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A new plugin for a node of the tree that has none: a file, listed in every system that the tree belongs to."""
+"""Creates a plugin for a node of a tree that has none. Its file is listed in all systems of the tree."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[s
 
 
 def free_path(analysis: Analysis, system: str, name: str) -> str:
-    """A path beside the other plugins of the system, or beside the system file."""
+    """A path for a new plugin in the folder of the other plugins of the system, or in that of the system file."""
     plugins = [
         f.path for f in analysis.listed(system) if f.input.section == "behavior_tree" and f.path.endswith("cxml")
     ]

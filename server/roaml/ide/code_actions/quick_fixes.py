@@ -404,7 +404,7 @@ def _all_nodes(analysis: Analysis, path: str) -> Iterator[TreeNode]:
 
 
 def _node_at(analysis: Analysis, diagnostic: Diagnostic) -> TreeNode | None:
-    """The innermost node around a diagnostic."""
+    """The innermost node of a tree that contains the span of a diagnostic."""
     around = [n for n in _all_nodes(analysis, diagnostic.path) if _holds(n.element.span, diagnostic.span)]
     return min(around, key=lambda n: n.element.span.end - n.element.span.start, default=None)
 
@@ -414,7 +414,7 @@ def _holds(outer: Span, inner: Span) -> bool:
 
 
 def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:
-    """The tree files of all systems of a file."""
+    """The tree files of all systems to which a file belongs."""
     return tuple(dict.fromkeys(t for s in analysis.memberships.get(path, ()) for t in analysis.tree_paths(s)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements that are allowed at a caret, with their attributes ready to be filled in."""
+"""Completion of elements that are allowed at a caret, with placeholders for the values of their attributes."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool
 
 
 def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:
-    """A whole element: its name, its essential attributes, and its end."""
+    """A complete element in snippet syntax: its name, its usual attributes, and its end."""
     made = Snippet().text(type_.name)
     subject = CompletionSubject(None, type_, parents)
     for attribute in type_.attributes.values():

@@ -34,7 +34,7 @@ class ItemKind(enum.Enum):
 
 
 class Rank(enum.IntEnum):
-    """The order of the list; items of equal rank keep their order."""
+    """The rank of an item in the list, the best one first. Items of equal rank keep their order."""
 
     BEST = 0
     LIKELY = 1
@@ -80,7 +80,7 @@ class Completions:
 
 
 def escaped(text: str) -> str:
-    """A text as a part of a snippet."""
+    """A text with the special characters of snippets escaped."""
     return re.sub(r"[\\$}]", r"\\\g<0>", text)
 
 
@@ -97,7 +97,7 @@ def _unescaped(text: str) -> str:
 
 
 class Snippet:
-    """Text with placeholders, in order."""
+    """A snippet: text with placeholders, which is built from left to right."""
 
     def __init__(self) -> None:
         self._parts: list[str] = []
@@ -108,7 +108,7 @@ class Snippet:
         return self
 
     def stop(self, likely: Iterable[str] = ()) -> Snippet:
-        """A placeholder; `likely` are its likely values."""
+        """Add a placeholder. `likely` are the values that it suggests."""
         self._stops += 1
         choices = [text for text in dict.fromkeys(likely) if text]
         if not choices:
@@ -121,7 +121,7 @@ class Snippet:
         return self
 
     def end(self) -> Snippet:
-        """The final position of the caret."""
+        """Mark the final position of the caret."""
         self._parts.append("$0")
         return self
 

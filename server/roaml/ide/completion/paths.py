@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths of files in the workspace, relative to a file."""
+"""Completion of paths: files in the workspace, relative to the folder of a file."""
 
 from __future__ import annotations
 

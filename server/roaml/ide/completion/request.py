@@ -53,7 +53,7 @@ class Request:
 
     @cached_property
     def systems(self) -> tuple[System, ...]:
-        """The systems of the file; for a system file, itself."""
+        """The systems to which the file belongs; for a system file, its own system."""
         paths = (self.path, *self.analysis.systems_of(self.path))
         owners = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
         return tuple(system for system in owners if system is not None)
@@ -100,7 +100,7 @@ class Request:
 
     @cached_property
     def handler(self) -> Handler | None:
-        """The transition or callback around the caret."""
+        """The handler around the caret; `None` if there is none."""
         states = self.chart.states if self.chart else ()
         handlers = (handler for state in states for handler in state.handlers)
         return next((handler for handler in handlers if _is_around(handler.element, self.offset)), None)

@@ -58,7 +58,7 @@ _KINDS = {
 
 
 def automata(analysis: Analysis, path: str, scope: str = "") -> tuple[str, ...]:
-    """The automata of a machine, or of one of its threads, in all its systems."""
+    """The names of the automata of a machine, or of one of its threads, in all its systems."""
     machine = analysis.machine(path)
     threads = [thread for thread in machine.threads if thread.chart.scope == scope] if machine and scope else []
     automata_names: dict[str, None] = {}
@@ -357,7 +357,7 @@ def rate(text: str) -> str:
 
 
 def duration(seconds: float) -> str:
-    """A duration with a readable unit."""
+    """A duration in the greatest unit, from s to ns, in which it is at least 1."""
     for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6)):
         if seconds * factor >= 1:
             return f"{seconds * factor:.9g} {unit}"

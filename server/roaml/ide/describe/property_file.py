@@ -55,7 +55,7 @@ _SAYS: Mapping[str, str] = {
     "deadlock": "Holds where no step is possible.",
     "timelock": "Holds where time cannot pass.",
 }
-"""The descriptions of operators that share one object of the schema."""
+"""The descriptions of operators that have no description of their own in the schema."""
 
 
 def operator(symbol: str) -> str:

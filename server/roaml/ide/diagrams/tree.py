@@ -82,7 +82,7 @@ class _Tree:
             yield DiagramNode(f"{{{variable}}}", DiagramNodeKind.VARIABLE, variable, place=place)
 
     def entered(self, instance: Instance) -> list[int]:
-        """The uses of subtrees between a node and its parent, the outermost first."""
+        """The indices of the subtrees that begin between a node and its parent, outermost first."""
         around = self.use_of[instance.parent] if instance.parent is not None else 0
         entered: list[int] = []
         use: int | None = instance.use

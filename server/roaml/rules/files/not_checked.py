@@ -98,8 +98,8 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
             f for f in context.files if f.input.section == "behavior_tree" and f.required_kind is not FileKind.TREE
         ]
         yield from ((listed.span, _ANY_PLUGIN) for listed in plugins if not listed.usable)
-        strange = system.ticked_nodes | system.idle_plugins
-        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in strange)
+        misplaced = system.ticked_nodes | system.idle_plugins
+        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in misplaced)
         return
     for instance in system.instances:
         if instance.source.path == context.source.path and system.plugin(instance.plugin)[1] is None:

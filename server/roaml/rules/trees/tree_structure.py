@@ -164,7 +164,7 @@ def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
 
 
 def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
-    """The names on a path from `start` through `first` back to `start`; empty if there is no such path."""
+    """The names on a path from `start` through `first` back to `start`; empty if there is no path."""
     came_from = {first: start}
     stack = [first]
     while stack:

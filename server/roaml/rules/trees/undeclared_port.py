@@ -25,14 +25,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for key in inputs:
         if not _is_misspelled_declaration(context.machine, key.value):
             close = close_names(key.value, ports)
-            message = f"there is no port `{key.value}`{did_you_mean(close)}"
+            message = f"there is no port `{key.value}`{did_you_mean(close) or '; declare it'}"
             yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.IN))
     outputs = [name for name, port in ports.items() if port.direction is Direction.OUT]
     for key in writes(context.machine):
         port = ports.get(key.value)
         close = close_names(key.value, outputs)
         if port is None and not _is_misspelled_declaration(context.machine, key.value):
-            message = f"there is no output port `{key.value}`{did_you_mean(close)}"
+            message = f"there is no output port `{key.value}`{did_you_mean(close) or '; declare it'}"
             yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.OUT))
         elif port is not None and port.direction is Direction.IN:
             message = f"`{key.value}` is an input port and cannot be written{did_you_mean(close)}"

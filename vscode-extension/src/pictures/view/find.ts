@@ -55,7 +55,7 @@ export interface Sight extends Point {
 }
 
 const MARGIN = 24;
-/** Texts of 12 px are legible down to 11 px. */
+/** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
 type Area = Pick<Drawing, "width" | "height">;
 

@@ -175,7 +175,7 @@ class View {
     }
 
     private reveal(node: number): void {
-        const box = this.drawing?.nodes.find((each) => each.index === node);
+        const box = this.drawing?.nodes.find((candidate) => candidate.index === node);
         const { width, height } = this.svg.getBoundingClientRect();
         if (box) this.look(reveal(this.sight, box, width, height));
     }
@@ -247,13 +247,13 @@ class View {
 
     private search(forward = false): void {
         if (!this.picture || !this.scene) return;
-        const found = search(this.picture, this.input.value);
+        const matches = search(this.picture, this.input.value);
         this.scene.root.classList.toggle("searched", this.input.value.trim() !== "");
-        for (const [index, node] of this.scene.nodes) node.classList.toggle("found", found.includes(index));
+        for (const [index, node] of this.scene.nodes) node.classList.toggle("found", matches.includes(index));
         this.notice.textContent =
-            this.input.value.trim() !== "" && found.length === 0 ? (this.words?.nothing ?? "") : "";
-        const next = forward ? found.find((index) => index > this.selected) : undefined;
-        const first = next ?? found[0];
+            this.input.value.trim() !== "" && matches.length === 0 ? (this.words?.nothing ?? "") : "";
+        const next = forward ? matches.find((index) => index > this.selected) : undefined;
+        const first = next ?? matches[0];
         if (first !== undefined) this.select(first);
     }
 

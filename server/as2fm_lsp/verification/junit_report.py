@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The results of a verification as a JUnit report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from as2fm_lsp import junit
+from as2fm_lsp.junit import Case, CaseOutcome
+from as2fm_lsp.verification import stuck_report
+from as2fm_lsp.verification.report import one_as_text, warning
+from as2fm_lsp.verification.stuck_report import NOT_STUCK
+from roaml.verification.expectations import NO_EXPECTATION
+from roaml.verification.results import Result
+from roaml.verification.stuck import WARNING, Look
+
+if TYPE_CHECKING:
+    from roaml.views.story import PlaceOf
+
+
+def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Look | None = None) -> str:
+    """A JUnit report with a test for each property. A test fails if an expectation does not hold, and is an error if
+    there is no result. One more test fails if the system gets stuck and that is an error."""
+    level = WARNING if look is None else look.level
+    cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
+    if look is not None:
+        outcome = CaseOutcome.PASSED if look.is_met else CaseOutcome.FAILED
+        cases.append(
+            Case(title, NOT_STUCK, outcome, stuck_report.as_text(look, place_of), "" if look.is_met else "stuck")
+        )
+    return junit.render("verify", cases)
+
+
+def _case(result: Result, title: str, text: str) -> Case:
+    properties = [("requirement", result.comment)] if result.comment else []
+    properties += [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
+    if about := warning(result):
+        properties.append(("warning", about))
+    case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
+    if result.refusal is not None:
+        return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
+    if result.undecided:
+        return replace(case, outcome=CaseOutcome.ERROR, message=f"undecided: {result.undecided}", type="undecided")
+    if result.has_no_expectation:
+        return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
+    if result.is_met:
+        return case
+    missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]
+    return replace(case, outcome=CaseOutcome.FAILED, message=f"expected {' and '.join(missed)}")
