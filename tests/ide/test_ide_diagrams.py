@@ -122,7 +122,7 @@ def test_tree(tmp_path: Path) -> None:
 
 
 def test_tree_alone(tmp_path: Path) -> None:
-    """What no system names is drawn as far as it is known."""
+    """A tree that no system lists is drawn as far as it is known."""
     tree = """\
 <root BTCPP_format="4"><BehaviorTree ID="T"><Inverter><Fallback>
   <Condition ID="Full" level="{level}"/><Fill to="{level}"/><Loop><Wait/></Loop>
@@ -186,7 +186,7 @@ def test_ros(tmp_path: Path) -> None:
 
 
 def test_half_typed(tmp_path: Path) -> None:
-    """Whatever is left of the files: no exception, and all that is drawn hangs together."""
+    """Any prefix of the files causes no exception, and all parts of a drawing are connected."""
     files = split_files(CORNERS)
     chance = random.Random(5)
     for name, text in files.items():
@@ -208,7 +208,7 @@ def _is_sound(analysis: Analysis, picture: Picture) -> bool:
 
 @pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind)])
 def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind]) -> None:
-    """Who draws knows the same words."""
+    """The extension and the library use the same words."""
     match = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
     assert match is not None
     assert re.findall(r'"([^"]+)"', match[1]) == [kind.value for kind in kinds]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The closed vocabularies of `roaml.roles` are those of the schemas."""
+"""The enumerations of `roaml.roles` are those of the schemas."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ _Edits = dict[str, tuple[TextEdit, ...]]
 
 
 def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """The fixes of a diagnostic, in addition to those of its rule."""
+    """The quick fixes of a diagnostic that its rule does not offer itself."""
     repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
         yield from repair(snapshot, diagnostic)
@@ -258,7 +258,7 @@ def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
 
 
 def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:
-    """The edits that remove all settings of a port of a plugin."""
+    """The edits that remove a port of a plugin from all nodes of trees that set it."""
     name = machine.name.value if machine.name else ""
     edits: _Edits = {}
     for tree_path in _trees(analysis, path):
@@ -375,14 +375,14 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
 
 
 def _move_expectations(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Move the expectations of the property file to the configuration."""
+    """An action that moves the expectations of the property file to the configuration."""
     analysis, path = snapshot.analysis, diagnostic.path
     expectations = movable_expectations(analysis, path)
     for system in analysis.memberships.get(path, ())[:1] if expectations else ():
         file = snapshot.configuration_of(system)
-        what = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
+        subject = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
         make = partial(moved, analysis, path, expectations, file)
-        yield _action(diagnostic, f"Move {what} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
+        yield _action(diagnostic, f"Move {subject} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
 
 
 # -------------------------------------------------------------------- helpers
