@@ -28,7 +28,7 @@ export function verification(stage: Stage): void {
         const [delivered, empty] = [row(window, "all_delivered"), row(window, "never_empty")];
         await delivered.hover();
         await delivered.getByRole("button", { name: "Run Test" }).click();
-        // Nothing is expected of it: it is neither green nor red.
+        // Nothing is expected of the property, so the test is neither green nor red.
         await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
         await delivered.filter({ hasText: /1 \[0\.9\d+, 1\], no expectation set/ }).waitFor();
         await icon(empty, "unset").waitFor();
@@ -36,7 +36,7 @@ export function verification(stage: Stage): void {
         await icon(empty, "failed").waitFor({ timeout: TIMEOUT_MS });
         await empty.filter({ hasText: /0 \[0, 0\.0\d*\]/ }).waitFor();
         await icon(row(window, "main.xml"), "failed").waitFor();
-        // What was expected, and the way to a trace in which it is not so.
+        // The message contains the expectation, and a link to a trace that contradicts it.
         await window.page.locator(".test-output-peek-tree .monaco-list-row", { hasText: "never_empty" }).click();
         await window.page.locator(".composite.panel", { hasText: /\], expected ≥ 0\.9/ }).waitFor();
         const link = window.page.getByRole("link", { name: "Show Counterexample" });
@@ -75,7 +75,7 @@ export function verification(stage: Stage): void {
         await window.statusItem("Ln 18, Col 9").waitFor();
         await tree.locator('.node.highlighted[data-label="BatteryAbove"]').waitFor();
         await window.screenshot("counterexample");
-        // What has come of it stands below the step.
+        // The effects of the step are below it.
         await step(window, "battery: 100 → 40").waitFor();
         await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
         await step(window, "ReactiveFallback (bt_1001): answers SUCCESS").first().click();
@@ -86,7 +86,7 @@ export function verification(stage: Stage): void {
         await window.page.locator(".tab", { hasText: "Behavior Tree: " }).locator(".codicon-close").click();
         await button(window, "Show Behavior Tree").click();
         await (await window.picture()).locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
-        // The machine that takes the step is drawn, in the state that it is then in.
+        // The machine that takes the step is drawn, with its state after the step.
         await window.openFile("building.ascxml");
         await button(window, "Show State Machine").click();
         const machine = await window.picture('.node[data-label="open"]');
@@ -126,7 +126,7 @@ export function verification(stage: Stage): void {
         await lens(window, "Verify").nth(1).click();
         await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor({ timeout: TIMEOUT_MS });
         await lens(window, "Show counterexample").waitFor();
-        // By then the test has failed; VS Code would have written its message behind the line.
+        // At this time the test has failed. VS Code would have written its message behind the line.
         await window.page.locator(".testing-run-glyph.codicon-testing-failed-icon").first().waitFor();
         await window.screenshot("failed-property");
         const titles = await window.page.locator(".codelens-decoration a").allTextContents();
@@ -154,7 +154,7 @@ export function verification(stage: Stage): void {
         const delivered = row(window, "all_delivered");
         await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
         await lens(window, "Set expectation").click();
-        // Some scheduler never delivers, so the result meets no expectation that could be suggested.
+        // Under some scheduler the property does not hold, so no expectation is suggested.
         await window.page.locator(".quick-input-title", { hasText: "all_delivered" }).waitFor();
         await window.press("Enter");
         await hint(window, "all_delivered", "✗\\s1\\s\\[.*not\\s≥\\s0\\.95").waitFor();
@@ -162,7 +162,7 @@ export function verification(stage: Stage): void {
         await window.screenshot("expectation-set");
         await window.openFile("as2fm.toml");
         await window.page.locator(".view-line", { hasText: /all_delivered\s=\s">=\s0\.95"/ }).waitFor();
-        // A witness is one click away.
+        // A click shows a witness.
         await window.openFile("properties.jani");
         await lens(window, "Show witness").first().click();
         await window.page.locator(".panel .message", { hasText: "all_delivered passed in trace" }).waitFor();

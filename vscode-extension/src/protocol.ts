@@ -61,6 +61,37 @@ export interface Migration {
     readonly problem: string;
 }
 
+/** A sentence of which a property is made. `letters` are the names of its events in `text`. */
+export interface PropertySentence {
+    readonly id: string;
+    readonly text: string;
+    readonly letters: readonly string[];
+    readonly needsTime: boolean;
+}
+
+/** What properties of a system can say. `events` are the events that it sends, in words. */
+export interface PropertySentences {
+    readonly sentences: readonly PropertySentence[];
+    readonly events: readonly string[];
+    readonly hasClock: boolean;
+}
+
+/** `sentence` is the id of a sentence, `events` are its events in order, `within` is a number of seconds or empty. */
+export interface NewPropertyParams extends DocumentParams {
+    readonly sentence: string;
+    readonly events: readonly string[];
+    readonly within: string;
+}
+
+/** `uri` is the property file, `name` the name of the property. */
+export interface NewProperty {
+    readonly edit: WorkspaceEdit;
+    readonly uri: string;
+    readonly name: string;
+}
+
+export const propertySentences = new RequestType<DocumentParams, PropertySentences, void>("as2fm/propertySentences");
+export const newPropertyEdit = new RequestType<NewPropertyParams, NewProperty, void>("as2fm/newProperty");
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
 export const pictureFile = new RequestType<PictureFileParams, PictureFile | null, void>("as2fm/pictureFile");

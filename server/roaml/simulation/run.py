@@ -239,7 +239,7 @@ class Run:
             if not is_possible(self.legend, self._reader.variables, decision):
                 raise RunError("the model has no such event or variable, or the value does not fit")
             if decision.event and not self.is_free(decision.event):
-                raise RunError("the last message of this kind has not been received yet")
+                raise RunError("the previous message of this kind has not been received yet")
             return
         for enabled in self.enabled():
             if enabled.vector == decision.vector:

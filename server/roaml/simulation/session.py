@@ -221,7 +221,7 @@ class Session:
         return self._follower.events.parameters(event)
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
-        """The parts of a step except for those of automata that only hold an event."""
+        """The parts of a step, except those of automata that only buffer an event."""
         return self._follower.events.actors(step)
 
     @property

@@ -10,6 +10,7 @@ import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
 import type { JaniView } from "./janiView";
 import { chooseExpectation } from "./expectation";
+import { newProperty } from "./newProperty";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
@@ -51,6 +52,7 @@ export function registerCommands(parts: Parts): void {
         newSystem: trusted(() => newSystem(server)),
         newNode: trusted(() => newMachine(context, "node")),
         newPlugin: trusted(() => newMachine(context, "plugin")),
+        newProperty: trusted(() => createProperty(parts)),
         migrate: trusted(() => migrateSystem(parts)),
         addToCi: trusted(() => addToCi(context)),
         openSample: trusted(() => openSample(context)),
@@ -149,6 +151,12 @@ async function checkWorkspace({ tasks }: Parts): Promise<void> {
         const task = tasks.task({ type: Tasks.type, command: "check" }, folder);
         if (task) await vscode.tasks.executeTask(task);
     }
+}
+
+async function createProperty({ server, documents }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    const uri = system && server.client?.code2ProtocolConverter.asUri(system);
+    if (uri !== undefined) await newProperty(server, uri);
 }
 
 async function migrateSystem({ server, documents }: Parts): Promise<void> {

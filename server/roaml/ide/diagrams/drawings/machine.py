@@ -92,7 +92,7 @@ class _Chart:
         return frozenset(choices - leaving)
 
     def _rows(self, state: str) -> Iterator[Row]:
-        """The rows below the title of a state."""
+        """The rows below the title of a state: its details, and its transitions to itself."""
         for text in self._picture.nodes[self._index[state]].details:
             lines = paragraph(text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
             yield Row(lines, hint=text if is_shortened(lines, text) else "")
