@@ -44,7 +44,7 @@ export function verification(stage: Stage): void {
         await window.screenshot("test-explorer");
         await link.click();
         await window.page.locator(".panel .message", { hasText: "never_empty failed in trace" }).waitFor();
-        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+        await selected(window).waitFor();
     });
 
     stage.test("a counterexample leads to its lines and is highlighted in diagrams", late, async (window) => {
@@ -55,8 +55,22 @@ export function verification(stage: Stage): void {
         await window.openFile("properties.jani");
         await lens(window, "Verify").nth(1).click();
         await lens(window, "Show counterexample").click({ timeout: TIMEOUT_MS });
-        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+        // It opens at its end, with what has changed there; the turns lead to it.
+        await window.page.locator(".panel .message", { hasText: /; \d+ turns matter/ }).waitFor();
+        await selected(window).last().waitFor();
+        await window.screenshot("counterexample-end");
+        await state(window, "was").first().waitFor();
+        const end = await selected(window).textContent();
+        await window.page.locator(".panel").getByRole("button", { name: "Previous Step" }).click();
+        await selected(window)
+            .filter({ hasNotText: end ?? "" })
+            .waitFor();
+        await window.page.locator(".panel").getByRole("button", { name: "Next Step" }).click();
+        await selected(window)
+            .filter({ hasText: end ?? "" })
+            .waitFor();
         await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
+        await state(window, "battery").filter({ hasText: "40  ← was 100" }).first().waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
         await window.statusItem("Ln 18, Col 9").waitFor();
         await tree.locator('.node.highlighted[data-label="BatteryAbove"]').waitFor();
@@ -201,5 +215,20 @@ function icon(row: Locator, state: "passed" | "failed" | "skipped" | "unset"): L
 
 /** A row of the counterexample. */
 function step(window: Window, text: string | RegExp): Locator {
-    return window.page.locator(".panel .monaco-list-row", { hasText: text });
+    return pane(window, "Counterexample").locator(".monaco-list-row", { hasText: text });
+}
+
+function selected(window: Window): Locator {
+    return pane(window, "Counterexample").locator(".monaco-list-row.selected");
+}
+
+/** A row of the state beside the counterexample. */
+function state(window: Window, text: string | RegExp): Locator {
+    return pane(window, "State").locator(".monaco-list-row", { hasText: text });
+}
+
+function pane(window: Window, name: string): Locator {
+    return window.page.locator(".panel .pane", {
+        has: window.page.locator(`.pane-header[aria-label^="${name}"]`),
+    });
 }
