@@ -134,7 +134,7 @@ def test_tree_alone(tmp_path: Path) -> None:
         "control | Fallback",
         "condition | Full | level = {level}",
         "action | Fill | to = {level}",
-        "control | Loop",
+        "decorator | Loop",
         "condition | Wait",
         "variable | level",
         "Inverter -> Fallback | child",
@@ -145,6 +145,28 @@ def test_tree_alone(tmp_path: Path) -> None:
         "level -> Full | reads | level",
         "level -> Fill | reads | to",
     ]
+
+
+def test_kinds_of_nodes_in_a_tree_alone(tmp_path: Path) -> None:
+    """Libraries and models declare them; an unknown node with one child is a decorator."""
+    tree = """<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>
+        <RateController hz="1.0"><ComputePathToPose goal="{goal}" path="{path}"/></RateController>
+        <RecoveryNode number_of_retries="2"><IsStuck/><Wait wait_duration="1"/></RecoveryNode>
+        <Inverter><Seen/></Inverter><Mine><Yours/></Mine><Both><Yours/><Yours/></Both>
+        </Sequence></BehaviorTree><TreeNodesModel><Condition ID="Seen"/></TreeNodesModel></root>"""
+    picture = tree_picture(load(tmp_path, {"tree.xml": tree}), str(tmp_path / "tree.xml"))
+    assert picture is not None
+    kinds = {node.label: node.kind.value for node in picture.nodes}
+    assert kinds == kinds | {
+        "RateController": "decorator",
+        "RecoveryNode": "control",
+        "IsStuck": "condition",
+        "Inverter": "decorator",
+        "Seen": "condition",
+        "Mine": "decorator",
+        "Both": "control",
+        "Yours": "action",
+    }
 
 
 def test_ros(tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ export function restricted(stage: Stage): void {
         await window.page.getByRole("button", { name: "Yes, I trust the authors" }).click();
         await window.openFile("battery.ascxml");
         await window.until(() => fs.existsSync(path.join(window.folder, "started")));
-        // It is no language server; that is said, with what to do.
+        // The program is not a language server. A message states this, and what to do.
         await window.notification("did not start").waitFor();
     });
 }

@@ -26,7 +26,7 @@ export function withoutPython(): void {
 
     test("without venv, the message names the package to install", async () => {
         const folder = programs("sh", "cat", "uname", "env");
-        // It answers what it is asked about itself, and nothing else.
+        // The interpreter only reports its own properties.
         const script = ["#!/bin/sh", 'case "$*" in', '*" venv "*) echo "ensurepip is not available" >&2; exit 1 ;;'];
         script.push('*) echo "$0"; echo 3; echo 11 ;;', "esac", "");
         write(path.join(folder, "python3"), script.join("\n"));

@@ -195,7 +195,9 @@ export interface Highlight {
 }
 
 export interface Step extends Partial<Place> {
+    /** The numbers of the first and last step of the turn. */
     readonly step: number;
+    readonly lastStep: number;
     readonly time: string;
     /** The name of the automaton in messages. */
     readonly who: string;
@@ -226,6 +228,22 @@ export interface CounterexampleParams extends PropertyParams {
     readonly witness?: boolean;
 }
 
+/** With `step` and `earlier`: the numbers of steps after which states are compared. */
+export interface TraceStateParams extends PropertyParams {
+    readonly trace: number;
+    readonly step: number;
+    readonly earlier: number;
+}
+
+/** A value of the state; `before` is null if it is the same as earlier. `hasChanged` includes the rows below. */
+export interface StateRow {
+    readonly name: string;
+    readonly value: string;
+    readonly before: string | null;
+    readonly hasChanged: boolean;
+    readonly rows: readonly StateRow[];
+}
+
 /** The expectations that the known result suggests, the current ones, and the name of the file in which one is set. */
 export interface Expectations {
     readonly suggestions: readonly string[];
@@ -250,3 +268,4 @@ export const setExpectation = new RequestType<SetExpectationParams, ExpectationS
 export const counterexample = new RequestType<CounterexampleParams, Counterexample | null, void>(
     "as2fm/counterexample",
 );
+export const traceState = new RequestType<TraceStateParams, readonly StateRow[] | null, void>("as2fm/traceState");

@@ -14,7 +14,7 @@ from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_valu
 from roaml.model.expand import PortConstant
 from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length, is_timer, read_tree_event, received_by
 from roaml.simulation.session import Session
-from roaml.simulation.state import SystemState
+from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
 from roaml.smc.record import Plain, TraceStep
 
@@ -90,6 +90,11 @@ class Values:
         yield ScopeEntries("Global variables", tuple(self._shared()), "globals")
         yield ScopeEntries("Time", tuple(self._time()), "globals")
         yield ScopeEntries("Properties", tuple(self._properties()), "globals")
+
+    def machines(self) -> Iterator[tuple[MachineState, tuple[ScopeEntry, ...]]]:
+        """The machines and plugins, with their variables."""
+        for machine in self._state.machines:
+            yield machine, tuple(self._own(self._instances[machine.automaton]))
 
     def _own(self, instance: int) -> Iterator[ScopeEntry]:
         stored = self._stored.get(instance, {})

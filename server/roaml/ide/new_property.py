@@ -34,6 +34,7 @@ from roaml.model.property_links import clock_step
 from roaml.model.property_ports import EVENTS, PortLinker
 from roaml.model.property_sentences import event_clause
 from roaml.model.system import System
+from roaml.model.system_file import SystemSection
 from roaml.model.tree_paths import short_paths
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, ScopeKind, Window
 from roaml.observers.sentences import SentenceClause, Times, pattern_sentence
@@ -183,7 +184,7 @@ def new_property(
     if file is None or path is None:
         path = new_file.free_path(analysis, folder_of(system), FILE_NAME)
         text = "\n".join(_section("properties", [*_section("ports", ports), *_section(GUARANTEES, lines)]))
-        listing = add_input(analysis, system, "properties", "xml", path)
+        listing = add_input(analysis, system, SystemSection.PROPERTIES, "xml", path)
         return NewProperty(name, path, WorkspaceEdit({system: listing}, created={path: f"{text}\n"}))
     source = analysis.source(path)
     assert source is not None

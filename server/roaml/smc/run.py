@@ -293,8 +293,8 @@ def answer_together(
     watch: Callable[[Inquiry], None],
     pulse: Pulse | None = None,
 ) -> None:
-    """Answer several questions with the same traces. Each answer is exactly that of `answer`: its own rule stops each
-    question, and what a trace says about a question does not depend on the other questions.
+    """Answer several questions with the same traces. Each answer is exactly that of `answer`, because each question
+    has its own stopping rule, and what a trace says about a question does not depend on the other questions.
 
     Args:
         payload: with the questions of all inquiries.

@@ -46,6 +46,7 @@ export function registerCommands(parts: Parts): void {
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
         showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
+        showMachines: () => withEditor((editor) => showOfSystem(parts, "system", editor.document)),
         showRosGraph: () => withEditor((editor) => showOfSystem(parts, "ros", editor.document)),
         checkWorkspace: trusted(() => checkWorkspace(parts)),
         newSystem: trusted(() => newSystem(server)),
@@ -134,7 +135,11 @@ async function debugSystem({ documents, debugging }: Parts): Promise<void> {
     if (system) await debugging.start(system, {});
 }
 
-async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {
+async function showOfSystem(
+    parts: Parts,
+    kind: "tree" | "ros" | "system",
+    document: vscode.TextDocument,
+): Promise<void> {
     const about = await parts.documents.about(document);
     // A tree that belongs to no system is shown alone.
     const uri = kind === "tree" && about.systems.length === 0 ? document.uri : await parts.documents.system(document);

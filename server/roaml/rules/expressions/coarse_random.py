@@ -87,7 +87,7 @@ _STRICT = (Operator.LESS, Operator.GREATER_EQUAL)
 
 
 def drawn_variables(chart: Chart) -> frozenset[str]:
-    """The variables that hold only random numbers: `Math.random()` is assigned to them, and otherwise at most
+    """The variables that hold only random numbers: all values that are assigned to them are `Math.random()` or
     constants."""
     assigned: dict[str, list[Expr | None]] = {}
     for statement in chart.statements:

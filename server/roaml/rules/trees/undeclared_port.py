@@ -10,6 +10,7 @@ from roaml.edit.elements import after, first_in
 from roaml.expr.types import Scalar
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
+from roaml.model.system_file import SystemSection
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.roles import Direction
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -18,7 +19,7 @@ from roaml.rules.support.ports import reads, writes
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.listed_as == {"node_models"}:
+    if context.listed_as == {SystemSection.NODE_MODELS}:
         return  # tree-element-in-node reports that a node has no ports
     ports = {port.key.value: port for port in context.machine.ports if port.key}
     inputs = [key for key in reads(context.machine, context.typed) if key.value not in ports]

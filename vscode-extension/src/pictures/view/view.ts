@@ -5,6 +5,7 @@ import {
     DIRECTIONS,
     type Drawing,
     type FromView,
+    type Lit,
     type Part,
     type Picture,
     type PictureEdge,
@@ -39,6 +40,7 @@ class View {
     private selected = -1;
     private here: Part | null = null;
     private highlighted = "";
+    private lit: Lit = { nodes: {}, edges: [] };
 
     constructor() {
         this.bar.className = "bar";
@@ -70,6 +72,9 @@ class View {
                 break;
             case "highlight":
                 this.highlight(message.node);
+                break;
+            case "light":
+                this.light(message.lit);
                 break;
             case "rasterize":
                 void pngData(message.svg).then((data) => {
@@ -112,6 +117,7 @@ class View {
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
         this.legend.replaceChildren(...legendOf(picture, words).map(entry));
         this.look(this.sight);
+        this.light(this.lit);
         if (this.input.value !== "") this.search();
     }
 
@@ -207,6 +213,25 @@ class View {
         for (const [index, node] of this.scene?.nodes ?? [])
             node.classList.toggle("highlighted", index === highlighted);
         if (highlighted >= 0) this.reveal(highlighted);
+    }
+
+    /** Show where a run is: active states, statuses of nodes, messages. */
+    private light(lit: Lit): void {
+        const { picture, scene } = this;
+        this.lit = lit;
+        if (!picture || !scene) return;
+        for (const [index, group] of scene.nodes) {
+            const look = lit.nodes[picture.nodes[index]?.id ?? ""];
+            if (look === undefined) delete group.dataset["look"];
+            else group.dataset["look"] = look;
+        }
+        for (const [index, groups] of scene.edges) {
+            const edge = picture.edges[index];
+            const isLit = lit.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
+            for (const group of groups) group.classList.toggle("lit", isLit);
+        }
+        const next = picture.nodes.findIndex(({ id }) => lit.nodes[id] === "next" || lit.nodes[id] === "message");
+        if (next >= 0) this.reveal(next);
     }
 
     private parts(part: Part | null): readonly SVGGElement[] {
