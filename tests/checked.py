@@ -13,7 +13,7 @@ from roaml.rules import BY_CODE
 
 
 def check_text(folder: Path, text: str, settings: Settings | None = None) -> tuple[list[Diagnostic], list[Mark]]:
-    """Write the files of `text` into `folder` and check them all as a folder; what is found, what is expected."""
+    """Write the files of `text` into `folder` and check the folder. Return the actual and the expected findings."""
     marks = write_files(folder, text)
     result = api.check([str(folder)], settings=settings or Settings())
     return list(result.diagnostics), marks

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small system without findings, and ways to break it: a clock that publishes a counter."""
+"""A small system without findings, a clock that publishes a counter; and changes that cause findings."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ UNHEARD_CLOCK = (
 
 
 def write(folder: Path, **changed: str) -> Path:
-    """Write the system; `clock="…"` and the like replace a file's text. Its system file."""
+    """Write the system; return its system file. `clock="…"` and similar arguments replace the text of a file."""
     names = {name.partition(".")[0]: name for name in FILES}
     assert changed.keys() <= names.keys()
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The conformance cases that may lie beside the project.
+"""The conformance cases, which may be in a folder beside the project.
 
-Only the files `test_*conformance*.py` need them, and these are not collected where there are none.
+Only the files `test_*conformance*.py` need them. Without the cases, these files are not collected.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PROPERTY_FILES = sorted(set((ROOT / "models").glob("*/**/*.jani")) - set(WHOLE_M
 
 @dataclass(frozen=True)
 class Mistake:
-    """A planted mistake: the folder of a system, and the system file of the same system without it."""
+    """A system with an error on purpose: its folder, and the system file of the same system without the error."""
 
     id: str
     folder: Path
@@ -70,5 +70,5 @@ def mistakes() -> tuple[Mistake, ...]:
 
 
 def label(path: Path) -> str:
-    """A short name for a file of the set."""
+    """A short name for a file of the conformance cases."""
     return path.relative_to(ROOT).as_posix()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all tests share."""
+"""Configuration of all tests."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ import pytest
 import conformance
 from examples import TIMES, examples
 
-# Where containers forbid it, each of the processes that tests start would compile all modules anew, for a second.
+# In containers that forbid writing the cache, each process that a test starts would compile all modules again, which
+# takes a second.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:
-    """Tests of the conformance cases, where there are none; `pytest_terminal_summary` says so."""
+    """Do not collect tests of the conformance cases if there are none. `pytest_terminal_summary` reports this."""
     return True if not conformance.PRESENT and collection_path.match("test_*conformance*.py") else None
 
 
@@ -29,8 +30,8 @@ def pytest_terminal_summary(terminalreporter) -> None:  # type: ignore[no-untype
 
 
 def pytest_collectstart(collector: pytest.Collector) -> None:
-    """Set hypothesis up before the first module that may use it is imported. That takes longer than the tests of a
-    rule, which do not use it."""
+    """Set up hypothesis before the first module that may use it is imported. The tests of rules do not use it, and this
+    takes longer than one of them."""
     if isinstance(collector, pytest.Module) and collector.path.parent.name != "rules":
         _load_profile()
 
@@ -39,6 +40,6 @@ def pytest_collectstart(collector: pytest.Collector) -> None:
 def _load_profile() -> None:
     from hypothesis import settings  # noqa: PLC0415
 
-    # How long an example takes says more about what else the machine does than about the code.
+    # The duration of an example depends more on other work on the machine than on the code.
     settings.register_profile("suite", deadline=None, derandomize=not TIMES, max_examples=examples(100))
     settings.load_profile("suite")

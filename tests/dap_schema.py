@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schema of the Debug Adapter Protocol, as a judge of the messages of the adapter."""
+"""Validates messages of the adapter with the schema of the Debug Adapter Protocol."""
 
 from __future__ import annotations
 
@@ -12,7 +12,17 @@ from jsonschema import Draft4Validator
 from jsonschema.protocols import Validator
 
 SCHEMA = json.loads((Path(__file__).parent / "debug" / "debugAdapterProtocol.json").read_text(encoding="utf-8"))
-CUSTOM = ("choices", "choose", "events", "goToStep", "publish", "saveSession")
+CUSTOM = (
+    "choices",
+    "choose",
+    "events",
+    "exportTimeline",
+    "goToStep",
+    "pictures",
+    "publish",
+    "saveSession",
+    "timeline",
+)
 
 
 @cache

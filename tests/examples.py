@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which examples the tests of hypothesis try, and how many.
+"""The examples that tests with hypothesis try, and their number.
 
-A run of the tests tries the same ones as the last, so that what is found by chance is found when somebody looks for it.
-With `AS2FM_EXAMPLES=20` the tests try 20 times as many, different ones in each run.
+By default, each run tries the same examples, so that a failure can be reproduced. With `AS2FM_EXAMPLES=20`, the tests
+try 20 times as many, different ones in each run.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import os
 
 TIMES = int(os.environ.get("AS2FM_EXAMPLES", "0"))
-"""How many times as many examples as usual; 0 for the usual ones."""
+"""The factor of the number of examples; 0 for the default examples."""
 
 
 def examples(count: int) -> int:
-    """How many examples a test tries of which `count` are enough for most runs."""
+    """The number of examples that a test tries, if `count` are enough for most runs."""
     return count * max(1, TIMES)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 
 def failed(report: Path) -> Iterator[str]:
-    """As pytest takes them, but for classes. If the report does not say, that something failed."""
+    """The names of failed tests as pytest accepts them, without classes. If the report does not contain them, a line
+    that states a failure."""
     names = []
     if report.exists():
         for case in ET.parse(report).iter("testcase"):

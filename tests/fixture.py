@@ -46,7 +46,7 @@ _NAMES = {
 
 @dataclass(frozen=True, order=True)
 class Mark:
-    """`code` is expected at these characters."""
+    """An expected finding: `code` is expected at these characters."""
 
     file: str
     start: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A case as one string: a text, below its lines what is found in them, at the end what becomes of it.
+"""A test case as one string: a text, the findings below its lines, and the result at the end.
 
     a + * b
         ^ a value is missing before `*`
@@ -20,10 +20,12 @@ _RESULT = "=> "
 
 
 class Case:
-    """Attributes:
-    text: what is read.
-    found: (start, end, message) of all that is found, in order.
-    result: what stands behind `=>`.
+    """A test case.
+
+    Attributes:
+        text: the text that is read.
+        found: (start, end, message) of all findings, in order.
+        result: the text after `=>`.
     """
 
     def __init__(self, written: str) -> None:
@@ -43,5 +45,5 @@ class Case:
 
 
 def found(findings: Iterable[Finding]) -> list[tuple[int, int, str]]:
-    """What was found, in the form of `Case.found`."""
+    """The findings in the form of `Case.found`."""
     return sorted((f.span.start, f.span.end, f.message) for f in findings)

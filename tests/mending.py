@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every quick fix keeps its promise: made alone, it removes its diagnostic; a preferred one adds no error."""
+"""The invariants of quick fixes: each fix alone removes its diagnostic, and a preferred one adds no error."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def workspace_of(folder: Path) -> Workspace:
 
 
 def applied(snapshot: Snapshot, change: WorkspaceEdit) -> dict[str, str]:
-    """Path -> text of the files that a change makes or changes."""
+    """Path -> text of the files that an edit changes or creates."""
     texts = dict(change.created)
     for path, edits in change.edits.items():
         source = snapshot.analysis.source(path)
@@ -38,7 +38,7 @@ def applied(snapshot: Snapshot, change: WorkspaceEdit) -> dict[str, str]:
 
 
 def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagnostic, CodeAction]]:
-    """The fixes of all that is reported in a folder, or of what one rule reports."""
+    """The fixes of all findings in a folder, or of the findings of one rule."""
     for diagnostic in found(snapshot):
         if code in (None, diagnostic.code):
             for action in quick_fixes(snapshot, diagnostic.path, diagnostic):
@@ -46,13 +46,13 @@ def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagn
 
 
 def broken_promises(workspace: Workspace, code: str | None = None, *, may_add: Collection[str] = ()) -> Iterator[str]:
-    """What is wrong with the fixes of all that is reported in a folder, or of what one rule reports.
+    """The invariants that the fixes of all findings in a folder, or those of one rule, violate.
 
     Args:
         workspace: the folder.
-        code: of the rule, if it is about one.
-        may_add: the codes of errors that a preferred fix may add. Where several things are wrong at once, mending one
-            may bring another to light.
+        code: the rule; all rules if it is not given.
+        may_add: the codes of errors that a preferred fix may add. If there are several errors at once, a fix of one
+            may reveal another.
     """
     snapshot = workspace.snapshot()
     before = found(snapshot)
@@ -86,7 +86,7 @@ def found(snapshot: Snapshot) -> list[Diagnostic]:
 
 
 def _errors(diagnostics: list[Diagnostic]) -> Counter[tuple[str, str]]:
-    """Path and code of each error. Messages name what is around, which a fix may change."""
+    """Path and code of each error. Messages are not compared, because they contain names that a fix may change."""
     return Counter((d.path, d.code) for d in diagnostics if d.severity is Severity.ERROR)
 
 

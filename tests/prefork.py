@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The program as a process of its own that starts at once: a fork of a process that has imported it already.
+"""The program as a separate process that starts at once, as a fork of a process that has already imported it.
 
-`command()` takes the place of `(sys.executable, "-m", "as2fm_lsp")`. It starts a small program, the caller, which hands
-its standard streams, arguments, folder and environment to the process that has imported everything, the keeper of the
-copies. A fork of that runs the program, and the caller ends as it has ended. If the caller is killed, so is the fork.
+`command()` replaces `(sys.executable, "-m", "as2fm_lsp")`. It starts a small program, the caller, which passes its
+standard streams, arguments, folder and environment to a process that has imported everything, the keeper. A fork of the
+keeper runs the program, and the caller ends with the same status. If the caller is killed, the fork is killed, too.
 
-What the interpreter itself does when it starts and ends is not tested in this way: encoding, buffering and closing of
-the standard streams, signals, what is imported. Tests of these start the real program. `PYTHONUNBUFFERED` and the limit
-of the size of files are obeyed.
+This does not test what the interpreter does at its start and end: encoding, buffering and closing of the standard
+streams, signals, and imports. Tests of these start the real program. `PYTHONUNBUFFERED` and the limit of file sizes
+have an effect.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ _MODULES += ("cli.translate", "cli.verify", "trust")
 
 
 def command() -> tuple[str, ...]:
-    """What is started in place of the program, before its arguments."""
+    """The command that replaces the program, before its arguments."""
     return (sys.executable, "-I", "-S", __file__, _Keeper.address())
 
 
 class _Keeper:
-    """The process that has imported everything, one for each process that runs tests. It ends with that."""
+    """The process that has imported everything, one for each process that runs tests. It ends with that process."""
 
     _address = ""
 
     @classmethod
     def address(cls) -> str:
-        """Of the socket at which it takes requests."""
+        """The address of the socket on which it receives requests."""
         if not cls._address:
             import atexit  # noqa: PLC0415 - the caller, too, runs this file, and is to start at once
             import shutil  # noqa: PLC0415
@@ -70,7 +70,7 @@ class _Keeper:
 
 
 def call(address: str, arguments: list[str]) -> None:
-    """Have the program run with the streams of this process, and end as it ends."""
+    """Let the keeper run the program with the streams of this process, and end with the same status."""
     connection = socket.socket(socket.AF_UNIX)
     connection.connect(address)
     request = {
@@ -105,7 +105,7 @@ def _received(connection: socket.socket, size: int) -> bytes:
 
 
 def keep(address: str) -> None:
-    """Take requests until standard input ends."""
+    """Handle requests until standard input ends."""
     import gc  # noqa: PLC0415
     import importlib  # noqa: PLC0415
 
@@ -127,7 +127,7 @@ def keep(address: str) -> None:
 
 
 def _watch(connection: socket.socket) -> None:
-    """Run the program in a fork of this process; end with it, and it with the caller."""
+    """Run the program in a fork of this process. End with it, and end it if the caller ends."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     head, streams, _, _ = socket.recv_fds(connection, _SIZE.size, len(_STREAMS))
     request = json.loads(_received(connection, _SIZE.unpack(head)[0]))
@@ -147,7 +147,7 @@ def _watch(connection: socket.socket) -> None:
 
 
 def _run(request: dict[str, Any], streams: list[int]) -> None:
-    """The program, in a process that is its own."""
+    """Run the program in its own process."""
     import atexit  # noqa: PLC0415
     import io  # noqa: PLC0415
     import runpy  # noqa: PLC0415

@@ -12,7 +12,7 @@ from fixture import Case, read_cases
 CASES_FOLDER = Path(__file__).parent / "rules" / "cases"
 RULES_FOLDER = Path(__file__).parents[1] / "server" / "roaml" / "rules"
 ALL_RULES = "one_report"
-"""The folder of the cases whose marks are of all rules."""
+"""The folder of the cases whose marks are about all rules."""
 
 _BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 

@@ -12,7 +12,7 @@ PROPERTY = """\
 
 
 def _switch(name: str, timer: str, rate: float, states: tuple[str, str]) -> str:
-    """The file of a machine that a timer moves to and fro."""
+    """The file of a machine that a timer moves between two states."""
     one, other = states
     return f"""\
 -- {name.lower()}.ascxml --
@@ -160,7 +160,7 @@ HOSPITAL = (
 """
     + PROPERTY
 )
-"""Eight machines. `Fetch` answers its tick when the pharmacy responds, and that responds when time passes."""
+"""Eight machines. `Fetch` answers its tick when the pharmacy responds, which responds when time passes."""
 
 _ANSWERS_AT_ONCE = """\
 <ascxml name="Fetch" version="1.0" initial="ready">
@@ -212,9 +212,9 @@ def system(machines: dict[str, str], tree: str = "", more: str = "") -> dict[str
     """File name -> text of a system.
 
     Args:
-        machines: name -> what is inside of its `<ascxml>`, the name of the initial state first; names of plugins are
-            those of the tree.
-        tree: what is inside of its `<BehaviorTree>`; "" for none.
+        machines: name -> the content of its `<ascxml>`, preceded by the name of the initial state. The names of plugins
+            are those in the tree.
+        tree: the content of its `<BehaviorTree>`; "" for no tree.
         more: parameters besides `max_time`.
     """
     files = {}
@@ -249,4 +249,4 @@ CROSSED = system(
         for name, asked, served in (("A", "b", "a"), ("B", "a", "b"))
     }
 )
-"""Each machine asks the other one, and serves when it has been answered. There is no clock."""
+"""Each machine sends a request to the other one, and serves after it was answered. There is no clock."""

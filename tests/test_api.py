@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The door of the library: what its signatures name can be imported from it, and a check stays light."""
+"""The public interface of the library: all names in its signatures can be imported from it, and a check imports few
+modules."""
 
 from __future__ import annotations
 
@@ -45,7 +46,7 @@ HEAVY = (
     "ssl",
     "urllib.request",
 )
-"""What a check must not import."""
+"""Modules that a check must not import."""
 
 
 def test_every_name_can_be_imported() -> None:
@@ -75,7 +76,7 @@ def test_answers_name_what_can_be_imported(kind: type) -> None:
 
 
 def named_in(function: object) -> set[str]:
-    """The names in a signature, but those of Python and its standard library."""
+    """The names in a signature, without those of Python and its standard library."""
     return {name for text in function.__annotations__.values() for name in names_of(str(text))}  # type: ignore[attr-defined]
 
 

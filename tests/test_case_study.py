@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The case study gives what `docs/case-study.md` says, and the scaling experiment runs."""
+"""The case study has the results in `docs/case-study.md`, and the script of the scaling experiment runs."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ SECTIONS = {page.stem: {"", *anchors_in(page)} for page in PAGES}
 
 
 def lines() -> Iterator[tuple[str, str]]:
-    """`file:line` and text of each line in which something may be cited."""
+    """`file:line` and text of each line that may contain a citation."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *FOLDERS, "*.md"]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
     for name in listed:

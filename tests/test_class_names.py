@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One name, one thing: no two public classes have the same name, unless it is said here why (docs/STYLE.md#names)."""
+"""No two public classes have the same name, unless this module states the reason (docs/STYLE.md#names)."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ LANGUAGES = {
     "roaml.scxml.model": "SCXML",
     "roaml.xml_syntax.tree": "XML",
 }
-"""Modules whose classes are called as their language calls them, with the language: `Assign` is one thing in SCXML and
-another one in HL-SCXML. Whoever needs two of them imports the module."""
+"""Modules whose classes have the names of their language, with the language: `Assign` is an element of SCXML and one of
+HL-SCXML. Code that needs two of these classes imports the modules."""
 
 KEPT = {
     "Choice": "what a user of the simulator chooses, and what an observer does",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the VS Code extension writes for its users: templates of machines and snippets."""
+"""The files that the VS Code extension writes: templates of machines, and snippets."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ PARTS = {"Topic: publish": IN_TRANSITION, "If": IN_TRANSITION, "Probabilistic ta
 
 
 def expanded(body: list[str]) -> str:
-    """A snippet with its own words in place of what is to be filled in."""
+    """A snippet with its default texts in place of the placeholders."""
     text = "\n".join(body)
     words = dict(re.findall(r"\$\{(\d+)[:|]([^},|]*)[^}]*\}", text))
     text = re.sub(r"\$\{(\d+)[^}]*\}", lambda found: words[found[1]], text)
@@ -61,7 +61,7 @@ def test_templates_make_a_system(tmp_path: Path) -> None:
     files["properties.jani"] = '{"properties": []}'
     files["plugin.ascxml"] = texts["plugin"].replace("NAME", "MyAction")
     diagnostics = check(tmp_path, files, "main.xml")
-    # The node talks to others that are still to be written.
+    # The node communicates with nodes that do not exist yet.
     assert {d.code for d in diagnostics} <= {"topic-without-publisher", "topic-without-subscriber"}
     assert not [d for d in diagnostics if d.path.endswith(("plugin.ascxml", "tree.xml"))]
 
@@ -71,7 +71,7 @@ def test_snippets_are_of_the_language(name: str, tmp_path: Path) -> None:
     around = AROUND.get(name) or PARTS.get(name) or IN_STATE
     text = around.replace("{}", expanded(SNIPPETS[name]["body"]))
     diagnostics = check(tmp_path, {"a.ascxml": text}, "a.ascxml")
-    # Names are the user's to fill in; the form is ours.
+    # The user fills in the names; the test checks the structure.
     form = (
         "xml-",
         "unknown-element",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page on the library is true: its examples are run one after the other, and print what it says."""
+"""The page on the library is correct: its examples run one after the other, and print the output on the page."""
 
 from __future__ import annotations
 

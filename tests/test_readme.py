@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the README shows works: its files make a system, its commands print what it says, its programs run."""
+"""The README is correct: its files form a system, its commands print the shown output, and its programs run."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How parts hold together: no import circles in the faces, one module that knows pygls, no chains of classes."""
+"""Rules on the structure of the code: no import cycles in the user interfaces, one module that depends on pygls, no
+chains of classes."""
 
 from __future__ import annotations
 
@@ -22,11 +23,11 @@ MODULES = {
 }
 TRANSPORT = "as2fm_lsp.transport"
 PUBLIC_OF_PYGLS = ("pygls.exceptions", "pygls.uris")
-"""Plain values and functions, which every module may use."""
+"""Modules with plain values and functions, which every module may import."""
 
 
 def imported(text: str, known: Mapping[str, object]) -> Iterator[str]:
-    """The modules that a module imports, at its start, in its functions, and for the type checker only."""
+    """The modules that a module imports: at its start, in its functions, and only for the type checker."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -67,7 +68,7 @@ def graph_of(texts: Mapping[str, str]) -> dict[str, set[str]]:
 
 
 def test_circles_are_seen() -> None:
-    """Also those that exist for the type checker only."""
+    """Cycles of imports for the type checker are also detected."""
     texts = {
         "a.x": "from a import y",
         "a.y": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from a.z import Z",
@@ -94,7 +95,7 @@ def known_to_all(module: str) -> bool:
 
 
 def private(text: str) -> Iterator[str]:
-    """Names with an underscore that are taken from anything but an object's own class, `os` and named tuples."""
+    """Private names that are used outside their class, except those of `os` and of named tuples."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Attribute) and node.attr.startswith("_") and not node.attr.startswith("__"):
             owner = ast.unparse(node.value)
@@ -107,6 +108,6 @@ def test_private_names_are_seen() -> None:
 
 
 def test_assemblers_hold_each_other() -> None:
-    """They are parts of the compiler that write to one tape, not heirs of each other."""
+    """The parts of the compiler contain each other and write to one tape; they do not inherit from each other."""
     for kind in (AssignmentAssembler, ExpressionAssembler, OperatorAssembler, CellAssembler):
         assert kind.__bases__ == (object,)

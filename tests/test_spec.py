@@ -39,7 +39,7 @@ _ROOT = re.compile(r"\s*<(?:ascxml|scxml|roaml|root|types)\b")
 
 
 def files_in(page: Path) -> dict[str, str]:
-    """The complete files of a page, by name."""
+    """The complete files on a page, by name."""
     return {name: content for name, _, content in _BLOCK.findall(page.read_text(encoding="utf-8")) if name}
 
 
@@ -128,7 +128,7 @@ def test_the_example_of_a_translation(tmp_path: Path) -> None:
 
 
 def listing(automaton: Any) -> str:
-    """The edges of an automaton in JANI, one below the other."""
+    """The edges of an automaton in JANI, one in each line."""
     lines = [f"{automaton['name']}, initially {automaton['initial-locations'][0]}"]
     for edge in automaton["edges"]:
         guard = f"  [{infix(edge['guard']['exp'])}]" if "guard" in edge else ""
@@ -141,7 +141,7 @@ def listing(automaton: Any) -> str:
 
 
 def infix(expression: Any) -> str:
-    """An expression in JANI as people write it; this covers what the example needs."""
+    """An expression in JANI in the usual notation. Only the operators of the example are supported."""
     match expression:
         case bool():
             return str(expression).lower()
@@ -156,7 +156,7 @@ def infix(expression: Any) -> str:
 
 
 def section(page: str, anchor: str) -> str:
-    """The text of a section, without that of the next one."""
+    """The text of a section, up to the next section."""
     text = (SPEC / f"{page}.md").read_text(encoding="utf-8")
     return text.split(f'<a id="{anchor}"></a>')[1].partition("<a id=")[0]
 
@@ -169,7 +169,7 @@ def rows(page: str, anchor: str) -> Iterator[list[str]]:
 
 
 def words(text: str) -> list[str]:
-    """What is in backquotes."""
+    """The texts in backquotes."""
     return re.findall(r"`([^`]+)`", text)
 
 

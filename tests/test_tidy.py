@@ -116,7 +116,7 @@ def test_examples_are_clean() -> None:
 
 
 def test_nothing_names_a_machine_or_registry() -> None:
-    """No path of a machine and no registry host in what is committed."""
+    """Committed files contain no path of a machine and no registry host."""
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
     wrong = []
     for name in listed:

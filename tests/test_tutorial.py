@@ -32,7 +32,8 @@ _COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
 
 
 class Block(NamedTuple):
-    """`before` is the text between the block before and this one; `line` is where the block begins."""
+    """A block of code. `before` is the text between the previous block and this one; `line` is the line where the block
+    begins."""
 
     language: str
     content: str
@@ -48,7 +49,7 @@ def blocks(text: str) -> Iterator[Block]:
 
 
 def patched(text: str, diff: str) -> str:
-    """The text with a change made, which must fit in exactly one place."""
+    """The text after a change, which must fit in exactly one place."""
     lines = diff.splitlines()
     old, new = ("".join(f"{line[1:]}\n" for line in lines if line[:1] != sign) for sign in "+-")
     places = [match.start() for match in re.finditer(f"^{re.escape(old)}", text, re.MULTILINE)]
@@ -61,7 +62,7 @@ def timeless(text: str) -> str:
 
 
 class Reader:
-    """Does in the current folder what a reader of the tutorial does."""
+    """Performs the steps of a reader of the tutorial in the current folder."""
 
     def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
         self.capsys = capsys
@@ -69,7 +70,7 @@ class Reader:
         self.status = 0
 
     def take(self, block: Block) -> None:
-        """Take the step that a block asks for."""
+        """Perform the step that a block describes."""
         if names := _FILE.findall(block.before):
             self.file = Path(names[-1])
         match block.language:
@@ -85,7 +86,7 @@ class Reader:
                 assert block.language == "sh", f"nothing is known of blocks of {block.language or 'no language'}"
 
     def printed(self, command: str) -> str:
-        """What a command prints."""
+        """The output of a command."""
         match shlex.split(command):
             case ["cd", folder]:
                 os.chdir(folder)
@@ -114,7 +115,7 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
 
 
 def test_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """The page on trees with mocks; its tree is that of the example."""
+    """The page on trees with mocks. Its tree is that of the example."""
     monkeypatch.chdir(tmp_path)
     reader = Reader(capsys)
     for block in blocks(TREES.read_text("utf-8")):

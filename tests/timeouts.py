@@ -4,4 +4,4 @@
 from __future__ import annotations
 
 TIMEOUT_S = 300.0
-"""Prevents only an endless wait: other work on the machine makes a process slow, not wrong."""
+"""Only prevents an endless wait, because other work on the machine can make a process slow."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kernel of the model checker as plain Python, beside the one that is in use."""
+"""The kernel of the model checker as plain Python, for comparisons with the kernel that is in use."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from roaml.smc.program import UNKNOWN
 def difference(
     checker: ModelChecker, asked: CompiledProperty, seed: int, traces: int, steps: int, scheduler: int = 0
 ) -> str:
-    """What the two kernels disagree about, "" if nothing: verdict, end, steps, random numbers, rewards, all values,
-    faults, and what was done last."""
+    """The differences between the two kernels, "" if there are none: verdict, end, steps, random numbers, rewards, all
+    values, faults, and the last step."""
     compiled = checker.compiled(asked)
     both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
     for trace in range(traces):

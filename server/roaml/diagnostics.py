@@ -39,10 +39,10 @@ class Tag(enum.Enum):
 
 
 class Symbol(NamedTuple):
-    """A named thing in a file, independent of its position. `kind` is the kind of symbol that the schemas define for
-    the value.
+    """A definition in a file, identified by its name instead of its position. `kind` is the kind of symbol that the
+    schemas assign to the value.
 
-    `scope` distinguishes equal names (for example by the thread that contains a state); it is empty for most kinds.
+    `scope` distinguishes equal names, for example by the thread that contains a state. It is empty for most kinds.
     """
 
     path: str
@@ -69,9 +69,9 @@ class Fix:
     Attributes:
         title: a phrase in the imperative.
         plan: the edits, or a function that computes all of them.
-        preferred: whether it is the one obvious fix.
-        safe: whether it removes nothing that has an effect and guesses nothing, so that it may be applied without a
-            review.
+        preferred: whether the fix is the obvious one, as in LSP's `isPreferred`.
+        safe: whether the fix removes nothing that has an effect and guesses nothing, so that it may be applied without
+            a review.
     """
 
     title: str
@@ -103,7 +103,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class RelatedPlace:
-    """A `Related` whose place has been resolved."""
+    """A `Related` whose place has been resolved to a location in a file."""
 
     location: Location
     message: str

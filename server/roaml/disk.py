@@ -37,7 +37,8 @@ class UnreadableReason(enum.Enum):
 
 
 class NotReadableError(OSError):
-    """A required file does not exist, is of the wrong kind, or is too large. `problem` is the reason."""
+    """Raised for a required file that does not exist, is of the wrong kind, or is too large. `problem` is the
+    reason."""
 
     def __init__(self, path: str, problem: UnreadableReason, most: int) -> None:
         words = f"it is larger than {most // MEGABYTE} MB" if problem is UnreadableReason.TOO_LARGE else problem.value
@@ -49,7 +50,7 @@ class NotReadableError(OSError):
 
 
 def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | UnreadableReason:
-    """The status of a regular file of at most `most` bytes; links are followed."""
+    """The status of a regular file of at most `most` bytes, or why the file cannot be read. Links are followed."""
     try:
         status = os.stat(path)
     except (FileNotFoundError, NotADirectoryError):
@@ -60,7 +61,7 @@ def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | UnreadableRe
 
 
 def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | UnreadableReason:
-    """The content of a regular file.
+    """The content of a regular file, or why it cannot be read.
 
     Args:
         most: the maximum size in bytes; a larger file is not read.

@@ -42,11 +42,11 @@ def facts_from_json(type_: type[T], value: object) -> T | None:
 
 
 class _MismatchError(Exception):
-    """A value does not fit the type of its field."""
+    """Raised for a value that does not fit the type of its field; never leaves this module."""
 
 
 def _hints(type_: Any) -> dict[str, Any]:
-    """Name -> type, for each field of a dataclass."""
+    """The types of the fields of a dataclass, by their names."""
     hints = typing.get_type_hints(type_)
     return {field.name: hints[field.name] for field in fields(type_)}
 

@@ -33,7 +33,7 @@ def did_you_mean(names: tuple[str, ...], most: int = 1) -> str:
 
 
 def listing(names: Iterable[str]) -> str:
-    """`a`, `b` and `c`."""
+    """The names in quotes, as in `a`, `b` and `c`; "none" if there are no names."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"
 
@@ -42,14 +42,15 @@ def close_names(name: str, candidates: Iterable[str], most: int = 3) -> tuple[st
     """The candidates that are similar to `name`, the most similar first.
 
     At most `MAX_COMPARED` candidates are compared, so that the time is linear even with many unknown names and many
-    candidates. If there are more, those are compared that differ in one letter, or that begin or end like `name`.
+    candidates. If there are more, only candidates that differ in one letter, or that begin or end like `name`, are
+    compared.
     """
     return _close_names(name[:MAX_LENGTH], tuple(candidates), most)
 
 
 @functools.lru_cache(maxsize=256)
 def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str, ...]:
-    """The cached result of `close_names`: the same unknown name often occurs many times."""
+    """The result of `close_names`, which is cached because the same unknown name often occurs many times."""
     lower = name.lower()
     if len(candidates) <= MAX_COMPARED:
         by_lower = {candidate.lower(): candidate for candidate in candidates}
@@ -81,7 +82,7 @@ class _Index:
                     same.append(name)
 
     def likely(self, name: str) -> list[str]:
-        """At most `6 * _NEIGHBOURS` names that may be similar, those that differ in one letter first."""
+        """At most `6 * _NEIGHBOURS` names that may be similar. Names that differ in one letter come first."""
         one_letter_away = (match for shorter in _shortened(name) for match in self._shortened.get(shorter, ()))
         matches = dict.fromkeys(itertools.islice(one_letter_away, 2 * _NEIGHBOURS))
         matches |= dict.fromkeys(_around(name, self._forward))
@@ -109,7 +110,7 @@ def _around(name: str, names: Sequence[str]) -> Sequence[str]:
 
 
 def are_similar(name: str, other: str) -> bool:
-    """Whether `other` may be intended where `name` is written."""
+    """Whether the names are so similar that `name` may be a misspelling of `other`."""
     return len(other) <= 2 * MAX_LENGTH and bool(close_names(name, (other,)))
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Source text and places in it.
 
-Coordinate systems, named once:
+There are three coordinate systems:
 
 - an *offset* counts code points of the decoded text, from 0; a `Span` is a half-open range of offsets;
 - a *position* is a zero-based line and a zero-based column in code points (`LineIndex` converts);
@@ -45,21 +45,21 @@ def span_of(ends: tuple[int, int]) -> Span:
 
 
 class Location(NamedTuple):
-    """A span in a file. `path` is absolute, in the form of the running system."""
+    """A span in a file. `path` is an absolute path of the operating system."""
 
     path: str
     span: Span
 
 
 class Position(NamedTuple):
-    """Zero-based line and column, the column in code points."""
+    """A zero-based line and a zero-based column, which counts code points."""
 
     line: int
     column: int
 
 
 class TextEdit(NamedTuple):
-    """Replaces the text in `span`; an empty span inserts."""
+    """An edit that replaces the text in `span` by `new_text`. If the span is empty, it is an insertion."""
 
     span: Span
     new_text: str
@@ -172,7 +172,7 @@ def _ends(text: str) -> Iterable[int]:
     """The offset after the end of each line."""
     if "\r" in text:
         return (match.end() for match in _LINE_END.finditer(text))
-    # This runs at each keystroke; finding the ends one by one takes four times as long.
+    # This runs at each keystroke. Finding the line ends one by one would take four times as long.
     *lines, _ = text.split("\n")
     return accumulate(len(line) + 1 for line in lines)
 

@@ -3,6 +3,6 @@
 
     .venv/bin/python tests/bench/run.py [NAME...]
 
-A benchmark is a function that gives rows of the table. Those of the checker are in `check`; others stand beside it and
-are listed in `__main__`.
+A benchmark is a function that returns rows of the table. Those of the checker are in `check`; other modules are listed
+in `__main__`.
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The checker: whole folders, the server as an editor uses it, the command line, and how times grow with a system."""
+"""Benchmarks of the checker: whole folders, the server as an editor uses it, the command line, and the growth of times
+with the size of a system."""
 
 from __future__ import annotations
 
@@ -22,14 +23,14 @@ SYSTEM_FILES = 30
 SESSIONS = 5
 RUNS = 5
 GROWTH = (10, 30, 100, 300)
-"""Machines in a system."""
+"""The numbers of machines in a system."""
 
 RIGHT, WRONG = 'expr="0"', 'expr="O"'
-"""A document must begin with a mistake: a server says nothing of one that has none."""
+"""An error at the beginning of a document, because the server publishes nothing for a document without findings."""
 
 
 def models() -> list[Row]:
-    """Many small systems, checked at once."""
+    """The check of many small systems at once."""
     if conformance.PRESENT:
         name, folder, ros_path = "conformance models", conformance.ROOT / "models", str(conformance.INTERFACES)
     else:
@@ -40,7 +41,7 @@ def models() -> list[Row]:
 
 
 def editing() -> list[Row]:
-    """Typing in a long machine of a system, and what the server holds in memory after it."""
+    """Typing in a long machine of a system, and the memory of the server afterwards."""
     with system(SYSTEM_FILES) as folder:
         lines = (folder / FIRST).read_text(encoding="utf-8").count("\n")
         took, memory = zip(*(session(folder) for _ in range(SESSIONS)), strict=True)
@@ -57,7 +58,7 @@ def editing() -> list[Row]:
 
 
 def session(folder: Path) -> tuple[list[float], int | None]:
-    """The seconds that a server takes for each key, the next being pressed when it has answered; then its memory."""
+    """The time in s that a server takes for each key, if the next key is pressed after the answer; and its memory."""
     path = folder / FIRST
     took = []
     with opened(folder) as (server, text):
@@ -70,8 +71,8 @@ def session(folder: Path) -> tuple[list[float], int | None]:
 
 @contextmanager
 def opened(folder: Path, rest: float = 0.0) -> Iterator[tuple[Server, str]]:
-    """A server with the long machine open in its second version and looked at, after a rest of so many seconds; and the
-    text."""
+    """A server in which the second version of the long machine is open and checked, after a pause of some seconds; and
+    the text of the machine."""
     path = folder / FIRST
     text = path.read_text(encoding="utf-8")
     with started() as server:
@@ -85,7 +86,7 @@ def opened(folder: Path, rest: float = 0.0) -> Iterator[tuple[Server, str]]:
 
 
 def cold_start() -> list[Row]:
-    """From nothing to the first diagnostics in the editor."""
+    """The time from the start of the server to the first diagnostics in the editor."""
     took = []
     with system(SYSTEM_FILES) as folder:
         path = folder / FIRST
@@ -101,7 +102,7 @@ def cold_start() -> list[Row]:
 
 
 def large_file() -> list[Row]:
-    """Opening what nobody should open."""
+    """Opening a very large file."""
     lines = 1000
     text = machine(0, 2, round(lines * 10e6 / len(machine(0, 2, lines))))
     took = []
@@ -120,7 +121,7 @@ def large_file() -> list[Row]:
 
 
 def command_line() -> list[Row]:
-    """A whole call, as in CI."""
+    """A whole call of the command line, as in CI."""
     main = EXAMPLES / "delivery_robot" / "main.xml"
     took = []
     for _ in range(9):
@@ -132,7 +133,7 @@ def command_line() -> list[Row]:
 
 
 def formatting() -> list[Row]:
-    """Laying out a whole folder, as a hook does before each commit."""
+    """Formatting of a whole folder, as a hook does before each commit."""
     folder = conformance.ROOT / "models" if conformance.PRESENT else EXAMPLES
     took = []
     for _ in range(RUNS):
@@ -146,7 +147,7 @@ def formatting() -> list[Row]:
 
 
 def growth() -> list[Row]:
-    """Whether a system of twice the size takes twice the time."""
+    """The growth of the time of a check with the size of a system."""
     medians = []
     for machines in GROWTH:
         with system(machines + 3) as folder:
@@ -179,7 +180,7 @@ print(len(result.files), time.perf_counter() - before)
 
 
 def checks(path: Path, runs: int, *ros_paths: str) -> tuple[int, list[float]]:
-    """How many files were checked, and the seconds that it took in each of some processes, imports not counted."""
+    """The number of checked files, and the time in s of the check in each of some processes, without imports."""
     files, took = 0, []
     for _ in range(runs):
         command = [sys.executable, "-c", _CHECK, str(path), *filter(None, ros_paths)]

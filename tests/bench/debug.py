@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The debug adapter: how long a launch, a step and a jump take, as a client sees it."""
+"""Benchmarks of the debug adapter: the time of a launch, a step and a jump, as a client measures it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def launch() -> list[Row]:
 
 
 def moves() -> list[Row]:
-    """Steps and jumps in the conformance model with the most automata, otherwise in the example."""
+    """Steps and jumps in the conformance model with the most automata; in the example if there are no conformance
+    models."""
     main = conformance.ROOT / "models" / "uc3_museum_guide" / "Main" / "main.xml"
     main = main if main.is_file() else ROBOT
     with Client(validates=False) as client:

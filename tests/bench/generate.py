@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems of any size, always the same for the same numbers, with nothing in them to complain about.
+"""Generates systems of any size without findings. Equal arguments give equal systems.
 
-`write_system` makes a ring of machines: each publishes on its own topics and listens to those of its neighbours, serves
-one service and calls another, sends plain events and computes with structs and arrays. The first machine is as long as
-asked for.
+`write_system` writes a ring of machines. Each publishes on its own topics and subscribes to those of its neighbours,
+serves one service and calls another one, sends plain events, and computes with structs and arrays. The length of the
+first machine is given.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ _SHARED_FILES = 3
 
 
 def write_system(folder: Path, files: int = 30, lines: int = 700, small_lines: int = 120) -> Path:
-    """Write a system of so many files; `FIRST` has about `lines` lines, the others `small_lines`. Its system file."""
+    """Write a system with a given number of files; return its system file. `FIRST` has about `lines` lines, the others
+    have `small_lines`."""
     folder.mkdir(parents=True, exist_ok=True)
     machines = files - _SHARED_FILES
     for number in range(machines):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the check grows with what it looks at, one dimension after the other: each ten times as large as before."""
+"""The growth of the time of a check with each dimension of a system: the second size is ten times the first one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roaml import api
 from roaml.project.settings import Settings
 
 LARGEST = 2000
-"""The larger of the two sizes. What is enormous is refused, which takes no time at any size."""
+"""The larger of the two sizes. Enormous systems are rejected, which takes no time at any size."""
 
 
 def growth() -> list[Row]:
@@ -27,7 +27,7 @@ def growth() -> list[Row]:
 
 
 def _time(dimension: Dimension, size: int) -> float:
-    """Seconds of processor time, the best of three."""
+    """CPU time in s, the best of three runs."""
     texts = dimension.texts(size)
     times = []
     for _ in range(3):

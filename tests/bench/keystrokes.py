@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Typing in a generated machine, key by key.
 
-A name, a tag, an expression loses its last character and gets it back; then a new statement is written from its first
-character to its last. Before or after every key the text has a mistake, so that the server has something to say of it.
+A name, a tag or an expression loses its last character and gets it back; then a new statement is written character by
+character. Before or after every key, the text contains an error, so that the server publishes diagnostics.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ WORDS = (
     "</ros_topic_callback",
     'expr="_res.sum',
 )
-"""What loses its last character. Some are seen by other files, as the names of topics and events are."""
+"""The words that lose their last character. Other files depend on some of them, such as the names of topics and events.
+"""
 
 STATEMENT = '<assign location="counter" expr="Math.max(counter - 2, 0)" />'
 
@@ -43,19 +44,19 @@ class Key(NamedTuple):
     text: str
 
     def change(self) -> dict[str, Any]:
-        """Its content change."""
+        """The content change of this key in the protocol."""
         start, end = position(self.before, self.start), position(self.before, self.end)
         return {"range": {"start": start, "end": end}, "text": self.inserted}
 
 
 def position(text: str, offset: int) -> dict[str, int]:
-    """Of a text in ASCII, whose columns are the same in all encodings."""
+    """The position of an offset in an ASCII text, whose columns are the same in all encodings."""
     return {"line": text.count("\n", 0, offset), "character": offset - text.rfind("\n", 0, offset) - 1}
 
 
 def keys(text: str, rounds: int = 3) -> Iterator[Key]:
-    """Each word backwards and forwards `rounds` times, at different places; then the statement. The text is as before
-    in the end, but for the statement."""
+    """The keys for all words, `rounds` times at different places, and then for the statement. The final text is the
+    original one with the statement."""
     yield from word_keys(text, rounds)
     at = _place(text, "<assign ", rounds)
     for character in STATEMENT:
@@ -65,13 +66,14 @@ def keys(text: str, rounds: int = 3) -> Iterator[Key]:
 
 
 def word_keys(text: str, rounds: int = 3, words: Sequence[str] = WORDS) -> Iterator[Key]:
-    """Each word backwards and forwards `rounds` times, at different places. The text is as before in the end."""
+    """The keys that remove and restore the last character of each word, `rounds` times at different places. The final
+    text is the original one."""
     for end in places(text, rounds, words):
         yield from _retyped(text, end)
 
 
 def places(text: str, rounds: int = 3, words: Sequence[str] = WORDS) -> list[int]:
-    """Where the words end of which `word_keys` takes the last character."""
+    """The ends of the words from which `word_keys` removes the last character."""
     return [_place(text, word, number) + len(word) for number in range(rounds) for word in words]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A diagram of times over sizes, both on logarithmic scales: what grows linearly runs along the grey lines."""
+"""A diagram of times by sizes, with logarithmic scales on both axes. Linear growth is parallel to the grey lines."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ WIDTH, HEIGHT, MARGIN = 560, 380, 56
 COLORS = ("#1f6feb", "#c2410c", "#15803d")
 
 Point = tuple[float, float]
-"""Where it stands across and up."""
+"""The place of the plot in the picture."""
 
 
 def svg(
@@ -18,10 +18,11 @@ def svg(
     across: str = "size of the JANI file in MB",
     up: str = "translating and writing in s",
 ) -> str:
-    """
+    """A diagram as SVG.
+
     Args:
         series: name -> points. All numbers are positive.
-        across, up: what the axes show.
+        across, up: the labels of the axes.
     """
     return "".join(f"{line}\n" for line in _lines(series, across, up))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all benchmarks share: figures, and how they are shown."""
+"""Figures that all benchmarks share, and their display."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ median = statistics.median
 
 
 class Row(NamedTuple):
-    """A line of the table. `target` is empty where there is none; `method` says in words what was measured and how."""
+    """A row of the table. `target` is empty if there is none; `method` describes what was measured and how."""
 
     measure: str
     value: str
@@ -26,7 +26,7 @@ Benchmark: TypeAlias = Callable[[], list[Row]]
 
 
 def percentile(values: Sequence[float], percent: int) -> float:
-    """The smallest of the values that is not less than so many percent of them."""
+    """The smallest value that is not less than a given percentage of the values."""
     return sorted(values)[max(0, -(-len(values) * percent // 100) - 1)]
 
 
@@ -49,7 +49,7 @@ def table(rows: Iterable[Row]) -> str:
 
 
 def machine() -> str:
-    """The machine as far as it matters for the figures, without its name."""
+    """A description of the machine, without its name."""
     return f"{os.cpu_count()} cores of an {_processor()}, {platform.system()}, Python {platform.python_version()}"
 
 

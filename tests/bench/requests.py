@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an editor asks while somebody reads and writes: each request after a rest, and right behind a key.
+"""Requests that an editor sends while a user reads and types: each request after a pause, and directly after a key.
 
-What a server does not offer is not asked, and its row is left out.
+Requests that a server does not support are not sent, and their rows are omitted.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from bench.server import Server, is_answer, is_diagnostics
 
 SESSIONS = 2
 BURST = 100
-"""Keys that are pressed without waiting for anything."""
+"""The number of keys that are pressed without waiting for answers."""
 
 PAUSES = (0.0, 0.01, 0.03)
-"""Seconds between them: pasted by a terminal, faster than anybody types, a key that is held down."""
+"""The times in s between these keys: pasted by a terminal, faster than anybody types, a key that is held down."""
 
 REST = 0.5
-"""Seconds in which a server that has just been started can look at the other files."""
+"""The time in s that a server has after its start to check the other files."""
 
 RENAMES = 5
-"""How often each thing is renamed."""
+"""The number of renames of each symbol."""
 
 ASKED_WHILE_TYPING = ("completion", "semantic tokens")
 
 _ID = 1000
-"""The numbers of requests begin here."""
+"""The number of the first request."""
 
 RENAMED = (
     '<data id="here',
@@ -45,15 +45,17 @@ RENAMED = (
     'location="here.x',
     'service_name="/ring/add_0',
 )
-"""What is renamed, by the text before the end of its name: a variable, a topic, a state, an event, a member of a struct
-that each machine uses, a service."""
+"""The renamed symbols, given by the text up to the end of the name: a variable, a topic, a state, an event, a member of
+a struct that each machine uses, a service."""
 
 
 class Request(NamedTuple):
-    """Attributes:
-    capability: the property of the server's capabilities that offers it.
-    more: its parameters but for the document and the position.
-    whole: whether it is about a whole document.
+    """A request of an editor.
+
+    Attributes:
+        capability: the property of the server's capabilities that declares support for the request.
+        more: its parameters except the document and the position.
+        whole: whether it is about a whole document.
     """
 
     name: str
@@ -114,7 +116,7 @@ def _row(request: Request, when: str, took: Sequence[float]) -> Row:
 
 
 def at_rest(server: Server, path: Path, text: str, request: Request) -> Iterator[float]:
-    """The seconds that each answer takes when nothing else is to be done."""
+    """The time in s of each answer while the server has no other work."""
     for number, offset in enumerate(_offsets(text, request)):
         sent = server.tell(request.method, request.params(path, position(text, offset)), _ID + number)
         arrived, answer = server.answer(_ID + number)
@@ -123,8 +125,8 @@ def at_rest(server: Server, path: Path, text: str, request: Request) -> Iterator
 
 
 def behind_keys(server: Server, path: Path, text: str, request: Request) -> Iterator[float]:
-    """The seconds that each answer takes when it is asked for together with the news of a key. The next key is pressed
-    when the diagnostics have come."""
+    """The time in s of each answer if the request is sent together with the change of a key. The next key is pressed
+    after the diagnostics have arrived."""
     for version, key in enumerate(keys(text), 3):
         offset = key.start + len(key.inserted)
         if request.name == "rename":
@@ -137,7 +139,7 @@ def behind_keys(server: Server, path: Path, text: str, request: Request) -> Iter
 
 
 def burst() -> list[Row]:
-    """Keys that come faster than they can be looked at, with what an editor asks after each."""
+    """Keys in quick succession, with the requests that an editor sends after each."""
     plain, asking = [], []
     with system(SYSTEM_FILES) as folder:
         for _ in range(SESSIONS):
@@ -157,12 +159,12 @@ def burst() -> list[Row]:
 
 
 def after_burst(folder: Path, pause: float, names: Sequence[str]) -> float:
-    """The seconds from the last key to its diagnostics; `pause` is the time between keys, in seconds."""
+    """The time in s from the last key to its diagnostics. `pause` is the time in s between keys."""
     path = folder / FIRST
     with opened(folder, REST) as (server, text):
         offered = [each for each in REQUESTS if each.name in names and each.capability in server.capabilities]
         sent, version = 0.0, 2
-        for key in islice(keys(text), BURST + 1):  # in the end a word lacks a letter: there is something to say
+        for key in islice(keys(text), BURST + 1):  # the final text contains a misspelled word, so there are diagnostics
             for number in range(len(offered)):
                 server.tell("$/cancelRequest", {"id": _ID * version + number})
             version += 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m bench`, wherever it is started from."""
+"""Runs `python -m bench` from any folder."""
 
 from __future__ import annotations
 

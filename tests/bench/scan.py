@@ -49,7 +49,7 @@ def call(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def folders_that_scan_reads() -> list[Row]:
-    """Whether SCAN reads the machines of each conformance system."""
+    """The conformance systems whose machines SCAN reads."""
     rows = []
     for path in sorted((conformance.ROOT / "models").glob("*/main.xml")):
         with tempfile.TemporaryDirectory() as folder:
@@ -62,7 +62,7 @@ def folders_that_scan_reads() -> list[Row]:
 
 
 def properties_in_scan() -> list[Row]:
-    """The values and times of lowered properties in SCAN, beside ours."""
+    """The values and times of lowered properties in SCAN and in `verify`."""
     rows = []
     for path in sorted((conformance.ROOT / "xml-properties").glob("*/main.xml")):
         source = api.load(str(path), [str(conformance.INTERFACES)])

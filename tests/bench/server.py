@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A language server as a process, spoken to over its standard input and output.
+"""A language server as a process, with which the benchmark communicates over standard input and output.
 
-Messages are built before the clock starts, and a thread notes when each answer arrives, so that what is timed is the
-server: its process, its reading and its writing.
+Messages are prepared before the measurement, and a thread records when each answer arrives. So the measured time is
+that of the server: its computation, its reading and its writing.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ from timeouts import TIMEOUT_S
 COMMAND = (sys.executable, "-m", "as2fm_lsp")
 
 Wanted: TypeAlias = Callable[[dict[str, Any]], bool]
-"""Whether a message is waited for."""
+"""A function that returns whether a message is the expected one."""
 
 
 class Server:
-    """Attributes:
-    started: when its process was started, in seconds of `time.perf_counter`.
-    capabilities: what it says it can do.
+    """A server process.
+
+    Attributes:
+        started: when the process was started, in s of `time.perf_counter`.
+        capabilities: the capabilities that the server declares.
     """
 
     def __init__(self, command: Sequence[str] = COMMAND) -> None:
@@ -45,10 +47,11 @@ class Server:
     def initialize(
         self, folder: Path, capabilities: dict[str, Any] | None = None, options: dict[str, Any] | None = None
     ) -> None:
-        """
+        """Initialize the server.
+
         Args:
-            capabilities: of the client.
-            options: for this server.
+            capabilities: the capabilities of the client.
+            options: the initialization options.
         """
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
         params = {"processId": None, "workspaceFolders": folders, "capabilities": capabilities or {}}
@@ -57,17 +60,17 @@ class Server:
         self.tell("initialized", {})
 
     def open(self, path: Path, text: str) -> float:
-        """Open a document; the time just before."""
+        """Open a document; return the time directly before."""
         document = {"uri": path.as_uri(), "languageId": "ascxml", "version": 1, "text": text}
         return self.tell("textDocument/didOpen", {"textDocument": document})
 
     def change(self, path: Path, version: int, change: dict[str, Any]) -> float:
-        """Tell of one change in a document; the time just before."""
+        """Send a change of a document; return the time directly before."""
         document = {"uri": path.as_uri(), "version": version}
         return self.tell("textDocument/didChange", {"textDocument": document, "contentChanges": [change]})
 
     def tell(self, method: str, params: object, id_: int | None = None) -> float:
-        """Send a message; the time just before."""
+        """Send a message; return the time directly before."""
         message = {"jsonrpc": "2.0", "method": method, "params": params}
         body = json.dumps(message if id_ is None else {**message, "id": id_}).encode()
         stdin = self._process.stdin
@@ -78,25 +81,25 @@ class Server:
         return before
 
     def diagnostics(self, path: Path, version: int) -> tuple[float, list[dict[str, Any]]]:
-        """Wait for the diagnostics of a version of a document: when they arrived, and what they are."""
+        """Wait for the diagnostics of a version of a document. Return when they arrived, and the diagnostics."""
         at, message = self.wait(is_diagnostics(path, version))
         found: list[dict[str, Any]] = message["params"]["diagnostics"]
         return at, found
 
     def answer(self, id_: int) -> tuple[float, dict[str, Any]]:
-        """Wait for the answer to a request, and when it arrived."""
+        """Wait for the answer to a request. Return when it arrived."""
         return self.wait(is_answer(id_))
 
     def wait(self, wanted: Wanted) -> tuple[float, dict[str, Any]]:
-        """The first message from now on that is wanted, and when it arrived; others are dropped.
+        """The next message that is expected, and when it arrived. Other messages are discarded.
 
         Raises:
-            TimeoutError: it does not come.
+            TimeoutError: the message does not arrive.
         """
         return self.wait_for_all(wanted)[0]
 
     def wait_for_all(self, *wanted: Wanted) -> list[tuple[float, dict[str, Any]]]:
-        """The same for several messages, in whatever order they come."""
+        """Like `wait`, for several messages in any order."""
         found: dict[Wanted, tuple[float, dict[str, Any]]] = {}
         while len(found) < len(wanted):
             try:
@@ -111,7 +114,7 @@ class Server:
         return [found[each] for each in wanted]
 
     def resident_memory(self) -> int | None:
-        """Bytes; None where the system has no /proc."""
+        """The resident memory in bytes; `None` on systems without /proc."""
         status = Path(f"/proc/{self._process.pid}/status")
         if not status.is_file():
             return None

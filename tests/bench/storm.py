@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exact probabilities that take too long for a test: Storm's sparse engine on large state spaces."""
+"""Exact probabilities that Storm's sparse engine computes on large state spaces, which takes too long for a test."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from bench.report import Benchmark, Row, seconds
 
 
 class Expected(NamedTuple):
-    """What Storm 1.11.3 found in the reference's translation: the probability, and the states for it."""
+    """The result of Storm 1.11.3 for the translation of the reference translator: the probability, and the number of
+    states."""
 
     system: str
     property: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What benchmarks measure is what they say. That they are fast is for people to judge."""
+"""Benchmarks measure what they describe. The tests do not check times."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The translation: the largest conformance model, whole calls of the command line, and how time and memory grow."""
+"""Benchmarks of the translation: the largest conformance model, whole calls of the command line, and the growth of time
+and memory."""
 
 from __future__ import annotations
 
@@ -26,7 +27,7 @@ CAPACITIES = (10, 100, 1000, 10_000)
 
 
 def largest() -> Path:
-    """The conformance model with the most edges; an example where there are none."""
+    """The conformance model with the most edges; an example if there are no conformance models."""
     models = conformance.systems() or (EXAMPLES / "delivery_robot" / "main.xml",)
     return max(models, key=lambda path: sum(len(a.edges) for a in api.to_jani(_load(path)).automata))
 
@@ -36,7 +37,7 @@ def _load(path: Path) -> api.LoadedSystem:
 
 
 def one_model() -> list[Row]:
-    """Without reading, and without the start of a process."""
+    """The translation of one model, without reading and without the start of a process."""
     path = largest()
     loaded = _load(path)
     translating, writing = [], []
@@ -72,7 +73,7 @@ def command_line() -> list[Row]:
 
 
 class Run(NamedTuple):
-    """One translation in a process of its own: times in s, sizes in bytes."""
+    """One translation in a separate process: times in s, sizes in bytes."""
 
     translate: float
     write: float
@@ -82,7 +83,7 @@ class Run(NamedTuple):
 
 @cache
 def growing_machines() -> list[Run]:
-    """Generated systems of more and more machines."""
+    """The translation of generated systems with increasing numbers of machines."""
     runs = []
     for machines in GROWTH:
         with system(machines + 3) as folder:
@@ -92,7 +93,7 @@ def growing_machines() -> list[Run]:
 
 @cache
 def growing_topics() -> list[Run]:
-    """One hundred machines with more and more topics."""
+    """The translation of one hundred machines with increasing numbers of topics."""
     runs = []
     for count in TOPICS:
         with tempfile.TemporaryDirectory() as folder:
@@ -102,14 +103,14 @@ def growing_topics() -> list[Run]:
 
 @cache
 def growing_arrays() -> list[Run]:
-    """Arrays with more and more room."""
+    """The translation of arrays with increasing capacities."""
     with tempfile.TemporaryDirectory() as folder:
         main = write_arrays(Path(folder))
         return [_median(main, capacity) for capacity in CAPACITIES]
 
 
 def diagram() -> str:
-    """All three in one picture, as SVG."""
+    """All three measurements in one diagram, as SVG."""
     series = {"machines": growing_machines(), "topics": growing_topics(), "max_array_size": growing_arrays()}
     return svg({name: [(run.size / 1e6, run.translate + run.write) for run in runs] for name, runs in series.items()})
 
@@ -164,7 +165,7 @@ print(json.dumps([between - before, after - between, size, peak]))
 
 
 def _median(main: Path, capacity: int = 0) -> Run:
-    """The medians of three processes. `capacity` is the `max_array_size`, 0 for that of the system file."""
+    """The medians of three processes. `capacity` is the `max_array_size`; 0 means that of the system file."""
     command = [sys.executable, "-c", _TRANSLATE, str(main), str(capacity)]
     outputs = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(3)]
     return Run(*(median(values) for values in zip(*map(json.loads, outputs), strict=True)))
@@ -190,7 +191,7 @@ def write_arrays(folder: Path) -> Path:
 
 
 def write_topics(folder: Path, machines: int, count: int) -> Path:
-    """Machines that publish and hear so many topics together, in a ring. The system file."""
+    """Write a ring of machines that publish and receive a given number of topics together; return the system file."""
     written = []
     for number in range(machines):
         mine = range(number, count, machines)

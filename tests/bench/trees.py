@@ -28,7 +28,7 @@ WORDS = (
     "</RecoveryNode",
     'service_name="global_costmap/clear',
 )
-"""What loses its last character."""
+"""The words that lose their last character."""
 
 _LOOP = """    <RecoveryNode number_of_retries="6" name="navigate_{0}">
       <PipelineSequence>
@@ -55,7 +55,7 @@ _RECOVERY = """  <BehaviorTree ID="Recover_{0}">
 
 
 def tree_text(nodes: int = NODES) -> str:
-    """A tree with about so many nodes, including those of its subtrees."""
+    """A tree with about a given number of nodes, including those of its subtrees."""
     count = nodes // _NODES_OF_LOOP
     loops = "".join(_LOOP.format(number) for number in range(count))
     recoveries = "".join(_RECOVERY.format(number) for number in range(count))
@@ -102,7 +102,7 @@ def typing() -> list[Row]:
 
 
 def session(path: Path) -> list[float]:
-    """The seconds that a server takes for each key, the next being pressed when it has answered."""
+    """The time in s that a server takes for each key, if the next key is pressed after the answer."""
     text = path.read_text(encoding="utf-8")
     times = []
     with started() as server:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verification: whole calls of the command line beside SMC Storm, and how time grows with everything that can grow."""
+"""Benchmarks of the verification: whole calls of the command line compared with SMC Storm, and the growth of the
+time."""
 
 from __future__ import annotations
 
@@ -22,11 +23,11 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SIZES = (10, 20, 50, 100, 200)
 CONFIDENCES = (0.8, 0.9, 0.95, 0.99, 0.999, 0.9999)
 TIMEOUT_S = 120
-"""Seconds that an exhaustive computation may take."""
+"""The maximum time in s of an exhaustive computation."""
 
 
 class Cost(NamedTuple):
-    """What a process has taken: wall and CPU time in s, memory in bytes, and what it has said."""
+    """The cost of a process: wall time and CPU time in s, memory in bytes; and its output."""
 
     wall: float
     processor: float
@@ -35,7 +36,7 @@ class Cost(NamedTuple):
 
 
 def call(*arguments: str) -> Cost:
-    """`as2fm-lsp verify` with arguments; its workers are counted, too."""
+    """Call `as2fm-lsp verify`. The cost includes that of its workers."""
     command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
     began = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
@@ -50,7 +51,7 @@ def call(*arguments: str) -> Cost:
 
 
 class Case(NamedTuple):
-    """A conformance model, and what SMC Storm 0.1.8 took for the same traces: CPU seconds and memory."""
+    """A conformance model, and the cost of SMC Storm 0.1.8 for the same traces: CPU time in s and memory."""
 
     system: str
     property: str
@@ -99,7 +100,8 @@ def grid(folder: Path, size: int) -> str:
 
 @cache
 def grids() -> dict[int, tuple[float, float | None, float]]:
-    """Size -> seconds for 20,000 traces, seconds by Storm (None: too many states or too long), and the probability."""
+    """Size -> time in s for 20,000 traces, time in s of Storm (`None`: too many states, or too long), and the
+    probability."""
     found = {}
     for size in SIZES:
         with tempfile.TemporaryDirectory() as folder:
@@ -111,7 +113,7 @@ def grids() -> dict[int, tuple[float, float | None, float]]:
 
 
 def _exhaustively(main: str) -> float | None:
-    """Seconds that Storm takes for building and checking, without reading and translating."""
+    """The time in s that Storm takes to build and check the model, without reading and translating."""
     script = (
         "import sys, time, stormpy\nfrom roaml import api\nfrom roaml.jani.writer import write\n"
         "text = ''.join(write(api.to_jani(api.load(sys.argv[1]))))\nbegan = time.perf_counter()\n"
@@ -142,7 +144,7 @@ def growth() -> list[Row]:
 
 @cache
 def confidences() -> dict[float, tuple[int, float]]:
-    """Confidence -> traces and seconds for the assembly robot with its bug, to 0.01."""
+    """Confidence -> number of traces and time in s for the assembly robot with its bug, with an epsilon of 0.01."""
     main = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
     found = {}
     for confidence in CONFIDENCES:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a call of the command line gives back."""
+"""The result of a call of the command line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 
 class Done(NamedTuple):
-    """What a command has said and how it ended."""
+    """The output of a command and its exit status."""
 
     status: int
     out: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line, called in this process."""
+"""Calls of the command line in the process of the tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from as2fm_lsp.cli.main import run
 
 @pytest.fixture
 def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
-    """Calls the command line in the test's folder; `stdin` is what it can read."""
+    """Calls the command line in the folder of the test; `stdin` is its standard input."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compiling the kernel with compilers that do not do what they should; one that does is in `tests/packaging`."""
+"""Compiling the kernel with compilers that fail; `tests/packaging` contains a test with a working one."""
 
 from __future__ import annotations
 

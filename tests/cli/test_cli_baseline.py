@@ -30,7 +30,7 @@ def test_written_then_applied(check: Command, tmp_path: Path) -> None:
 
 
 def test_the_file_is_the_same_each_time(check: Command, tmp_path: Path) -> None:
-    """So that it can be kept under version control."""
+    """Equal findings give equal files, so that a baseline can be kept under version control."""
     clock.write(tmp_path, clock=TWO)
     check(".", "--baseline", "one.json")
     check(".", "--baseline", "two.json")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ready-made hook and workflows: their commands, as far as they go without network."""
+"""The hook and the workflows that the project provides: their commands, as far as they can run without network."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ README = (ROOT / "README.md").read_text()
 
 
 def values(text: str, key: str) -> list[str]:
-    """The plain scalars of a key in a YAML file that uses nothing difficult."""
+    """The plain scalars of a key in a simple YAML file."""
     return re.findall(rf"^\s*(?:- )?{key}: (.*?)\s*$", text, re.MULTILINE)
 
 
@@ -97,7 +97,7 @@ def test_the_hook_with_the_installed_program(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("more", "status", "written"), [([], 0, True), (["--check"], 1, False)], ids=str)
 def test_the_hook_that_formats(command: Command, tmp_path: Path, more: list[str], status: int, written: bool) -> None:
-    """pre-commit puts a hook's own arguments behind its entry; that files were changed it sees by itself."""
+    """pre-commit appends the arguments of a hook to its entry, and detects changed files itself."""
     untidy = clock.CLOCK.replace("    <datamodel>", "<datamodel  >")
     clock.write(tmp_path, clock=untidy)
     foreign = tmp_path / "package.xml"
@@ -113,7 +113,7 @@ def test_the_hook_that_formats(command: Command, tmp_path: Path, more: list[str]
 
 
 def test_workflows_install_from_the_repository() -> None:
-    """The package is on no index."""
+    """The workflows install from the repository, because the package is on no index."""
     installs = [line for text in (GITHUB, README) for line in values(text, "run") if line.startswith("pip")]
     installs += [line for line in items(GITLAB) if line.startswith("pip")]
     assert set(installs) == {"pip install git+$AS2FM_REPOSITORY"}

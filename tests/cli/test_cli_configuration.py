@@ -21,7 +21,7 @@ BOTH = clock.UNHEARD_CLOCK.replace('location="count"', 'location="coutn"')
 
 @pytest.fixture(params=["as2fm.toml", "pyproject.toml"])
 def configure(request: pytest.FixtureRequest, tmp_path: Path):  # type: ignore[no-untyped-def]
-    """Writes a configuration into a folder, in one of the two places."""
+    """Writes a configuration into a folder, in one of the two kinds of files."""
 
     def write(text: str, folder: Path = tmp_path) -> Path:
         header = "" if request.param == "as2fm.toml" else '[project]\nname = "robot"\n[tool.as2fm]\n'
@@ -54,7 +54,7 @@ def test_ignore_select_severity(check: Command, tmp_path: Path, configure) -> No
 def test_paths_are_relative_to_the_configuration(  # type: ignore[no-untyped-def]
     check: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, configure
 ) -> None:
-    """Wherever the tool is called from, and whatever is named."""
+    """Paths do not depend on the working directory or on the files that are named."""
     message = tmp_path / "interfaces" / "my_msgs" / "msg" / "Speed.msg"
     message.parent.mkdir(parents=True)
     message.write_text("uint8 data\n")
@@ -93,7 +93,7 @@ def test_paths_are_relative_to_the_configuration(  # type: ignore[no-untyped-def
     ],
 )
 def test_exclude(check: Command, tmp_path: Path, configure, patterns: list[str], left: list[str]) -> None:  # type: ignore[no-untyped-def]
-    """Patterns mean what they mean to Git."""
+    """Patterns have the same meaning as in Git."""
     top = tmp_path / "[x]*"  # characters that patterns give a meaning to
     for folder in ("attic", "b", "c/attic"):
         (top / folder).mkdir(parents=True)
@@ -138,7 +138,7 @@ def test_excluded_folders_are_not_entered(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_patterns_are_read_in_time(tmp_path: Path) -> None:
-    """However long the paths are: nobody would wait for this test."""
+    """Patterns are matched in a short time, however long the paths are. If not, this test would take very long."""
     exclude = Exclude(("*a*a*b", "**/a/**/a/**/b"), str(tmp_path))
     assert not exclude.covers(str(tmp_path / ("a" * 250) / "/".join("a" * 1900)), str(tmp_path))
     assert exclude.covers(str(tmp_path / "/".join("aab") / "/".join("c" * 1900)), str(tmp_path))
@@ -249,7 +249,8 @@ def test_a_choice_of_rules_that_do_not_exist_hides_nothing(check: Command, tmp_p
 
 
 def test_the_configuration_around_what_is_checked(check: Command, tmp_path: Path) -> None:
-    """It may lie above all that is named; in a folder below, where it is not in force, it is checked as well."""
+    """The configuration may be above all named files. A configuration in a folder below is not in force, but it is
+    checked."""
     clock.write(tmp_path / "models")
     (tmp_path / "as2fm.toml").write_text("ingore = []\n")
     (tmp_path / "models" / "inner").mkdir()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked for, and with which status the command ends: 0 clean, 1 found, 2 usage error, 3 internal error."""
+"""The options of the command, and its exit status: 0 clean, 1 errors found, 2 usage error, 3 internal error."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def crash(_: object) -> None:
 def test_a_crashing_rule_is_an_internal_error_whatever_is_shown(
     check: Command, command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The other rules go on, and no option makes it look clean."""
+    """The other rules continue, and no option hides the internal error."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     rules = [dataclasses.replace(r, machine=crash) if r.code == "undefined-state" else r for r in RULES]
     monkeypatch.setattr(roaml.project.checking, "RULES", rules)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where reports go: files are written whole or not at all, and names and texts of any kind reach standard output."""
+"""Output: files are written completely or not at all, and names and texts of any kind can be printed."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_a_link_is_followed(tmp_path: Path) -> None:
 
 
 def test_a_pipe_is_written_to_and_not_replaced(command: Command, tmp_path: Path) -> None:
-    """As `--output /dev/stdout` asks for."""
+    """A pipe is written to and not replaced, as `--output /dev/stdout` requires."""
     clock.write(tmp_path)
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)

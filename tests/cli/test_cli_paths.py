@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be named: systems, single files, folders, and all that is none of these."""
+"""Arguments of the check: systems, single files, folders, and paths that are none of these."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_other_json_is_an_error_when_named(check: Command, tmp_path: Path) -> No
 
 
 def test_a_single_file_is_checked_in_the_systems_around_it(check: Command, tmp_path: Path) -> None:
-    """Found in the enclosing repository, wherever the system file lies in it."""
+    """The system is searched for in the enclosing repository, wherever its file is."""
     unheard = {"clock": clock.UNHEARD_CLOCK}
     (tmp_path / "repository" / ".git").mkdir(parents=True)
     models = tmp_path / "repository" / "models"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command as a process of its own: what only a real one shows."""
+"""The command as a separate process, for behavior that only a real process has."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_stdin(tmp_path: Path) -> None:
     ids=["ascii", "C", "cp1252"],
 )
 def test_a_terminal_that_is_not_unicode(tmp_path: Path, environment: dict[str, str]) -> None:
-    """What it cannot show is escaped; what programs read is UTF-8 everywhere."""
+    """Characters that the terminal does not support are escaped. Output for programs is always UTF-8."""
     clock.write(tmp_path, clock=clock.CLOCK.replace("(count + 1)", "(字数 + 1)"))
     done = call("--check", "main.xml", cwd=tmp_path, environment=environment)
     assert (done.returncode, done.stderr) == (1, b"")
@@ -79,7 +79,8 @@ def test_a_terminal_that_is_not_unicode(tmp_path: Path, environment: dict[str, s
 
 
 def test_a_reader_that_has_seen_enough(tmp_path: Path) -> None:
-    """As in `as2fm-lsp --check . | head -1`: no complaint, and the status that a shell gives to it."""
+    """A reader that closes the pipe, as in `as2fm-lsp --check . | head -1`: no message, and the exit status of a
+    shell."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     reading, writing = os.pipe()
     os.close(reading)
@@ -105,7 +106,7 @@ def test_colors_on_a_terminal(tmp_path: Path) -> None:
 
 
 def test_nothing_is_left_behind(tmp_path: Path) -> None:
-    """No cache, no log: what was checked is as it was."""
+    """The command writes no cache and no log."""
     clock.write(tmp_path)
     before = sorted(tmp_path.rglob("*"))
     call("--check", ".", cwd=tmp_path)

@@ -23,12 +23,12 @@ def test_a_run_is_printed_as_a_story(command: Command) -> None:
 
 
 def test_the_run_is_the_trace_of_verify(command: Command) -> None:
-    """Both describe the counterexample in the same way."""
+    """`simulate` and `verify` describe the counterexample in the same way."""
     told = command("verify", str(ROBOT), "--property", "never_placed_empty", "--explain", "--seed", "0").out
     (heading,) = [line for line in told.splitlines() if line.startswith("never_placed_empty failed in trace ")]
     trace, steps = heading.split(" trace ")[1].split(" after ")
     done = command("simulate", str(ROBOT), "--property", "never_placed_empty", "--trace", trace)
-    assert done.out.startswith(f"never_placed_empty failed in trace {trace} after {steps.split(',')[0]}")
+    assert done.out.startswith(f"never_placed_empty failed in trace {trace} after {steps.split(';')[0]}")
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_until_a_message_is_sent(command: Command) -> None:
 
 
 def test_until_a_property_is_decided(command: Command) -> None:
-    """The property is that one, not the first one of the system."""
+    """`--until` determines the property, instead of the first one of the system."""
     out = command("simulate", str(ROBOT), "--until", "never_placed_empty", "--trace", "0").out
     assert out.startswith("never_placed_empty ")
     done = command("simulate", str(ROBOT), "--until", "never_placed_empty", "--property", "block_placed")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pipes, devices and enormous files in the places where the tool reads; links that lead out of the workspace."""
+"""Pipes, devices and very large files as inputs, and links that lead out of the workspace."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from timeouts import TIMEOUT_S
 
 
 def run(folder: Path, *arguments: str) -> Done:
-    """A process of its own, which can be ended if it hangs."""
+    """Run the command as a separate process, which can be ended if it hangs."""
     command = [*prefork.command(), *arguments]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
     return Done(done.returncode, done.stdout, done.stderr)
@@ -127,7 +127,7 @@ def test_a_link_to_a_further_root(linked: Path) -> None:
 
 
 def test_a_link_that_is_named(linked: Path) -> None:
-    """Whoever names a link means what it leads to."""
+    """A link that is named is followed."""
     (linked.parent / "main.xml").symlink_to("ws/main.xml")
     (linked / "clock.ascxml").unlink()
     (linked / "clock.ascxml").write_bytes((linked.parent / "elsewhere" / "clock.ascxml").read_bytes())

@@ -43,7 +43,7 @@ def test_a_file_that_does_not_exist(check: Command, tmp_path: Path) -> None:
 
 
 def test_it_is_read_as_a_file_is(check: Command, tmp_path: Path) -> None:
-    """Whatever it holds: line ends, byte order marks, other encodings and bytes that are no text."""
+    """The text may have any line ends, a byte order mark, another encoding, and bytes that are not text."""
     (tmp_path / ".git").mkdir()
     for data in (
         clock.WRONG_CLOCK.replace("\n", "\r\n").encode(),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `as2fm-lsp verify` says of systems that get stuck, and of the ends of traces."""
+"""Output of `as2fm-lsp verify` about systems that get stuck, and about the ends of traces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
 @pytest.fixture
 def ward(command: Command, tmp_path: Path) -> Path:
-    """Eight machines, of which one makes time stand still; the working directory of the command."""
+    """Eight machines, one of which makes the time stand still. The working directory contains them."""
     return write(tmp_path, hospital())
 
 
@@ -61,7 +61,7 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
 
 
 def test_a_stuck_system_whose_properties_are_decided_before(command: Command, ward: Path) -> None:
-    """No result is doubtful; the waiting automata are shown with the traces that ran on."""
+    """No result is doubtful. The waiting automata are shown with the traces that continued."""
     text = (ward / "properties.jani").read_text(encoding="utf-8")
     (ward / "properties.jani").write_text(text.replace('"topic_delivered_msg.valid"', "true"), encoding="utf-8")
     out = command("verify", "main.xml").out
@@ -171,7 +171,7 @@ def test_the_property_stuck_can_be_verified(command: Command, ward: Path) -> Non
     assert result["upper"] - result["lower"] < 0.021
     assert result["passed"] == result["ends"]["stuck"]
     assert result["failed"] == result["ends"]["tree_finished"]
-    # It was asked: no more traces are made for it.
+    # The property `stuck` was requested, so no further traces are generated.
     assert "traces" not in found["stuck"]
     assert found["stuck"]["example"]["waits"]
 
@@ -188,7 +188,7 @@ def test_it_can_be_expected_not_to_get_stuck(command: Command, tmp_path: Path) -
 def test_explained_to_the_end(command: Command, ward: Path) -> None:
     for options in ((), ("--property", "stuck")):
         story = command("verify", "main.xml", *options, "--explain").out
-        assert re.search(r": trace \d+ gets stuck after \d+ steps, of which", story)
+        assert re.search(r": trace \d+ gets stuck after \d+ steps; \d+ turns matter", story)
         *last, advice, legend = story.rstrip().splitlines()[-6:]
         assert advice.startswith("  help: a tick must be answered")
         assert "bt_1002 is Fetch (tree.xml:5)" in legend
@@ -241,7 +241,7 @@ def test_sampled_schedulers_that_get_stuck_are_reported(command: Command, ward: 
 
 
 def test_a_trace_with_a_fault_after_its_goal_is_reported(command: Command, tmp_path: Path) -> None:
-    """The property is answered, since its traces do not go so far."""
+    """The property is answered, because its traces end before the fault."""
     write(tmp_path, hospital(mended=True))
     text = (tmp_path / "nurse.ascxml").read_text(encoding="utf-8")
     text = text.replace(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comments that keep findings quiet."""
+"""Comments that suppress findings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LINE = '            <assign location="coutn" expr="(count + 1) % 10" />\n'
 
 @pytest.fixture
 def codes(check: Command, tmp_path: Path):  # type: ignore[no-untyped-def]
-    """The codes of a clock with another line in place of the wrong one."""
+    """The codes of the findings in the clock with another line instead of the one with the error."""
 
     def of(line: str) -> list[str]:
         assert LINE in clock.WRONG_CLOCK

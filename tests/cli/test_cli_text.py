@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report for people. Goldens are made of plain diagnostics, so that they hold whatever the rules say."""
+"""The report for users. The expected outputs are made from fixed diagnostics, so they do not depend on the messages of
+rules."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ def render_span(text: str, span: Span, message: str = "wrong", *, color: bool = 
 
 
 def excerpt(text: str, place: str) -> list[str]:
-    """The line that is shown and the one with carets."""
+    """The source line in the report, and the line with the carets."""
     return render(text, place).splitlines()[1:3]
 
 

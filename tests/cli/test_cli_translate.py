@@ -135,7 +135,7 @@ def test_parts_of_properties_without_effect(command: Command, robot: Path) -> No
 def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
     command: Command, robot: Path, kind: str, depth: int
 ) -> None:
-    """Without its bounds it would ask something else; with them, Storm reads seconds as steps."""
+    """Without its bounds, the property would have another meaning; with them, Storm reads seconds as steps."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
     bound = {"upper": 3} if kind == "time-bounds" else [{"exp": 1, "accumulate": ["steps"], "bounds": {"upper": 3}}]
@@ -166,7 +166,7 @@ def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
 
 
 def test_a_model_keeps_bounds_that_cannot_be_answered(robot: Path) -> None:
-    """Who verifies it from Python is told."""
+    """The model keeps the bounds, and a verification from Python reports them."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
     written["properties"][0]["expression"]["values"]["exp"]["time-bounds"] = {"upper": 3}

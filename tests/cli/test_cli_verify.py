@@ -132,7 +132,7 @@ def test_results_do_not_depend_on_jobs(command: Command, tmp_path: Path) -> None
 
 
 def late(command: Command, folder: Path) -> None:
-    """The system that `init` writes, in a hurry: three parcels in five seconds."""
+    """The system that `init` writes, with too little time: three parcels in five seconds."""
     main = (folder / "main.xml").read_text()
     (folder / "main.xml").write_text(main.replace('value="60"', 'value="7"'))
 
@@ -211,7 +211,7 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     assert done.status == 0
     story = done.out.partition("all_delivered failed in trace ")[2]
     assert "it reads bt_1000_response__status" in story
-    # Each line has its time and place, and what has moved below it.
+    # Each line contains its time and its place; the changes follow below it.
     lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
     number = next(n for n, text in enumerate(lines, 1) if '<bt_tick target="carrying"' in text)
     (first, *_) = [text for text in story.splitlines() if "  Deliver (bt_" in text and "is ticked" in text]
@@ -242,7 +242,7 @@ def test_explains_as_diagram_and_page(command: Command, robot: Path) -> None:
 
 
 def test_explains_why_something_bad_happens(command: Command, tmp_path: Path) -> None:
-    """Where little is expected, the trace in which it holds tells why."""
+    """If the expected probability is low, the trace in which the property holds is shown."""
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.1", "--explain")
     assert done.status == 1
     assert "heads passed in trace " in done.out
@@ -326,7 +326,7 @@ def test_resume(command: Command, tmp_path: Path) -> None:
     for name in ("heads", "never"):
         one, other = rows(again.out)[name], whole[name]
         assert [one[key] for key in keys] == [other[key] for key in keys]
-        # Who goes on with other options has seen results: the interval must hold whenever one stops.
+        # The user has seen results before choosing other options, so the interval must be valid at any stopping time.
         assert (one["interval"], other["interval"]) == ("confidence sequence", "Clopper-Pearson")
         assert one["lower"] <= other["lower"] <= other["upper"] <= one["upper"]
 
@@ -357,12 +357,12 @@ import runpy, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
 runpy.run_module("as2fm_lsp", run_name="__main__", alter_sys=True)
 """
-"""What a shell starts in the background, as whole test runs may be, ignores the keyboard unless told otherwise."""
+"""Processes that a shell starts in the background ignore SIGINT, unless it is reset. Whole test runs may run there."""
 
 
 @contextmanager
 def started(folder: Path, *arguments: str, **more: Any) -> Iterator[subprocess.Popen[str]]:
-    """A command that runs on; it is gone in the end, whatever the test finds."""
+    """A command that keeps running. It is ended after the test in any case."""
     command = [sys.executable, "-c", INTERRUPTIBLE, "verify", *arguments]
     with subprocess.Popen(command, cwd=folder, text=True, stdout=subprocess.PIPE, **more) as running:
         try:
@@ -372,7 +372,7 @@ def started(folder: Path, *arguments: str, **more: Any) -> Iterator[subprocess.P
 
 
 def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
-    """What is known so far is told and kept, and a further run goes on from there."""
+    """The results so far are printed and saved, and another run continues from there."""
     name = write(tmp_path, coin())
     options = (name, "--property", "heads", "--method", "fixed", "--max-traces", "900000000", "--jobs", "2")
     options += ("--resume", "state.json")
@@ -576,7 +576,7 @@ def test_faults_of_a_model(command: Command, tmp_path: Path, change: Json, messa
     assert not (tmp_path / "out").exists()
     text = command("verify", name)
     assert text.status == 1
-    # A mistake in the model itself is found before any property is looked at.
+    # An error in the model is reported before any property is evaluated.
     if row["code"] == "model-fault" and json.loads(done.out)["results"]:
         assert [result["error"]["code"] for result in json.loads(done.out)["results"]] == ["model-fault"] * 2
         assert "heads: not answered: " in text.out
@@ -634,7 +634,7 @@ def test_a_property_on_an_unknown_variable(command: Command, tmp_path: Path, rob
 
 
 def test_deep_expressions(command: Command, tmp_path: Path) -> None:
-    """What can be read can be run."""
+    """Every expression that can be read can be compiled."""
     total: Any = "x"
     for _ in range(250):
         total = op("+", total, 0)

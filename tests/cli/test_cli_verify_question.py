@@ -29,7 +29,7 @@ def rows(text: str) -> dict[str, dict[str, Any]]:
 
 
 def starving(operator: str = "Pmin", length: int = 50) -> Json:
-    """Something is done after one step, unless another machine goes on for ever."""
+    """A machine takes one step, unless another machine takes its steps for ever."""
     return document(
         automaton("busy", "s", [edge("s", way("s", c=op("%", op("+", "c", 1), length)))]),
         automaton("worker", "a b", [edge("a", way("b", done=True))]),
@@ -49,7 +49,8 @@ def coin(**more: Any) -> Json:
 
 @pytest.mark.parametrize("length", [50, 6000])
 def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command, tmp_path: Path, length: int) -> None:
-    """Uniform choices give 1, and 1 is at least 0.9: but the minimum is asked for, and it is 0."""
+    """The value under uniform choices is 1, which is at least 0.9. But the property asks for the minimum, which is
+    0."""
     done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
     assert done.status == 1
     assert (
@@ -67,7 +68,7 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
 
 
 def test_the_side_that_is_asked_for_decides(command: Command, tmp_path: Path) -> None:
-    """That a minimum is small and a maximum large is shown by one scheduler."""
+    """One scheduler can show that a minimum is small, or that a maximum is large."""
     for operator, expected, status in (
         ("Pmin", "p <= 0.1", 0),
         ("Pmin", "p >= 0.1", 1),
@@ -94,7 +95,7 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
 
 
 def hidden() -> Json:
-    """Too many states to look at, and choices of which no sampled scheduler finds that they matter."""
+    """There are too many states to explore, and no sampled scheduler shows that the choices matter."""
     steps = [
         edge("s", way("s", 0.5, n=op("+", "n", 1), k=op("%", op("+", "k", 7), 1001)), way("s", 0.5, n=op("+", "n", 1)))
     ]
@@ -109,7 +110,8 @@ def hidden() -> Json:
 
 
 def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
-    """Exit status 0, with a warning, and each format says that it is only so."""
+    """The exit status is 0 with a warning, and every format states that the expectation is met only under uniform
+    choices."""
     name = write(tmp_path, hidden())
     options = ("--expect", "p >= 0.9", "--epsilon", "0.03")
     done = command("verify", name, *options)
@@ -135,7 +137,7 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
 
 
 def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> None:
-    """And says why no schedulers were sampled, where none were."""
+    """The note also states why no schedulers were sampled, if none were."""
     written = hidden()
     written["properties"].append({**written["properties"][0], "name": "q"})
     most = probability(op("F", "done"), "Pmax")
@@ -319,7 +321,7 @@ def test_constants(command: Command, tmp_path: Path) -> None:
     ],
 )
 def test_constants_that_do_not_fit(command: Command, tmp_path: Path, given: str, message: str) -> None:
-    # A second value for a constant is a mistake of its own.
+    # A second value for a constant is a separate error.
     first = ("--constant", "N=20") if given[0] != "N" or given == "N=3" else ()
     done = command("verify", write(tmp_path, counting()), *first, "--constant", given)
     assert (done.status, done.out) == (2, "")
@@ -380,7 +382,7 @@ SYSTEM = {
 
 
 def test_check_reports_what_verify_refuses(command: Command, tmp_path: Path) -> None:
-    """With the same code, and each code has a document."""
+    """Both use the same code, and each code has a document."""
     for name, text in SYSTEM.items():
         (tmp_path / name).write_text(text)
     reached = op("≥", "topic_level_msg__ros_fields__data", 2)
@@ -549,7 +551,7 @@ def test_states_that_are_none(command: Command, tmp_path: Path, text: str) -> No
 
 
 def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
-    """A pipe would wait for somebody who writes."""
+    """Opening a pipe would wait for a writer."""
     os.mkfifo(tmp_path / "state.json")
     done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
     assert done.status == 2

@@ -14,10 +14,10 @@ from dap_schema import validate
 
 
 class Client:
-    """An adapter as a process of its own.
+    """An adapter as a separate process.
 
     Attributes:
-        events: those that have arrived and were not waited for yet.
+        events: the events that have arrived and that no test has waited for yet.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class Client:
     # ------------------------------------------------------------ messages
 
     def send(self, command: str, **arguments: Any) -> int:
-        """Send a request; returns its number."""
+        """Send a request; return its number."""
         self._sequence += 1
         request = {"seq": self._sequence, "type": "request", "command": command, "arguments": arguments}
         self.write(json.dumps(request).encode())
@@ -56,7 +56,7 @@ class Client:
         self.process.stdin.flush()
 
     def read(self) -> dict[str, Any]:
-        """The next message, which fits the schema.
+        """The next message, validated with the schema.
 
         Raises:
             EOFError: the adapter has ended.
@@ -94,7 +94,7 @@ class Client:
         return response.get("body")
 
     def refusal(self, command: str, **arguments: Any) -> str:
-        """The reason why a request is not carried out."""
+        """The reason why a request is rejected."""
         response = self.response(self.send(command, **arguments))
         assert not response["success"], response
         assert isinstance(response["message"], str)
@@ -120,13 +120,13 @@ class Client:
         self.event("initialized")
 
     def begin(self, program: Path | str, **arguments: Any) -> dict[str, Any]:
-        """Launch and begin; returns where the run stops first."""
+        """Launch and begin; return where the run stops first."""
         self.launch(program, **arguments)
         self.ask("configurationDone")
         return self.event("stopped")
 
     def move(self, command: str = "continue", **arguments: Any) -> dict[str, Any]:
-        """Move the run; returns where it stops."""
+        """Move the run; return where it stops."""
         self.ask(command, **{"threadId": 1, **arguments})
         return self.event("stopped")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sends random requests to an adapter in a process of its own. It answers each one."""
+"""Sends random requests to an adapter in a separate process. The adapter must answer each one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fuzz.debug_requests import MOVING, Requests
 
 
 def run(seed: int, count: int, program: Path) -> tuple[int, int]:
-    """Send random requests; returns how many were carried out and refused. Each must be answered, by a message that
+    """Send random requests; return the numbers of successful and rejected ones. Each must be answered by a message that
     fits the schema."""
     requests, done, refused = Requests(seed, program), 0, 0
     with Client() as client:

@@ -38,7 +38,7 @@ def sources_of(main: Path) -> Sources:
 
 
 def replay(sources: Sources, checker: ModelChecker, asked: CompiledProperty, trace: int) -> Iterator[str]:
-    """What differs between a trace and its replay."""
+    """The differences between a trace and its replay."""
     name = asked.question.name
     recording = Recording(trace)
     Recorder(checker, asked, SEED, MAX_STEPS).rush(recording)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The search through all states: the same as a simple one, compiled and as plain Python; limits; shortest traces."""
+"""The search through all states: compared with a simple search, compiled and as plain Python; limits; shortest
+traces."""
 
 from __future__ import annotations
 
@@ -70,7 +71,7 @@ def test_both_searches_and_solvers_do_the_same(written: Json) -> None:
 
 
 class _Direct(plain_solver().Solver):  # type: ignore[misc, name-defined]
-    """A solver that solves each component directly, at once."""
+    """A solver that solves each component directly, without value iteration."""
 
     solved = 0
 
@@ -126,7 +127,7 @@ def test_numbers_that_callers_know_are_those_of_the_compiled_modules() -> None:
 
 
 def counting(last: int, steps: int = 1, first: int = 0) -> Json:
-    """Counts up and down between two numbers, and is at the first one at the beginning."""
+    """A machine that counts up and down between two numbers, beginning at the first one."""
     up = edge("l", way("l", x=op("+", "x", steps)), guard=op("<", "x", last))
     down = edge("l", way("l", x=op("-", "x", steps)), guard=op(">", "x", -last))
     return document(
@@ -200,7 +201,8 @@ def test_undefined_operations_are_in_a_state() -> None:
 @given(networks())
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> None:
-    """By the steps of the kernel, and no shorter one does: the goal holds in no state that fewer steps lead to."""
+    """The steps lead the kernel to the state, and no shorter path exists: the goal holds in no state with fewer
+    steps."""
     space = space_of(written)
     if space.problem is not None:
         return

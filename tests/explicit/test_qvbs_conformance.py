@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All states of models of the Quantitative Verification Benchmark Set, where it lies beside the project: the values are
-those of `expected.json`, which Storm has computed. The other models are refused with the reason."""
+"""All states of models of the Quantitative Verification Benchmark Set, if it is in a folder beside the project: the
+values are those of `expected.json`, which Storm has computed. The other models are rejected with the reason."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def test_the_first_node_comes_first() -> None:
 
 
 def test_a_longer_label_does_not_change_the_arrangement() -> None:
-    """What is typed in a label moves nodes, but does not exchange them."""
+    """Typing in a label moves nodes, but does not rearrange them."""
     nodes = dict.fromkeys("abcd", Extent(60, 30))
     ends = ("ab", "ac", "bd", "cd", "da")
     layouts = [

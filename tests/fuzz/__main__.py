@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs hostile input and says what went wrong. Exit code 1 if anything did.
+"""Runs hostile input and reports failures. The exit status is 1 if there are any.
 
-A case may take 2 s of its process's CPU time for each command that it runs, and 500 MB. CPU time and not elapsed time,
-because other work on the machine makes a case wait. Other work makes it slower, too (shared caches, hyperthreads), so a
-case that runs out of time is run again and is a failure only if it runs out of time each time. A process that does not
-come back within 300 s of elapsed time hangs and is ended.
+A case may take 2 s of the CPU time of its process for each command that it runs, and 500 MB. CPU time is measured
+instead of elapsed time, because other work on the machine makes a case wait. Other work also makes a case slower
+(shared caches, hyperthreads). So a case that runs out of time is run again, and is a failure only if it runs out of
+time each time. A process that does not return within 300 s of elapsed time hangs and is ended.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def many(chosen: Sequence[Strategy], cases: int, first: int, jobs: int, slowest:
 
 
 def pairs(seeds: range) -> int:
-    """How many pairs of mistakes are reported as each is alone; those that are not, in words."""
+    """The number of pairs of errors that are reported as each error alone, and a description of the other pairs."""
     counts = dict.fromkeys(Outcome, 0)
     for number, seed in enumerate(seeds, 1):
         mistakes = choose(seed)
@@ -100,7 +100,7 @@ def pairs(seeds: range) -> int:
 
 
 def _in_turn(shares: Sequence[tuple[str, int]], first: int) -> Iterator[tuple[str, int]]:
-    """The cases of all strategies mixed, each strategy evenly over the whole run."""
+    """The cases of all strategies, mixed so that each strategy is distributed evenly over the run."""
     cases = [((number + 0.5) / count, name, first + number) for name, count in shares for number in range(count)]
     return ((name, seed) for _, name, seed in sorted(cases))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of the complete check of some files, whatever stands in them, and of what is made of them then."""
+"""The invariants of a complete check of some files with any content, and of fixes and translations that follow it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.project.settings import Settings
 from roaml.text import Span, apply_edits
 
 LIMITS = Limits(cells=50_000, parts=50_000)
-"""A fraction of the real ones: what is just below them takes about as long as a case may take."""
+"""A fraction of the real limits. Input just below them takes about as long as a case may take."""
 
 
 def problems_of_check(
@@ -26,13 +26,13 @@ def problems_of_check(
     random: Random | None = None,
     settings: Settings | None = None,
 ) -> Iterator[Failure]:
-    """Checks files, translates the systems among them that have no errors, and reads the translations back.
+    """Checks files, translates the systems among them that have no errors, and reads the translations.
 
     Args:
         main: the file or folder that is checked.
-        texts: path -> text in place of what is on the disk.
-        random: with it, sometimes one fix is made and everything checked again.
-        settings: the usual ones, but with `LIMITS`, if not given.
+        texts: path -> text that replaces the text on the disk.
+        random: if given, sometimes one fix is applied and the check repeated.
+        settings: default: the usual ones, with `LIMITS`.
     """
     result = api.check([main], ros_paths, settings or Settings(limits=LIMITS), texts)
     for diagnostic in result.diagnostics:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is damaged: the conformance models, the examples, the rules' documents and the rules' test cases."""
+"""The texts that are damaged: the conformance models, the examples, and the documents and test cases of the rules."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from roaml.text import decode
 ROOT = Path(__file__).resolve().parents[2]
 EXTENSIONS = (".xml", ".ascxml", ".scxml", ".jani", ".json", ".msg", ".srv", ".action")
 NOWHERE = os.path.join(os.sep, "nowhere")
-"""The folder of models that are only in memory."""
+"""The folder of models that exist only in memory."""
 
 _BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Model:
-    """Some files that belong together. `main` is the one that is checked, with all that it names."""
+    """Files that belong together. `main` is the file that is checked, with all files that it refers to."""
 
     name: str
     main: str
@@ -36,14 +36,14 @@ class Model:
 
 @cache
 def systems() -> tuple[Model, ...]:
-    """The conformance models and the examples, always in one order."""
+    """The conformance models and the examples, always in the same order."""
     systems = [_on_disk(path, (str(conformance.INTERFACES),)) for path in sorted(conformance.systems())]
     return (*systems, *(_on_disk(path, ()) for path in sorted((ROOT / "examples").glob("*/main.xml"))))
 
 
 @cache
 def snippets() -> tuple[Model, ...]:
-    """The small models in the rules' documents and in the rules' test cases, always in one order."""
+    """The small models in the documents and test cases of the rules, always in the same order."""
     return tuple(_written())
 
 

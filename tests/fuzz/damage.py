@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ways to damage a text. Each takes what it needs at random and gives the new text, always the same for one `Random`.
+"""Functions that damage a text. Each takes random numbers from a `Random` and returns the new text, which only depends
+on them.
 
-- Bytes: anything that a disk, a merge or an editor can do to a file.
-- Pieces: characters and words that mean something to one of the languages, in the wrong place, or many times over.
-- Elements and attributes: sound XML that says something else.
+- Bytes: changes that a disk, a merge or an editor can make to a file.
+- Pieces: characters and words that have a meaning in one of the languages, in the wrong place or many times.
+- Elements and attributes: well-formed XML with another meaning.
 - JSON and lines: the same for property files, JSON structs and ROS interface definitions.
 """
 
@@ -260,7 +261,7 @@ def insert_pieces(random: Random, text: str, others: Sequence[str]) -> str:
 
 
 def stretch(random: Random, text: str, others: Sequence[str]) -> str:
-    """One piece very many times: nesting, long values, long lines."""
+    """Repeat one piece many times: nesting, long values, long lines."""
     start, end = _value(random, text) if random.random() < 0.7 else _range(random, text)
     piece = random.choice([random.choice(PIECES), random.choice(_LONG)])
     many = (piece * random.choice([60, 200, 3000, 20_000]))[:60_000]
@@ -268,7 +269,7 @@ def stretch(random: Random, text: str, others: Sequence[str]) -> str:
 
 
 def rename(random: Random, text: str, others: Sequence[str]) -> str:
-    """One word for another of the same file, everywhere or once."""
+    """Replace a word by another one of the same file, everywhere or once."""
     words = _WORD.findall(text)
     if not words:
         return text
@@ -297,7 +298,7 @@ def shuffle_lines(random: Random, text: str, others: Sequence[str]) -> str:
 
 
 def another_file(random: Random, text: str, others: Sequence[str]) -> str:
-    """Another file's text, or a part of it."""
+    """The text of another file, or a part of it."""
     other = random.choice(others) if others else ""
     if random.random() < 0.3:
         return other
@@ -365,7 +366,7 @@ def change_attributes(random: Random, text: str, others: Sequence[str]) -> str:
 
 
 def swap_values(random: Random, text: str, others: Sequence[str]) -> str:
-    """Values of attributes of one name, or of any, changed for each other."""
+    """Exchange values of attributes, of the same name or of any name."""
     attributes = attributes_of(text)
     if len(attributes) < 2:
         return text
@@ -569,7 +570,7 @@ JSON: tuple[Damage, ...] = (*ANY, *(change_json,) * 14)
 
 
 def ways(path: str) -> tuple[Damage, ...]:
-    """The ways to damage the file at `path`, each as often as it is worth."""
+    """The functions that can damage the file at `path`, each repeated by its weight."""
     if path.endswith((".jani", ".json")):
         return JSON
     return ANY if path.endswith((".msg", ".srv", ".action")) else XML

@@ -8,7 +8,7 @@ from roaml.xml_syntax import Attribute, Element, parse
 
 
 def elements_of(text: str) -> list[Element]:
-    """All, in the order of the text; none of a text without a root."""
+    """All elements, in the order of the text; empty for a text without a root."""
     root = parse(text).root
     return [] if root is None else list(root.walk())
 
@@ -23,5 +23,5 @@ def piece(text: str, span: Span) -> str:
 
 
 def put(text: str, span: Span, new: str) -> str:
-    """The text with something else there."""
+    """The text with the text at a span replaced."""
     return text[: span.start] + new + text[span.end :]

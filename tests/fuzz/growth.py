@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small inputs that become large: each dimension in which a system can grow, as a function of its size.
 
-Used by the fuzzer, which takes any size, and by the bench, which takes a size and ten times as much.
+The fuzzer uses them with any size, the benchmarks with a size and ten times this size.
 """
 
 from __future__ import annotations
@@ -61,12 +61,12 @@ def array_bound(n: int) -> Files:
 
 
 def array_dimensions(n: int) -> Files:
-    """An array of as many dimensions as n has digits, each of ten elements."""
+    """An array with as many dimensions as n has digits, each of ten elements."""
     return _system(_machine(f'<datamodel><data id="a" type="int32{"[10]" * len(str(n))}" expr="[]" /></datamodel>'))
 
 
 def array_literals(n: int) -> Files:
-    """An array of a tenth of n elements that is set a tenth of n times."""
+    """An array of n / 10 elements that is assigned n / 10 times."""
     body = '<assign location="a" expr="[]" />' * max(1, n // 10)
     head = f'<datamodel><data id="a" type="int32[{max(1, n // 10)}]" expr="[]" /></datamodel>{_TIMER}'
     return _system(_machine(head, _on_tick(body)))
@@ -174,42 +174,42 @@ def many_draws(n: int) -> Files:
 
 
 def unknown_attributes(n: int) -> Files:
-    """n attributes that there are not."""
+    """n attributes that do not exist."""
     return _system(_machine(body="<onentry " + " ".join(f'zz{i}="1"' for i in range(n)) + " />"))
 
 
 def unknown_elements(n: int) -> Files:
-    """n elements that there are not."""
+    """n elements that do not exist."""
     return _system(_machine(body="<stat />" * n))
 
 
 def findings_in_a_line(n: int) -> Files:
-    """n mistakes in one line, each of which has a fix."""
+    """n errors in one line, each of which has a fix."""
     head = f'<datamodel><data id="level" type="int64" expr="0" /></datamodel>{_TIMER}'
     return _system(_machine(head, _on_tick('<assign location="levle" expr="0" />' * n)))
 
 
 def unknown_variables(n: int) -> Files:
-    """n names that are not declared, each like one that is declared and not used."""
+    """n names that are not declared, each similar to one that is declared and not used."""
     data = "".join(f'<data id="level_{i}" type="int32" expr="0" />' for i in range(n))
     body = "".join(f'<assign location="levle_{i}" expr="0" />' for i in range(n))
     return _system(_machine(f"<datamodel>{data}</datamodel>{_TIMER}", _on_tick(body)))
 
 
 def unknown_states(n: int) -> Files:
-    """n targets that there are not, each like a state."""
+    """n targets that do not exist, each similar to the name of a state."""
     state = '<state id="place_{0}"><ros_rate_callback name="t" target="plaec_{0}" /></state>'
     return _system(_machine(_TIMER, more="".join(map(state.format, range(n)))))
 
 
 def unknown_events(n: int) -> Files:
-    """n events that nobody receives, and n similar ones that nobody sends."""
+    """n events that are never received, and n similar ones that are never sent."""
     transitions = "".join(f'<transition event="evnet_{i}" target="s" />' for i in range(n))
     return _system(_machine(_TIMER, transitions + _on_tick("".join(f'<send event="event_{i}" />' for i in range(n)))))
 
 
 def unknown_topics(n: int) -> Files:
-    """n topics that nobody subscribes to, and n similar ones that nobody publishes, in one machine."""
+    """n topics without subscribers, and n similar ones without publishers, in one machine."""
     topic = ' topic="/{name}_{i}" type="std_msgs/Int32" />'
     head = _TIMER
     for i in range(n):
@@ -222,7 +222,7 @@ def unknown_topics(n: int) -> Files:
 
 
 def comments(n: int) -> Files:
-    """n comments that hide findings which there are not."""
+    """n comments that suppress findings that do not exist."""
     return _system(_machine(body="<!-- as2fm: ignore[unused-variable] -->" * n))
 
 
@@ -305,13 +305,13 @@ def subtrees(n: int) -> Files:
 
 
 def chained_subtrees(n: int) -> Files:
-    """n subtrees, each in the one before."""
+    """n subtrees, each inside the previous one."""
     trees = [f'<BehaviorTree ID="T{i}"><SubTree ID="T{i + 1}" /></BehaviorTree>' for i in range(n)]
     return _forest("".join(trees) + f'<BehaviorTree ID="T{n}"><AlwaysSuccess /></BehaviorTree>')
 
 
 def chained_sequences(n: int) -> Files:
-    """n subtrees, each in a sequence in the one before, all with the outer blackboard."""
+    """n subtrees, each in a sequence inside the previous one, all with the outer blackboard."""
     inner = (
         '<BehaviorTree ID="T{}"><Sequence><SubTree ID="T{}" _autoremap="true" x="{{y}}" /></Sequence></BehaviorTree>'
     )
@@ -320,7 +320,7 @@ def chained_sequences(n: int) -> Files:
 
 
 def unknown_remaps(n: int) -> Files:
-    """n uses of a subtree, each with an attribute like one of n variables of the subtree."""
+    """n uses of a subtree, each with an attribute similar to one of n variables of the subtree."""
     uses = "".join(f'<SubTree ID="T1" port_{i}="1" />' for i in range(n))
     scripts = "".join(f'<Script code="prot_{i} := 1" />' for i in range(n))
     inner = f'<BehaviorTree ID="T1"><Sequence>{scripts}</Sequence></BehaviorTree>'
@@ -328,7 +328,7 @@ def unknown_remaps(n: int) -> Files:
 
 
 def unknown_subtrees(n: int) -> Files:
-    """n subtrees that there are not, each like one of n trees."""
+    """n subtrees that do not exist, each with a name similar to one of n trees."""
     uses = "".join(f'<SubTree ID="Tere_{i}" />' for i in range(n))
     trees = "".join(f'<BehaviorTree ID="Tree_{i}"><AlwaysSuccess /></BehaviorTree>' for i in range(n))
     return _forest(f'<BehaviorTree ID="T0"><Sequence>{uses}</Sequence></BehaviorTree>{trees}')
@@ -342,9 +342,11 @@ def blackboard(n: int) -> Files:
 
 @dataclass(frozen=True)
 class Dimension:
-    """Attributes:
-    files: size -> the files of a system, `main.xml` among them, by relative path.
-    most: the greatest size worth trying: the text is about 300,000 characters long, or what it stands for is enormous.
+    """A dimension in which a system can grow.
+
+    Attributes:
+        files: size -> the files of a system, including `main.xml`, by relative path.
+        most: the greatest useful size: the text has about 300,000 characters, or its translation would be enormous.
     """
 
     name: str
@@ -352,7 +354,7 @@ class Dimension:
     most: int
 
     def texts(self, size: int, folder: str = NOWHERE) -> Files:
-        """The files by path."""
+        """The texts of the files, by path."""
         return {os.path.normpath(os.path.join(folder, name)): text for name, text in self.files(size).items()}
 
 

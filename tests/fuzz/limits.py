@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The time and the memory that one case may take, in the process that runs it.
+"""The time and the memory that one case may use, in the process that runs it.
 
-- Time is the processor's, so a busy machine makes no failures. When it is over, `OutOfTime` is raised wherever the case
-  is; code that never returns to Python is ended by `fuzz.runner`, from outside.
-- Memory is what the process allocates beyond what it had. Python raises `MemoryError` when it is over.
+- The time is CPU time, so a busy machine causes no failures. At the limit, `OutOfTime` is raised wherever the case is.
+  Code that never returns to Python is ended by `fuzz.runner`, from outside.
+- The memory is the amount that the process allocates in addition. At the limit, Python raises `MemoryError`.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from collections.abc import Iterator
 from typing import Any
 
 SECONDS = 2.0
-"""Of processor time."""
+"""The maximum CPU time in s."""
 
 MEMORY = 500 * 1024 * 1024
-"""Bytes."""
+"""The maximum memory in bytes."""
 
 _MARGIN = 0.5
-"""Seconds of processor time until `OutOfTime` is raised once more, if somebody has caught the first."""
+"""The CPU time in s after which `OutOfTime` is raised again, if the first one was caught."""
 
 
 class OutOfTime(BaseException):
-    """The time of a case is over. No `Exception`, so that nothing takes it for a failure of a part."""
+    """The time of a case is over. It is not an `Exception`, so that no code handles it as a failure of a part."""
 
 
 @contextlib.contextmanager
 def limited(seconds: float = SECONDS, memory: int = MEMORY) -> Iterator[None]:
-    """Limits what is done inside. To be used in the main thread, and not nested.
+    """Limits the code in a `with` statement. Use it in the main thread, and do not nest it.
 
     Raises:
-        OutOfTime: it took longer.
-        MemoryError: it allocated more.
+        OutOfTime: the code took longer.
+        MemoryError: the code allocated more.
     """
 
     def out_of_time(number: int, frame: Any) -> None:
@@ -53,7 +53,7 @@ def limited(seconds: float = SECONDS, memory: int = MEMORY) -> Iterator[None]:
 
 
 def restart(seconds: float = SECONDS) -> None:
-    """Gives the running case its whole time again: what comes is another command."""
+    """Gives the running case its whole time again, because it runs another command."""
     if signal.getitimer(signal.ITIMER_PROF)[0]:
         _start(seconds)
 
@@ -63,6 +63,6 @@ def _start(seconds: float) -> None:
 
 
 def _allocated() -> int:
-    """Bytes of data of this process, as Linux counts them for RLIMIT_DATA."""
+    """The bytes of data of this process, as Linux counts them for RLIMIT_DATA."""
     with open("/proc/self/status", encoding="ascii") as status:
         return next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmData"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random JANI networks: from one automaton to a hundred, whose actions have more combinations of edges than there are
-numbers of 64 bits."""
+"""Random JANI networks, with one to a hundred automata. Their actions may have more combinations of edges than 64 bits
+can represent."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def network(random: Random) -> Json:
 
 
 def small(random: Random) -> Json:
-    """Some automata with guards, chances, arithmetic that may go wrong, partial synchronisation and silent edges."""
+    """A few automata with guards, probabilities, arithmetic that may fail, partial synchronisation and edges without
+    action."""
     count = random.randint(1, 5)
     automata = [_automaton(random, number) for number in range(count)]
     syncs = []
@@ -80,7 +81,7 @@ def _number(random: Random, names: tuple[str, ...], depth: int = 1) -> Any:
 
 
 def _cell(index: Any) -> Json:
-    # Mostly within bounds.
+    # Most values are within the bounds.
     return {"op": "aa", "exp": "v", "index": {"op": "%", "left": index, "right": 3}}
 
 
@@ -150,7 +151,8 @@ def _small_condition(random: Random, names: tuple[str, ...]) -> Json:
 
 
 def wide(random: Random, count: int) -> Json:
-    """All automata take part in all actions, with up to four edges each, some of them with guards and chances."""
+    """A network in which all automata take part in all actions, with up to four edges each, some with guards and
+    probabilities."""
     kinds = [random.randint(1, 4) for _ in range(4)]
     automata = []
     for number in range(count):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One mistake hides no other: pairs of mistakes in different files of one system, each reported as it is alone.
+"""No error hides another one: pairs of errors in different files of one system must be reported like each error alone.
 
-The mistakes are made from a sound system (`pairs.txt`): the name of an element, or the name or value of an attribute,
-is misspelled or left out, or an element is added that the language does not know. What a mistake gives alone must be
-given beside any other, unless the other could be its explanation; then the rule `not-checked` says so.
+The errors are made from a correct system (`pairs.txt`): the name of an element, or the name or value of an attribute,
+is misspelled or removed, or an unknown element is added. The findings of an error alone must also be reported beside
+any other error, unless the other one could explain them; then the rule `not-checked` reports this.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _VARIABLE = re.compile(r'"((?:topic|action|moved)_\w+(?:\.valid)?)"')
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake in one file: what it is, in words, and the text of the file with it."""
+    """An error in one file: a description, and the text of the file with the error."""
 
     file: str
     what: str
@@ -42,7 +42,7 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Report:
-    """What is said about a system: file and rule of each error and warning, and the texts of what is not checked."""
+    """The findings in a system: file and rule of each error and warning, and the texts of `not-checked`."""
 
     findings: frozenset[tuple[str, str]]
     not_checked: frozenset[tuple[str, str]]
@@ -56,13 +56,13 @@ class Outcome(enum.Enum):
 
 @cache
 def base() -> dict[str, str]:
-    """The sound system: file name -> text."""
+    """The correct system: file name -> text."""
     return split_files(SYSTEM.read_text(encoding="utf-8"))
 
 
 @cache
 def mistakes() -> tuple[Mistake, ...]:
-    """All mistakes, in one order; some make no difference."""
+    """All errors, in a fixed order. Some have no effect."""
     return tuple(_made())
 
 
@@ -72,7 +72,7 @@ def alone(mistake: Mistake) -> Report:
 
 
 def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
-    """What becomes of two mistakes in different files, and what is lost or held back, in words."""
+    """The result of two errors in different files, and a description of the findings that are lost or suppressed."""
     together = report({**base(), first.file: first.text, second.file: second.text})
     expected = alone(first).findings | alone(second).findings
     missing = sorted(expected - together.findings)
@@ -84,8 +84,8 @@ def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
 
 
 def _are_consequences(missing: list[tuple[str, str]], first: Mistake, second: Mistake) -> bool:
-    """Whether both mistakes are reported where they are, and what is missing is reported of other files only. Two ports
-    without a type are not in conflict, for example, though each is with the type of the other."""
+    """Whether both errors are reported in their files, and only findings in other files are missing. For example, two
+    ports without a type do not conflict, though each conflicts with the type of the other."""
     files = {first.file, second.file}
     return not any(file in files for file, _ in missing) and all(
         any(file == mistake.file for file, _ in alone(mistake).findings) for mistake in (first, second)
@@ -93,7 +93,7 @@ def _are_consequences(missing: list[tuple[str, str]], first: Mistake, second: Mi
 
 
 def choose(seed: int) -> tuple[Mistake, Mistake]:
-    """Two mistakes in different files, both of which are reported alone."""
+    """Choose two errors in different files, both of which are reported alone."""
     random = Random(seed)
     while True:
         first, second = random.choice(mistakes()), random.choice(mistakes())
@@ -102,7 +102,7 @@ def choose(seed: int) -> tuple[Mistake, Mistake]:
 
 
 def report(texts: dict[str, str]) -> Report:
-    """What is said about the system of these files, each by its name."""
+    """The findings in the system that consists of these files."""
     files = {os.path.join(NOWHERE, name): text for name, text in texts.items()}
     diagnostics = api.check(list(files), (), Settings(), files).diagnostics
     return Report(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m fuzz`, wherever it is started from."""
+"""Runs `python -m fuzz` from any folder."""
 
 from __future__ import annotations
 

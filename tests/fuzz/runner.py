@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs cases and says what failed: in this process, or in several that are watched.
+"""Runs cases and reports failures, in this process or in several watched processes.
 
-A watched process that does not come back within `TIMEOUT_S` seconds is ended, and its case is a failure; so is the case
-of a process that dies.
+A watched process that does not return within `TIMEOUT_S` seconds is ended, and its case is a failure. The case of a
+process that dies is also a failure.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ from fuzz.strategy import Failure
 from timeouts import TIMEOUT_S
 
 CASES_OF_A_PROCESS = 400
-"""After so many cases a process is replaced, so that what one case leaves behind does not add up for ever."""
+"""The number of cases after which a process is replaced, so that memory that cases leave behind does not accumulate."""
 
 _LOGGERS = ("roaml", "as2fm_lsp", "pygls")
 
 
 @dataclass(frozen=True)
 class Ran:
-    """A case that has been run. `size`: characters of its files. `seconds`: of the processor, while it was run."""
+    """A case that has been run. `size` is the number of characters of its files; `seconds` is the CPU time of the
+    run."""
 
     strategy: str
     seed: int
@@ -49,14 +50,15 @@ class Ran:
 
 
 MAX_RUNS = 3
-"""How often a case may run out of time before that is a failure: other work on the machine makes processors slower."""
+"""The number of times that a case may run out of time before this is a failure, because other work makes processors
+slower."""
 
 _OUT_OF_TIME = "out of time"
 
 
 def run(strategy: str, seed: int, bounded: bool = True) -> Ran:
-    """Runs one case in this process, again if it runs out of time. Without `bounded`, time and memory are not limited:
-    tests measure no time."""
+    """Runs a case in this process, and again if it runs out of time. Without `bounded`, time and memory are not
+    limited, because tests do not measure time."""
     for _ in range(MAX_RUNS):
         ran = _run_once(strategy, seed, bounded)
         if not any(failure.kind.startswith(_OUT_OF_TIME) for failure in ran.failures):
@@ -86,7 +88,7 @@ def _run_once(strategy: str, seed: int, bounded: bool) -> Ran:
 
 
 def run_all(cases: Iterable[tuple[str, int]], jobs: int) -> Iterator[Ran]:
-    """Runs cases (strategy, seed) in `jobs` watched processes. They come back in the order in which they end."""
+    """Runs cases (strategy, seed) in `jobs` watched processes. The results are in the order in which the cases end."""
     left = iter(cases)
     workers = [_Worker() for _ in range(jobs)]
     try:
@@ -104,7 +106,7 @@ def run_all(cases: Iterable[tuple[str, int]], jobs: int) -> Iterator[Ran]:
 
 
 class _Worker:
-    """A process that runs one case after the other, and who watches it."""
+    """A process that runs cases one after the other, and the watch on it."""
 
     def __init__(self) -> None:
         self._start()
@@ -119,7 +121,7 @@ class _Worker:
         self._done = 0
 
     def take(self, cases: Iterator[tuple[str, int]]) -> bool:
-        """Begins the next case, if there is one."""
+        """Begin the next case, if there is one."""
         case = next(cases, None)
         if case is None:
             return False
@@ -131,7 +133,7 @@ class _Worker:
         return True
 
     def result(self) -> Ran | None:
-        """What came of the case that was begun; None if it still runs."""
+        """The result of the current case; `None` while it runs."""
         try:
             if self.pipe.poll():
                 self._done += 1
@@ -174,7 +176,7 @@ def _work(pipe: Connection, stack: IO[Any]) -> None:
 
 
 def place(error: BaseException) -> str:
-    """Where an exception comes from, without what differs from case to case."""
+    """The place where an exception was raised, without parts that differ between cases."""
     frames = traceback.extract_tb(error.__traceback__)
     ours = (f for f in reversed(frames) if "/roaml/" in f.filename or "/as2fm_lsp/" in f.filename)
     last = next(ours, frames[-1] if frames else None)
@@ -184,7 +186,7 @@ def place(error: BaseException) -> str:
 
 
 class Crashes(logging.Handler):
-    """Collects the exceptions that the tool caught, reported and survived."""
+    """Collects the exceptions that the tool has caught and reported."""
 
     def __init__(self) -> None:
         super().__init__()

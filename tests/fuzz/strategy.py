@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a strategy of the fuzzer is.
+"""The interface of the strategies of the fuzzer.
 
-A strategy is one module in `fuzz/strategies` with a constant `STRATEGY`; that registers it. It makes a case of a seed.
-A case says what it does, runs, and yields what does not hold. Exceptions, hangs and the use of memory are noticed by
-those who run it (`fuzz.runner`), so a strategy looks only for what is wrong beyond that.
+A strategy is a module in `fuzz/strategies` with a constant `STRATEGY`, which registers it. It makes a case from a seed.
+A case describes itself, runs, and yields the invariants that do not hold. `fuzz.runner` detects exceptions, hangs and
+the use of memory, so a strategy only checks other invariants.
 """
 
 from __future__ import annotations
@@ -15,35 +15,38 @@ from typing import Protocol
 
 @dataclass(frozen=True)
 class Failure:
-    """Something that does not hold. `kind` is equal for equal failures of different cases."""
+    """An invariant that does not hold. `kind` is the same for equal failures of different cases."""
 
     kind: str
     details: str
 
 
 class Case(Protocol):
-    """One input. The seed alone decides what it is."""
+    """One input, which is determined by the seed."""
 
     def description(self) -> Iterable[str]:
-        """What the case is, in lines."""
+        """A description of the case, as lines."""
 
     def files(self) -> Mapping[str, str | bytes]:
-        """The input: a name or path for each text."""
+        """The input: file name or path -> text."""
 
     def run(self) -> Iterable[Failure]:
-        """What does not hold. Whatever it raises is a failure, too.
+        """Run the case and yield the invariants that do not hold. An exception is also a failure.
 
-        A case that does several things of which each may take the whole time calls `fuzz.limits.restart` between them.
+        A case that runs several commands, each of which may take the whole time, calls `fuzz.limits.restart` between
+        them.
         """
 
 
 @dataclass(frozen=True)
 class Strategy:
-    """Attributes:
-    name: as the command line names it; a case is named `NAME:SEED`.
-    summary: what it does, in one sentence.
-    make: the case of a seed; must not depend on anything else.
-    share: how many cases of a run it gets, relative to the other strategies.
+    """A strategy.
+
+    Attributes:
+        name: the name on the command line; a case is named `NAME:SEED`.
+        summary: what it does, in one sentence.
+        make: returns the case of a seed; it must not depend on anything else.
+        share: the number of its cases in a run, relative to the other strategies.
     """
 
     name: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A short sample of what `run.py` does at length, and that it would notice."""
+"""A short sample of the cases of `run.py`, and tests that it detects failures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from roaml.project import checking
 from roaml.rules.rule import FileContext, Rule
 
 SAMPLE = 200
-"""Cases of all strategies together."""
+"""The number of cases of all strategies together."""
 
 
 @pytest.mark.parametrize(("name", "count"), plan(SAMPLE, tuple(strategies().values())))
@@ -74,7 +74,7 @@ def test_crashes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class _Bad:
-    """A case that does what no case may do."""
+    """A case that violates the limits."""
 
     def __init__(self, seed: int) -> None:
         self.seed = seed

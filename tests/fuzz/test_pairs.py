@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A sample of the pairs of mistakes that `run.py --pairs` looks at, and that it would notice one that is hidden."""
+"""A sample of the pairs of errors of `run.py --pairs`, and a test that it detects hidden errors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_declaration_that_cannot_be_read_hides_what_it_could_be() -> None:
 
 
 def test_a_missing_finding_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if rules asked again whether all of the system can be read."""
+    """Simulates rules that check again whether the whole system can be read."""
     both = choose(0)
     assert outcome(*both)[0] is Outcome.BOTH
     monkeypatch.setattr(System, "may", lambda system, act, name, automaton=None: bool(system.possible))

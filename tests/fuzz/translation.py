@@ -21,12 +21,12 @@ from roaml.smc.model import ModelChecker
 
 
 def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
-    """What does not hold of the system at `path`; nothing if it has errors.
+    """The invariants that do not hold for the system at `path`; empty if it has errors.
 
-    Each step is what one command does, and may take the whole time of a case.
+    Each step corresponds to a command, and may take the whole time of a case.
 
     Raises:
-        Exception: whatever the translation raises.
+        Exception: any exception that the translation raises.
     """
     try:
         system = api.loaded(snapshot, path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A real client over standard input and output, and what tests ask of it."""
+"""A real client over standard input and output, with functions for tests."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ import prefork
 from timeouts import TIMEOUT_S
 
 STARTED = (sys.executable, "-m", "as2fm_lsp")
-"""The server as an editor starts it. Tests of anything but its start use `prefork.command()`, which is quick."""
+"""The server as an editor starts it. Tests that are not about the start use `prefork.command()`, which is faster."""
 QUICK = "from as2fm_lsp import __main__, diagnostics; diagnostics.PROGRESS_DELAY_S = {}; __main__.main()"
 
 REFRESHES = (types.WORKSPACE_CODE_LENS_REFRESH, types.WORKSPACE_INLAY_HINT_REFRESH)
-"""Requests to ask again; `Client.refreshed` lists those that have come."""
+"""The requests of the server to refresh; `Client.refreshed` lists those that have arrived."""
 
 PULLS = types.ClientCapabilities(
     text_document=types.TextDocumentClientCapabilities(diagnostic=types.DiagnosticClientCapabilities())
@@ -33,12 +33,13 @@ PULLS = types.ClientCapabilities(
 
 
 class Client(LanguageClient):
-    """The client of pytest-lsp, which holds every message against the specification, with what is asked here."""
+    """The client of pytest-lsp, which validates every message, with functions for tests."""
 
     def __init__(self, *, is_slow: bool = False) -> None:
-        """
+        """Create the client.
+
         Args:
-            is_slow: it is asked for its settings, and does not come to answering before `answers` is set.
+            is_slow: whether the answer to the request for settings is delayed until `answers` is set.
         """
         super().__init__(converter_factory=default_converter)
         self.published: dict[str, types.PublishDiagnosticsParams] = {}
@@ -61,13 +62,13 @@ class Client(LanguageClient):
         self.text_document_did_open(types.DidOpenTextDocumentParams(item))
 
     def open_untitled(self, name: str, text: str, language: str = "ascxml") -> str:
-        """Open a document that has no file; its URI."""
+        """Open a document without a file; return its URI."""
         uri = f"untitled:{name}"
         self.text_document_did_open(types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, language, 1, text)))
         return uri
 
     def replace(self, path: Path, text: str, version: int = 2) -> None:
-        """The whole text anew."""
+        """Replace the whole text of a document."""
         self.edit(path, types.TextDocumentContentChangeWholeDocument(text), version=version)
 
     def edit(self, path: Path, *changes: types.TextDocumentContentChangeEvent, version: int = 2) -> None:
@@ -86,14 +87,14 @@ class Client(LanguageClient):
         self.workspace_did_change_workspace_folders(types.DidChangeWorkspaceFoldersParams(event))
 
     def changed(self, *paths: Path, kind: types.FileChangeType = types.FileChangeType.Changed) -> None:
-        """Tell that files have changed on the disk."""
+        """Notify the server of changed files on the disk."""
         events = [types.FileEvent(path.as_uri(), kind) for path in paths]
         self.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(events))
 
     async def fixes(
         self, path: Path, range_: types.Range, shown: Sequence[types.Diagnostic] = ()
     ) -> list[types.CodeAction]:
-        """The quick fixes at a place, where the client shows some diagnostics."""
+        """The quick fixes at a place where the client shows some diagnostics."""
         params = types.CodeActionParams(
             types.TextDocumentIdentifier(path.as_uri()),
             range_,
@@ -105,11 +106,11 @@ class Client(LanguageClient):
     # ---------------------------------------------------------------- events
 
     async def until(self, reached: Callable[[], object]) -> None:
-        """Wait for what the server sends of itself (diagnostics, progress, messages, requests to ask again) until a
-        condition holds.
+        """Wait for messages that the server sends by itself (diagnostics, progress, messages, requests to refresh)
+        until a condition holds.
 
         Raises:
-            asyncio.TimeoutError: it does not come.
+            asyncio.TimeoutError: the condition does not become true.
         """
         while not reached():
             self.news.clear()
@@ -158,7 +159,7 @@ def _published(client: Client, params: types.PublishDiagnosticsParams) -> None:
 
 
 def _with_news(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any], None]:
-    """A feature of pytest-lsp that wakes who waits for news."""
+    """A feature of pytest-lsp that also wakes the code that waits for messages."""
 
     def take(client: Client, params: Any) -> None:
         feature(client, params)
@@ -168,7 +169,7 @@ def _with_news(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any]
 
 
 def _parts(feature: Callable[[Client, Any], None]) -> Callable[[Client, Any], None]:
-    """Keep the partial results of a request; leave the progress of work to the feature."""
+    """Store the partial results of a request. Progress of work is handled by the feature."""
 
     def take(client: Client, params: types.ProgressParams) -> None:
         if params.token in client.progress_reports:
@@ -201,7 +202,8 @@ async def connect(
     is_slow: bool = False,
     quick: float | None = None,
 ) -> AsyncIterator[Client]:
-    """A server with these folders open. It shows progress of checks that take longer than `quick` seconds, if given."""
+    """A server with these folders open. If `quick` is given, it shows the progress of checks that take longer than
+    `quick` seconds."""
     client = Client(is_slow=is_slow)
     capabilities = capabilities or types.ClientCapabilities()
     if settings is not None:
@@ -227,7 +229,7 @@ async def connect(
 
 
 class RawServer:
-    """A server that is sent bytes, for what no client of a library would send."""
+    """A server that is sent bytes, for input that the library of a client would not send."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
@@ -245,7 +247,7 @@ class RawServer:
         self.send(frame(message))
 
     async def said(self, text: str) -> str:
-        """Wait until it has said something with this text; all that it has said since it was last listened to."""
+        """Wait until the log contains a text; return the log since the last call."""
         assert self._process.stdout is not None
         data = b""
         while text.encode() not in data:
@@ -255,11 +257,11 @@ class RawServer:
         return data.decode()
 
     async def ended(self) -> int:
-        """Wait for its end, while its input is open; its exit status."""
+        """Wait for the end of the process while its input is open; return its exit status."""
         return await asyncio.wait_for(self._process.wait(), TIMEOUT_S)
 
     async def end(self) -> tuple[int, list[dict[str, object]], str]:
-        """Close its input and wait: its exit status, what it said, and its log."""
+        """Close the input and wait. Return the exit status, the output, and the log."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         try:
@@ -271,9 +273,10 @@ class RawServer:
 
 
 async def start_raw(*arguments: str, command: Sequence[str] = ()) -> RawServer:
-    """
+    """Start a server.
+
     Args:
-        command: what is started, if not a fork.
+        command: the command to start, if the server is not a fork.
     """
     pipe = asyncio.subprocess.PIPE
     command = command or prefork.command()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every method that the server offers, asked at many places of a system, and what must hold of the answers.
+"""Sends every request that the server supports at many places of a system, and checks invariants of the answers.
 
-- What is offered is read from the server's capabilities. One that this module does not know is a failure: whoever adds
-  a feature says here how it is asked.
-- No answer is an error, but for names that cannot be renamed; every range in an answer lies in the text that it is
-  about; formatting changes no model.
+- The requests are read from the server's capabilities. An unknown capability is a failure, so a new feature must define
+  its request here.
+- No answer is an error, except for names that cannot be renamed. Every range in an answer is within its text.
+  Formatting does not change the meaning of a model.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from roaml.text import SourceFile, TextEdit, apply_edits, decode
 
 Json: TypeAlias = dict[str, Any]
 STEP = 7
-"""Every so many characters a place is asked about."""
+"""The number of characters between two places of requests."""
 
 CAPABILITIES: Json = {
     "general": {"positionEncodings": ["utf-16"]},
@@ -49,11 +49,13 @@ _CONTEXTS: dict[str, Json] = {
 
 @dataclass(frozen=True)
 class Method:
-    """Attributes:
-    needs: what must be true in the options of the capability.
-    at: whether it is asked at a place ("position", "range"), or of a whole document ("") or of the workspace (None).
-    more: further parameters.
-    follow: the methods that are asked about each thing in the answer.
+    """A request that is tested.
+
+    Attributes:
+        needs: the condition on the options of the capability.
+        at: whether it is about a place ("position", "range"), a whole document ("") or the workspace (None).
+        more: further parameters.
+        follow: the requests that are sent for each item of the answer.
     """
 
     name: str
@@ -114,19 +116,19 @@ METHODS: dict[str, tuple[Method, ...]] = {
     ),
 }
 NO_METHODS = frozenset(("executeCommandProvider", "positionEncoding", "textDocumentSync", "workspace"))
-"""Capabilities that are not asked about places; tests of their own look at them."""
+"""Capabilities of requests that are not about places. Other tests cover them."""
 
 _REFUSABLE = ("textDocument/prepareRename", "textDocument/rename")
 _REFUSED = types.LSPErrorCodes.RequestFailed.value
 _FOLLOWED = 3
-"""About how many things in an answer the next method is asked."""
+"""The number of items of an answer for which the next request is sent."""
 
 
 def offered(capabilities: Json) -> tuple[tuple[Method, ...], tuple[str, ...]]:
-    """The methods that a server offers, and those that resolve what others answer.
+    """The requests that a server supports, and those that resolve the answers of others.
 
     Raises:
-        AssertionError: it offers something that is not known here.
+        AssertionError: the server declares an unknown capability.
     """
     unknown = capabilities.keys() - METHODS.keys() - NO_METHODS
     assert not unknown, f"say in {Path(__file__).name} how to ask for {sorted(unknown)}"
@@ -155,7 +157,7 @@ def every_place(text: str) -> Sequence[int]:
 
 
 def some_places(seed: int, count: int) -> Callable[[str], Sequence[int]]:
-    """A few of these, always the same for a seed."""
+    """Some of the places, always the same for a seed."""
     chance = Random(seed)
 
     def choose(text: str) -> Sequence[int]:
@@ -166,12 +168,12 @@ def some_places(seed: int, count: int) -> Callable[[str], Sequence[int]]:
 
 
 class Sweep:
-    """One system in a server of its own.
+    """One system in a separate server.
 
     Args:
         main: the system file.
         ros_paths: folders with ROS packages.
-        places: which of a file's offsets are asked about.
+        places: selects the offsets of a file for requests.
     """
 
     def __init__(
@@ -187,7 +189,7 @@ class Sweep:
         self._next_id = 10
 
     def failures(self) -> Iterator[str]:
-        """What does not hold."""
+        """The invariants that do not hold."""
         with started(prefork.command()) as server:
             server.initialize(
                 self.main.parent,
@@ -240,7 +242,7 @@ class Sweep:
     def _requests(
         self, server: Server, asked: Sequence[tuple[Method, str, Json]], resolvers: Sequence[str]
     ) -> Iterator[str]:
-        """Ask all at once, and then about what is answered."""
+        """Send all requests at once, and then those that follow from the answers."""
         sent = [(method.name, path, params or dict(method.more)) for method, path, params in asked]
         answers = self._answers(server, sent)
         following: list[tuple[str, str, Json]] = []
@@ -284,7 +286,7 @@ class Sweep:
             yield from self._tokens(source, result["data"])
 
     def _ranges(self, value: object, path: str) -> Iterator[str]:
-        """The ranges in an answer that lie outside of the text that they are about."""
+        """The ranges in an answer that are outside their texts."""
         if isinstance(value, list):
             for each in value:
                 yield from self._ranges(each, path)
@@ -293,7 +295,7 @@ class Sweep:
         if value.keys() == {"start", "end"}:
             yield from self._range(value, path)
             return
-        # The places of a call lie in the file of the caller: where it comes from, or what was asked about.
+        # The ranges of a call are in the file of the caller: the source of the call, or the item of the request.
         document = value.get("textDocument", value.get("from", value))
         here = _path(document, path)
         for key, each in value.items():
@@ -354,7 +356,7 @@ class Sweep:
             yield f"{self.main}: formatting changes the model"
 
     def _translated(self, texts: dict[str, str]) -> object:
-        """The text of the translation; of a system with errors, what they are."""
+        """The text of the translation; for a system with errors, the errors."""
         try:
             system = api.load(str(self.main), self.ros_paths, Settings(), texts)
         except api.ModelError as error:
@@ -363,7 +365,7 @@ class Sweep:
 
 
 def _path(value: object, otherwise: str) -> str:
-    """The path of what has a URI."""
+    """The path of an item with a URI."""
     uri = value.get("uri") if isinstance(value, dict) else None
     return str(to_fs_path(uri)) if isinstance(uri, str) else otherwise
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Asks the server everything it offers at every 7th character of the examples, the conformance models and further
-systems; exit code 1 if an answer is wrong.
+"""Sends every request that the server supports at every 7th character of the examples, the conformance models and
+further systems. The exit status is 1 if an answer is wrong.
 
-python tests/lsp/sweep.py [MAIN.xml ...]
+    python tests/lsp/sweep.py [MAIN.xml ...]
 """
 
 from __future__ import annotations

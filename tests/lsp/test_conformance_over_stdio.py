@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Editor and command line say the same: for every model, every planted mistake, and after each mistake is mended."""
+"""The editor and the command line report the same findings: for every model, every planted error, and after each error
+is fixed."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ import conformance
 from as2fm_lsp.cli.main import run
 
 Row: TypeAlias = tuple[str, int, int, int, int, str, str, str]
-"""File relative to the folder, the place counted from 1, severity, code and message."""
+"""The file relative to the folder, the place counted from 1, severity, code and message."""
 
 SEVERITIES = {1: "error", 2: "warning", 3: "information", 4: "hint"}
 FOLDERS = tuple(dict.fromkeys(path.parent for path in conformance.systems()))
@@ -36,7 +37,7 @@ def row(path: Path, folder: Path, d: types.Diagnostic) -> Row:
 
 
 def by_command_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> set[Row]:
-    """What the command line says about the same."""
+    """The diagnostics of the command line for the same files."""
     status = run(["--check", "--format", "json", "--ros-path", str(conformance.INTERFACES), str(folder)])
     rows = json.loads(capsys.readouterr().out)
     assert status == any(r["severity"] == "error" for r in rows)
@@ -67,7 +68,7 @@ async def test_mistakes_and_their_mending(capsys: pytest.CaptureFixture[str]) ->
 
 
 def mend(client: Client, folder: Path, base: Path) -> set[str]:
-    """Type over each file of a broken system what the good one has; the names of the files."""
+    """Replace each file of a system with an error by the correct one, as an edit; return the names of the files."""
     names = set()
     for good in sorted(base.parent.iterdir()):
         broken = folder / ("main.xml" if good == base else good.name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits of an open document: what the server holds against what the client has, in all position encodings."""
+"""Edits of an open document: the text of the server is equal to that of the client, in all position encodings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from as2fm_lsp.session import Session
 from roaml.text import SourceFile, Span
 
 NO_LINE_ENDS = "\u2028\u2029\x85\x0b\x0c\x1c\x1d\x1e"
-"""Where `str.splitlines` ends a line and the protocol does not."""
+"""Characters at which `str.splitlines` ends a line and the protocol does not."""
 
 ALPHABET = "ab<é€🤖\t \r\n\ufeff" + NO_LINE_ENDS
 ENCODINGS = tuple(types.PositionEncodingKind)
@@ -32,8 +32,8 @@ CODECS = {
 
 
 class ClientText:
-    """A document as an editor keeps it: a sequence of the units of its encoding, with lines that end as the protocol
-    says. Written independently of the server: it neither decodes nor uses regular expressions."""
+    """A document as an editor stores it: a sequence of the units of its encoding, with lines that end as the protocol
+    defines. It is independent of the server's code: it neither decodes nor uses regular expressions."""
 
     def __init__(self, encoding: types.PositionEncodingKind, text: str) -> None:
         self.encoding = encoding
@@ -76,15 +76,15 @@ class ClientText:
         self.units[start:end] = self.encoded(text)
 
     def boundaries(self) -> list[int]:
-        """The offsets that a client names. One whose texts are UTF-8 never cuts a character in two, others may."""
+        """The offsets that a client can use. A client with UTF-8 texts never splits a character; others may."""
         if self.encoding is types.PositionEncodingKind.Utf8:
             return [at for at in range(len(self.units) + 1) if not 0x80 <= (*b"".join(self.units), 0)[at] < 0xC0]
         return list(range(len(self.units) + 1))
 
 
 class Edit(NamedTuple):
-    """`start` and `end` choose among the places that the text has when the edit is made; `beyond` is added to a column,
-    which is then too great."""
+    """An edit. `start` and `end` select among the places of the text at the time of the edit; `beyond` is added to a
+    column, which is then too great."""
 
     start: int
     end: int
@@ -126,17 +126,15 @@ def test_edits(encoding: types.PositionEncodingKind, text: str, made: list[Edit]
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @given(text=texts)
 def test_places(encoding: types.PositionEncodingKind, text: str) -> None:
-    """What the server says of a place is what the client finds there, and back.
-
-    A byte order mark before the text counts in the client's columns only.
-    """
+    """Positions are converted to the client's units and back without a change. A byte order mark before the text is
+    only included in the client's columns."""
     client, session = ClientText(encoding, text), opened(encoding, text)
     source = SourceFile("untitled:1", text.removeprefix("\ufeff"))
     mark = len(text) - len(source.text)
     for offset in range(len(source.text) + 1):
         position = session.convert.position(source, offset)
         assert position == client.position(len(client.encoded(text[: mark + offset])))
-        # Between CR and LF there is no place; it is the end of the line.
+        # There is no position between CR and LF; it is the end of the line.
         expected = offset - 1 if source.text[offset - 1 : offset + 1] == "\r\n" and offset else offset
         assert session.convert.offset(source, position) == expected
     ends = [at for at, character in enumerate(source.text) if character in "\r\n"]
@@ -152,7 +150,8 @@ def test_places(encoding: types.PositionEncodingKind, text: str) -> None:
 
 
 def test_a_column_beyond_the_last_line() -> None:
-    """A client that says `to the end of the line` means the end, and not the character before it."""
+    """A client that uses a column beyond the end means the end of the line, and not the position before the last
+    character."""
     session = opened(types.PositionEncodingKind.Utf16, "<a/>")
     end = types.Position(0, 10_000)
     session.change("untitled:1", [types.TextDocumentContentChangePartial(types.Range(end, end), "<!-- -->")], 2)
@@ -168,7 +167,7 @@ def test_a_document_that_is_not_open_does_not_change() -> None:
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 async def test_what_is_checked_is_what_the_client_has(tmp_path: Path, encoding: types.PositionEncodingKind) -> None:
-    """Over the wire: mistakes are found and mended behind all of these characters, on the first line, too."""
+    """Over stdio: errors are reported and fixed behind all of these characters, also on the first line."""
     clock.write(tmp_path)
     path = tmp_path / "clock.ascxml"
     text = clock.CLOCK.replace('<assign location="count"', f'<!-- 🤖{NO_LINE_ENDS[:3]} --><assign location="count"')

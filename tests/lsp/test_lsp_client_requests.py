@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What our own client asks beyond the protocol: about, pictures, plain SCXML, migration."""
+"""Custom requests of the VS Code client: about, pictures, plain SCXML, migration."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OLD_CLOCK = clock.CLOCK.replace("<ascxml", "<scxml").replace("</ascxml", "</scxm
 
 
 async def asked(folder: Path, method: str, *files: str, **more: object) -> list[Any]:
-    """The answers for some files, asked as bytes: a library of the client would make objects of them."""
+    """The answers for some files, sent as bytes, because the library of the client would convert them to objects."""
     server = await start_raw()
     folders = [{"uri": folder.as_uri(), "name": "robot"}]
     server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
@@ -99,7 +99,7 @@ async def test_pictures(tmp_path: Path) -> None:
 
 
 async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The file is that of the command line."""
+    """The file is equal to that of the command line."""
     write_example(tmp_path)
     for theme, direction in (("light", "down"), ("dark", "right")):
         options = {"kind": "machine", "theme": theme, "direction": direction}
@@ -126,7 +126,7 @@ async def test_plain_scxml(tmp_path: Path) -> None:
 
 
 async def test_plain_scxml_of_plugins(tmp_path: Path) -> None:
-    """Of those that the tree has twice, one is shown."""
+    """If the tree uses a plugin twice, one of the two machines is shown."""
     write_example(tmp_path)
     tree = tmp_path / "tree.xml"
     tree.write_text(tree.read_text().replace("<Charge />", '<Charge /><Charge name="again" />'))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Code actions over standard input and output: of the kinds that are wanted, resolved when they are chosen."""
+"""Code actions over standard input and output: restricted to the requested kinds, and resolved when they are
+selected."""
 
 from __future__ import annotations
 
@@ -51,7 +52,7 @@ LAZY = types.ClientCapabilities(
 
 
 async def ask(client: Client, path: Path, text: str, at: str, *only: str) -> list[types.CodeAction]:
-    """What is offered at a place, given as `place` takes it."""
+    """The code actions at a place, in the form of `place`."""
     position = place(path, text, at)[1]
     context = types.CodeActionContext([], only=list(only) or None)
     range_ = types.Range(position, position)
@@ -61,7 +62,7 @@ async def ask(client: Client, path: Path, text: str, at: str, *only: str) -> lis
 
 
 def applied(text: str, edits: list[types.TextEdit]) -> str:
-    """The text with edits in UTF-16 positions made."""
+    """The text after edits in UTF-16 positions."""
     lines = text.splitlines(keepends=True)
 
     def offset(position: types.Position) -> int:
@@ -94,7 +95,7 @@ async def test_a_client_that_does_not_resolve_gets_the_edits(tmp_path: Path) -> 
 
 
 async def test_edits_are_made_when_an_action_is_resolved(tmp_path: Path) -> None:
-    """Against the text as it is then."""
+    """An edit is computed for the text at the time of the resolution."""
     path = tmp_path / "a.ascxml"
     async with connect(tmp_path, capabilities=LAZY) as client:
         client.open(path, WARNED)
@@ -164,7 +165,7 @@ async def test_files_are_made_for_clients_that_can(tmp_path: Path) -> None:
 
 
 async def test_an_action_of_nobody(tmp_path: Path) -> None:
-    """What a client makes up is given back as it is."""
+    """An unknown action that a client sends is returned unchanged."""
     async with connect(tmp_path, capabilities=LAZY) as client:
         for data in (None, 3, {"uri": "file:///nowhere"}, {"uri": "file:///nowhere", "start": "x", "end": 1}):
             action = types.CodeAction("Do it", kind="quickfix", data=data)
@@ -192,7 +193,7 @@ COUNTED = """\
 
 
 async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
-    """The client gets its own diagnostic back, whatever it has made of it; what it makes up changes nothing."""
+    """The client gets its own diagnostic back. Data that the client has invented have no effect."""
     for name, text in split_files(COUNTED).items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     main = tmp_path / "main.xml"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Completion over the wire: what a client that knows snippets gets, and one that knows nothing."""
+"""Completion over stdio, for a client that supports snippets and for one that does not."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ async def test_an_item_of_another_kind_stays_as_it_is(tmp_path: Path) -> None:
 
 
 async def test_an_accepted_attribute_opens_its_values(tmp_path: Path) -> None:
-    """With a command of the client, where there is nothing in particular to be filled in."""
+    """With a command of the client, if no particular text is inserted."""
     path = tmp_path / "a.ascxml"
     commands = []
     for options in ({}, {"triggerSuggest": "editor.suggest"}):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configuration files in the editor: mistakes are diagnostics in the file, as long as they are there."""
+"""Configuration files in the editor: errors are diagnostics of the file, until they are fixed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ async def test_mistakes_are_diagnostics_of_the_file(tmp_path: Path, name: str) -
         assert [diagnostic.range.start.line for diagnostic in diagnostics] == [1, 2]
         (fix,) = await client.fixes(configuration, diagnostics[1].range)
         assert fix.title == "Change to `ignore`"
-        # As typed, before it is saved.
+        # The text is not saved yet.
         client.open(configuration, language="toml")
         client.replace(configuration, f'{header}ros-path = ["msgs"]\nignore = ["no-such-rule"]\n')
         await client.until_codes(configuration, "missing-folder", "invalid-setting")
@@ -51,7 +51,7 @@ async def test_an_invalid_toml_file_that_is_removed(tmp_path: Path) -> None:
 
 
 async def test_the_configuration_above_the_folder(tmp_path: Path) -> None:
-    """It is in force, so its mistakes are shown, though it is outside of what is open."""
+    """The configuration applies, so its errors are shown, although it is outside the open folder."""
     clock.write(tmp_path / "models")
     configuration = tmp_path / "as2fm.toml"
     configuration.write_text("ingore = []\n")
@@ -74,7 +74,7 @@ async def test_saving_puts_settings_in_force(tmp_path: Path) -> None:
 
 
 async def test_errors_in_settings_of_the_editor_are_reported(tmp_path: Path) -> None:
-    """They lie in no file that the server knows."""
+    """They are shown as messages, because they are not in a file that the server knows."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     async with connect(tmp_path, options={"settings": {"ignore": ["no-such-rule"]}}) as client:
         client.open(tmp_path / "clock.ascxml")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expectations set from results: a known result is judged again at once, without new traces."""
+"""Expectations set from results: a known result is compared with them at once, without new traces."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ async def test_an_expectation_is_set_beside_a_property_in_xml(tmp_path: Path) ->
         (edits,) = answer["edit"]["changes"].values()
         expected = changed(text, edits)
         assert '<property id="heads_up" pattern="existence" expect=">= 0.9">' in expected
-        # The known result is judged at once, and is not stale: its traces are the same.
+        # The known result is compared at once. It is not stale, because its traces are the same.
         client.replace(file, expected)
         ((hint, _),) = await hints(client, file)
         assert hint.startswith("✗ 0.")
@@ -135,7 +135,7 @@ async def test_an_expectation_is_set_beside_a_property_in_xml(tmp_path: Path) ->
         assert row["stale"] is False
         assert (row["result"]["verdict"], row["result"]["traces"]) == ("not met", first["traces"])
         assert (row["result"]["probability"], row["result"]["lower"]) == (first["probability"], first["lower"])
-        # A looser one is met; what is no number is no expectation.
+        # A weaker expectation is met. A text that is not a number is not an expectation.
         assert (await set_expectation(client, main, HEADS, "often"))["problem"].startswith("an expectation compares")
         (edits,) = (await set_expectation(client, main, HEADS, "< 0.9"))["edit"]["changes"].values()
         assert 'expect="&lt; 0.9"' in changed(expected, edits)

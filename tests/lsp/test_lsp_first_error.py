@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system with errors: the lenses say so, and lead to the first of them."""
+"""A system with errors: the lenses state this, and lead to the first error."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ async def test_lenses_lead_to_the_error_in_whichever_file(tmp_path: Path) -> Non
         written = machine.read_text().splitlines()[start.line][start.character : end.character]
         (message,) = client.messages
         assert message.message.startswith(f"clock.ascxml:{start.line + 1}: there is no variable `{written}`")
-        # As soon as it is mended, what was offered is offered again.
+        # After the error is fixed, the usual lenses are shown again.
         client.open(machine, clock.CLOCK)
         titles = [lens.title for lens in await lenses(client, main)]
         assert titles == ["Translate to JANI", "Verify all"]
@@ -75,7 +75,7 @@ async def test_the_commands_themselves_lead_there(tmp_path: Path, command: str) 
 
 
 async def test_several_systems_are_distinguished(tmp_path: Path) -> None:
-    """Of two systems that share the properties, one has an error."""
+    """Two systems share the properties, and one of them has an error."""
     clock.write(tmp_path)
     (tmp_path / "other.xml").write_text((tmp_path / "main.xml").read_text().replace("clock.ascxml", "wrong.ascxml"))
     (tmp_path / "wrong.ascxml").write_text(clock.WRONG_CLOCK)

@@ -44,7 +44,7 @@ def label(hint: types.InlayHint) -> str:
 
 
 def test_every_kind_of_hint_is_a_setting() -> None:
-    """Of the same default in VS Code and in the server."""
+    """The defaults are the same in VS Code and in the server."""
     settings = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["contributes"]["configuration"]
     texts = json.loads((EXTENSION / "package.nls.json").read_text(encoding="utf-8"))
     prefix = "as2fm.inlayHints."
@@ -90,7 +90,7 @@ async def test_settings_say_which_are_shown(tmp_path: Path) -> None:
     load(tmp_path, split_files(ROBOT))
     settings: dict[str, object] = {"inlayHints": {"types": False, "ports": True}, "codeLens": False}
     async with connect(tmp_path, settings=settings) as client:
-        # The server asks for the settings once it is initialised, and goes on meanwhile.
+        # The server requests the settings after the initialization, and continues meanwhile.
         while [label(hint) for hint in await hints(client, tmp_path / "a.ascxml")] != ["(to : Pose)", " → /a/b"]:
             continue
         assert " : int32" in [hint.label for hint in await hints(client, tmp_path / "tree.xml")]
@@ -132,7 +132,7 @@ async def test_the_client_is_told_when_other_files_change_them(tmp_path: Path) -
         client.open(machine)
         client.open(plugin)
         await client.until(lambda: client.refreshed)
-        # What other files do not see.
+        # Symbols that other files do not use.
         client.replace(machine, files["a.ascxml"].replace('expr="_msg.data"', 'expr="_msg.data + nothing"'))
         await client.until_codes(machine, "undeclared-variable")
         client.refreshed.clear()

@@ -43,7 +43,7 @@ async def test_exit_without_shutdown() -> None:
     ids=["initialize", "half a message", "noise"],
 )
 async def test_the_input_ends(data: bytes) -> None:
-    """As when the editor has crashed: no process is left behind."""
+    """If the input ends, as after a crash of the editor, the process ends."""
     server = await start_raw(command=STARTED)
     server.send(data)
     status, _, _ = await server.end()
@@ -92,7 +92,7 @@ GARBAGE = [
 
 
 async def test_invalid_messages_do_not_end_the_server() -> None:
-    """After each piece of it the server still answers as before."""
+    """After each invalid piece, the server still answers as before."""
     server = await start_raw()
     server.tell("initialize", INITIALIZE, 1)
     server.tell("initialized", {})
@@ -158,7 +158,7 @@ async def test_capabilities() -> None:
 
 
 async def test_it_imports_nothing_but_what_it_needs() -> None:
-    """`xmlschema` alone takes a quarter of a second; the cold start is felt."""
+    """The import of `xmlschema` alone takes a quarter of a second, which would delay the start."""
     code = "import sys; import as2fm_lsp.server; print(*{'xmlschema', 'numpy', 'rosbags'} & sys.modules.keys())"
     process = await asyncio.create_subprocess_exec(sys.executable, "-c", code, stdout=asyncio.subprocess.PIPE)
     out, _ = await process.communicate()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages at the wrong time and of the wrong form, and the end of the client's process."""
+"""Messages that are invalid or not allowed at a time, and the end of the client's process."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def framed(body: bytes) -> bytes:
 
 
 async def finish(server: RawServer) -> tuple[int, dict[object, dict[str, Any]], str]:
-    """Shut it down: its exit status, its answers by their ids, and its log."""
+    """Shut the server down; return its exit status, its answers by their ids, and its log."""
     server.tell("shutdown", id_=1000)
     server.tell("exit")
     status, messages, log = await server.end()
@@ -48,7 +48,7 @@ def code(answers: dict[object, dict[str, Any]], id_: object) -> object:
 
 
 async def test_requests_before_initialize() -> None:
-    """They get the error that the protocol has for them; notifications are dropped."""
+    """Requests get the error that the protocol defines; notifications are ignored."""
     server = await start_raw()
     server.tell("textDocument/hover", {"textDocument": 5}, 10)
     server.tell("no/such", {}, 11)
@@ -68,7 +68,7 @@ async def test_exit_before_initialize() -> None:
 
 
 async def test_a_second_initialize() -> None:
-    """It is refused and changes nothing."""
+    """It is rejected and has no effect."""
     server = await start_raw()
     server.tell("initialize", INITIALIZE, 10)
     encodings = {"general": {"positionEncodings": ["utf-8"]}}
@@ -85,7 +85,7 @@ async def test_a_second_initialize() -> None:
     "folders", [{"rootUri": "file://["}, {"workspaceFolders": [{"uri": "file://[", "name": "robot"}]}]
 )
 async def test_initialize_with_an_invalid_uri(folders: dict[str, object]) -> None:
-    """It is refused; a valid `initialize` is possible afterwards."""
+    """It is rejected; a valid `initialize` is possible afterwards."""
     server = await start_raw()
     server.tell("initialize", {**INITIALIZE, **folders}, 10)
     server.tell("initialize", INITIALIZE, 11)
@@ -107,7 +107,7 @@ async def test_requests_for_an_empty_document() -> None:
 
 
 async def test_after_shutdown() -> None:
-    """Requests are refused, notifications dropped; `exit` is still heard."""
+    """Requests are rejected and notifications ignored, except `exit`."""
     server = await start_raw()
     server.tell("initialize", INITIALIZE, 10)
     server.tell("shutdown", None, 11)
@@ -160,7 +160,7 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
 
 @pytest.mark.parametrize(("data", "id_", "expected"), BROKEN, ids=[str(data[:60]) for data, *_ in BROKEN])
 def test_invalid_messages(data: bytes, id_: object, expected: int | None) -> None:
-    """It is answered as JSON-RPC says, and the message behind it as always."""
+    """They are answered as JSON-RPC defines, and the next message is handled as usual."""
     answers = said(data + frame({"jsonrpc": "2.0", "id": 99, "method": "as2fm/properties", "params": {}}))
     assert answers.pop() == {"jsonrpc": "2.0", "id": 99, "result": []}
     assert [(answer["id"], answer["error"]["code"]) for answer in answers] == ([] if id_ == "-" else [(id_, expected)])
@@ -168,7 +168,7 @@ def test_invalid_messages(data: bytes, id_: object, expected: int | None) -> Non
 
 
 def said(data: bytes) -> list[dict[str, Any]]:
-    """What a server in this process says to some bytes, after it was initialized."""
+    """The output of a server in this process for some bytes, after it was initialized."""
     source = BytesIO(frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": INITIALIZE}) + data)
     target = _Kept()
     create().serve(source, target)
@@ -178,14 +178,14 @@ def said(data: bytes) -> list[dict[str, Any]]:
 
 
 class _Kept(BytesIO):
-    """What is written to it can be read after it was closed."""
+    """A stream whose content can be read after it was closed."""
 
     def close(self) -> None:
         pass
 
 
 def test_memory_is_allocated_only_for_received_bytes() -> None:
-    """An announced length costs nothing."""
+    """Memory is not allocated for the announced length."""
 
     class Announced(BytesIO):
         def read(self, size: int | None = -1) -> bytes:
@@ -214,7 +214,7 @@ ODD = [
 
 @pytest.mark.parametrize("uri", ODD, ids=[repr(uri[:30]) for uri in ODD])
 async def test_an_odd_uri(tmp_path: Path, uri: str) -> None:
-    """The document is there for its own features, and all others are as before."""
+    """The document works with its own features, and other documents work as before."""
     main = clock.write(tmp_path)
     server = await start_raw()
     server.tell("initialize", {**INITIALIZE, "workspaceFolders": [{"uri": tmp_path.as_uri(), "name": "robot"}]}, 10)
@@ -241,7 +241,7 @@ async def test_an_odd_uri(tmp_path: Path, uri: str) -> None:
 
 
 async def test_it_ends_with_the_process_of_its_client() -> None:
-    """Though its input stays open, as it does when another process has inherited that."""
+    """The server ends although its input stays open, as when another process has inherited it."""
     other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     server = await start_raw(command=STARTED)
     server.tell("initialize", {**INITIALIZE, "processId": other.pid}, 1)
@@ -263,7 +263,7 @@ def test_the_end_of_a_process_is_seen_without_help_of_the_system(monkeypatch: py
 
 
 def test_nothing_is_kept_of_notifications() -> None:
-    """Neither a future for each, nor a second copy of the documents."""
+    """The server stores neither a future for each notification nor a second copy of the documents."""
     server = create()
     seen: list[int] = []
 
@@ -286,11 +286,12 @@ def test_nothing_is_kept_of_notifications() -> None:
 
 
 class Typing(RawIOBase):
-    """Messages of somebody who types, each sent when those before are handled. What is allocated is noted now and then.
+    """The messages of a user who types, each sent after the previous ones are handled. The allocated memory is recorded
+    from time to time.
 
     Args:
-        messages: what is sent.
-        is_busy: whether there are messages that are not handled.
+        messages: the messages.
+        is_busy: whether there are messages that are not handled yet.
     """
 
     def __init__(self, messages: Iterator[bytes], is_busy: Callable[[], bool]) -> None:
@@ -317,7 +318,7 @@ class Typing(RawIOBase):
 
 
 def test_memory_reaches_a_plateau(tmp_path: Path) -> None:
-    """While somebody types, with all that is computed for it."""
+    """The memory stops growing while a user types, including the memory of background computations."""
     clock.write(tmp_path)
     path = tmp_path / "clock.ascxml"
     text = path.read_text()
@@ -347,13 +348,13 @@ def test_memory_reaches_a_plateau(tmp_path: Path) -> None:
     finally:
         tracemalloc.stop()
     assert target.written > 1000
-    # What is computed at the moment comes and goes, so the least counts.
+    # Temporary data of computations come and go, so the minimum is used.
     first, last = (min(typing.allocated[sent] for sent in marks) for marks in ((100, 200, 300), (400, 500, 600)))
     assert last - first < 40_000, typing.allocated  # 100 bytes for a message, where a future for each takes 1000
 
 
 class _Nowhere(BytesIO):
-    """What is written is counted."""
+    """A stream that counts the bytes that are written."""
 
     written = 0
 
@@ -363,7 +364,7 @@ class _Nowhere(BytesIO):
 
 
 def test_a_client_that_never_answers() -> None:
-    """What it is asked is forgotten after a while, the oldest first."""
+    """Pending requests to the client are discarded after a while, the oldest first."""
     protocol = create().endpoint.protocol
     protocol.set_writer(_Kept(), include_headers=True)  # type: ignore[arg-type]
     futures = [protocol.send_request("workspace/codeLens/refresh") for _ in range(1500)]
@@ -373,6 +374,6 @@ def test_a_client_that_never_answers() -> None:
 
 
 def test_a_header_without_an_end() -> None:
-    """What comes between it and the next message is passed over, and the next message is found."""
+    """Data between the header and the next message are skipped, and the next message is handled."""
     data = b"Content-Length: 100\r\n{no header}\r\n\r\nContent-Length: 2\r\nContent-Type: x\r\n\r\n{}"
     assert list(bodies(BytesIO(data))) == [b"{}"]

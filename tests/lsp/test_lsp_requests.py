@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests that are not wanted any more, work that is shown, and what is agreed on with the client."""
+"""Requests whose answers are no longer needed, progress of work, and the negotiation with the client."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from as2fm_lsp.requests import Requests
 from bench.generate import machine, write_system
 
 LONG = machine(0, 2, 2500)
-"""A machine that takes a good while to be checked: what is sent right behind is read before it is done."""
+"""A machine whose check takes long: messages that are sent directly after it arrive during the check."""
 
 CANCELLED, MODIFIED = -32800, -32801
 
 
 async def answers(*messages: tuple[str, object, int | None], **capabilities: object) -> dict[object, dict[str, object]]:
-    """What is answered to messages that are sent at once, behind a request that takes long (with the id 9)."""
+    """The answers to messages that are sent at once, after a request that takes long (with the id 9)."""
     server = await start_raw()
     server.tell(
         "initialize", {"processId": None, "capabilities": {"textDocument": {"diagnostic": {}}, **capabilities}}, 1
@@ -112,7 +112,7 @@ async def test_invalid_requests_are_answered() -> None:
 
 
 async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:
-    """The log stays empty."""
+    """A rejected request is not an internal error, so the log stays empty."""
     main = clock.write(tmp_path)
     server = await start_raw()
     server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
@@ -130,7 +130,7 @@ async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:
 
 
 def guarded(inbox: Inbox, handler: Callable[[Requests], object], again: frozenset[str] = frozenset()) -> object:
-    """What a handler of a request with the id 7 answers, which the client sends while it runs."""
+    """The answer of a handler of a request with the id 7, during which the client sends messages."""
     requests = Requests(inbox, lambda: 7)
     requests.asked_again = again
 
@@ -181,7 +181,7 @@ def titles(client: Client) -> list[str]:
 
 
 def token_of(client: Client, title: str) -> str | int | None:
-    """The token of the work that is shown under a title."""
+    """The token of the progress with a title."""
     for token, reports in client.progress_reports.items():
         if any(
             isinstance(report, types.WorkDoneProgressBegin) and report.title.startswith(title) for report in reports
@@ -234,7 +234,7 @@ async def test_a_short_check_is_not_shown(tmp_path: Path) -> None:
 # -------------------------------------------------------------------- agreements
 
 UNITS = {"utf-8": 6, "utf-16": 3, "utf-32": 2}
-"""How many units a robot and an accented letter have."""
+"""The numbers of units of a robot emoji and an accented letter."""
 
 
 @pytest.mark.parametrize("encoding", UNITS)
@@ -292,7 +292,7 @@ def _severities(client: Client, path: Path) -> list[types.DiagnosticSeverity | N
 
 
 async def test_settings_that_come_with_the_first_message(tmp_path: Path) -> None:
-    """Whoever sends them need not have answered before there are diagnostics."""
+    """A client that sends settings with `initialize` gets diagnostics without answering a request for settings."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     path = tmp_path / "clock.ascxml"
     sent: dict[str, object] = {"settings": {"severity": {"undeclared-variable": "hint"}}}
@@ -312,7 +312,7 @@ async def test_settings_that_the_client_has_changed_its_mind_about(tmp_path: Pat
 
 
 async def test_settings_that_are_sent(tmp_path: Path) -> None:
-    """By a client that cannot be asked for them."""
+    """Settings of a client that does not support requests for settings."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     path = tmp_path / "clock.ascxml"
     async with connect(tmp_path) as client:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Serving on a port and on a socket file: who is served, and who is not."""
+"""Serving on a port and on a socket file: accepted and rejected clients."""
 
 from __future__ import annotations
 
@@ -29,8 +29,10 @@ INITIALIZE = {"processId": None, "rootUri": None, "capabilities": {}}
 
 @dataclass(frozen=True)
 class Listening:
-    """Attributes:
-    port: 0 if it listens at a socket file.
+    """A server that listens.
+
+    Attributes:
+        port: 0 if it listens on a socket file.
     """
 
     process: asyncio.subprocess.Process
@@ -40,7 +42,7 @@ class Listening:
 
 @asynccontextmanager
 async def listening(*arguments: str, **environment: str) -> AsyncIterator[Listening]:
-    """A server, once it says that it listens."""
+    """A server, after it has printed that it listens."""
     pipe = asyncio.subprocess.PIPE
     process = await asyncio.create_subprocess_exec(
         *prefork.command(), *arguments, stdin=pipe, stdout=pipe, stderr=pipe, env={**os.environ, **environment}
@@ -68,7 +70,7 @@ def initialize(token: object = None) -> bytes:
 
 
 async def exchange(port: int, data: bytes) -> bytes:
-    """What is answered to some bytes, until the server closes the connection."""
+    """The answer to some bytes, until the server closes the connection."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     with suppress(ConnectionError):
         writer.write(data)
@@ -81,7 +83,7 @@ async def exchange(port: int, data: bytes) -> bytes:
 
 
 async def end_of(server: Listening, port: int, token: str) -> int:
-    """Connect as a client does, shut the server down; its exit status."""
+    """Connect as a client, and shut the server down; return its exit status."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     shutdown = frame({"jsonrpc": "2.0", "id": 2, "method": "shutdown"})
     writer.write(initialize(token) + shutdown + frame({"jsonrpc": "2.0", "method": "exit"}))
@@ -93,7 +95,7 @@ async def end_of(server: Listening, port: int, token: str) -> int:
 
 @pytest.mark.parametrize("given", ["", TOKEN], ids=["printed", "chosen"])
 async def test_tcp(tmp_path: Path, given: str) -> None:
-    """A client of a library, which sends the token as an option."""
+    """The library of a client, which sends the token as an option."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
     client = LanguageClient("test", "1")
     published = asyncio.Event()
@@ -126,7 +128,7 @@ async def test_tcp(tmp_path: Path, given: str) -> None:
 
 
 def posted(target: Path) -> bytes:
-    """What a web page can post without being asked: messages in the body of a request."""
+    """Requests that a web page can send without permission: messages in the body."""
     command = {"command": "as2fm.translateToJani", "arguments": [(target / "main.xml").as_uri()]}
     execute = frame({"jsonrpc": "2.0", "id": 2, "method": "workspace/executeCommand", "params": command})
     body = initialize(TOKEN) + execute
@@ -221,7 +223,7 @@ async def test_a_port_that_is_taken() -> None:
 
 
 async def test_a_socket_file(tmp_path: Path) -> None:
-    """Nobody else can connect; it goes with the connection, and one that was left behind is replaced."""
+    """Nobody else can connect. The file is removed with the connection, and a leftover file is replaced."""
     path = tmp_path / "as2fm.sock"
     with socket.socket(socket.AF_UNIX) as left:
         left.bind(str(path))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Everything the server offers, asked at some places of our own models; `sweep.py` asks at all."""
+"""All requests that the server supports, sent at some places of our own models; `sweep.py` sends them at all places."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_models_of_other_tests(tmp_path: Path, written: str) -> None:
 
 
 def test_lines_of_other_lengths_than_their_code_points(tmp_path: Path) -> None:
-    """Columns count units of UTF-16; many a place lies behind characters that are two of them."""
+    """Columns are in UTF-16 units, and many places follow characters of two units."""
     main = clock.write(tmp_path, clock=clock.CLOCK.replace('name="second"', 'name="\U0001f552é"'))
     sweep = Sweep(main, (), some_places(3, 60))
     assert list(sweep.failures()) == []
@@ -54,7 +54,7 @@ def test_what_is_not_offered_is_not_asked() -> None:
 
 
 class Sloppy(Sweep):
-    """A sweep of answers that are made up."""
+    """A sweep with invented answers."""
 
     def found(self, name: str, result: object) -> list[str]:
         return list(self._wrong(name, str(self.main), {"result": result}))

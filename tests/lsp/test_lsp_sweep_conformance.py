@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Everything the server offers, asked at some places of some conformance models; `sweep.py` asks at all."""
+"""All requests that the server supports, sent at some places of some conformance models; `sweep.py` sends them at all
+places."""
 
 from __future__ import annotations
 

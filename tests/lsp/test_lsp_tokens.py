@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Semantic tokens over the wire: whole, what has changed, a range."""
+"""Semantic tokens over stdio: of a whole file, changes, and of a range."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ async def test_tokens(tmp_path: Path) -> None:
         assert applied(full.data, delta.edits) == list(again.data)
         assert read(again.data)[3] == (1, 12, 17, "class")
 
-        # An answer that is no longer known is given whole.
+        # If the last answer is no longer known, all tokens are sent.
         whole = await client.text_document_semantic_tokens_full_delta_async(params)
         assert isinstance(whole, types.SemanticTokens)
         assert list(whole.data) == list(again.data)

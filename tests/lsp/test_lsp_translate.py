@@ -118,7 +118,8 @@ async def test_lens(tmp_path: Path) -> None:
 
 
 async def test_actions(tmp_path: Path) -> None:
-    """Asked as bytes: the library of the client takes a code action with a command for the command itself."""
+    """The request is sent as bytes, because the library of the client parses a code action with a command as the
+    command itself."""
     clock.write(tmp_path)
     main = (tmp_path / "main.xml").as_uri()
     folders = [{"uri": tmp_path.as_uri(), "name": "robot"}]
@@ -161,7 +162,7 @@ async def test_odd_arguments(tmp_path: Path, arguments: tuple[object, ...]) -> N
 
 
 async def test_the_readable_view(tmp_path: Path) -> None:
-    """The file on the disk stays compact; the view of it is laid out, and has the outline."""
+    """The file on the disk stays compact. Its view is formatted, and has the outline."""
     clock.write(tmp_path)
     async with connect(tmp_path) as client:
         assert await translate(client, (tmp_path / "main.xml").as_uri()) is not None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A workspace that is not trusted: it is read and shown, nothing is written, and no time is spent on it."""
+"""A workspace that is not trusted: it is read and shown, but nothing is written, and no long computation runs."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcRequestCancelled
 
 import clock
 from as2fm_lsp.cli.main import run
-from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES, TRACE_STATE
 from as2fm_lsp.handlers.results import VERIFY as COMMAND
 from stuck_models import hospital
 
@@ -42,12 +42,12 @@ async def verify(client: Client, main: Path, *arguments: Any) -> Any:
 
 
 async def ask(client: Client, method: str, params: object) -> Any:
-    """Ask what the protocol does not know."""
+    """Send a custom request."""
     return plain(await client.protocol.send_request_async(method, params))
 
 
 def plain(value: Any) -> Any:
-    """The objects that the library of the client makes, as they came."""
+    """Objects of the client's library as plain data."""
     if hasattr(value, "_asdict"):
         return {key: plain(each) for key, each in value._asdict().items()}
     return [plain(each) for each in value] if isinstance(value, list) else value
@@ -131,7 +131,7 @@ async def test_lens_and_hint_show_the_result_until_it_is_stale(robot: Path) -> N
 
 
 async def test_a_result_is_shown_once_on_its_line(tmp_path: Path) -> None:
-    """In the hint where the client shows hints, else in the lens."""
+    """The result is in the hint if the client shows hints, otherwise in the lens."""
     clock.write(tmp_path)
     main, properties = tmp_path / "main.xml", tmp_path / "properties.jani"
     shows = types.TextDocumentClientCapabilities(inlay_hint=types.InlayHintClientCapabilities())
@@ -200,6 +200,7 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert found["expected"] == "≥ 0.95"
     assert found["heading"].startswith(f"{PLACED} failed in trace {found['trace']} after ")
     steps = found["steps"]
+    assert f"; {len(steps)} turns matter" in found["heading"]
     numbers = [step["step"] for step in steps]
     assert numbers == sorted(numbers)
     arm = (robot / "arm.ascxml").as_uri()
@@ -213,6 +214,28 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert all(step["time"].endswith(" s") for step in steps if step["who"])
 
 
+async def test_the_whole_state_at_a_step_of_a_counterexample(robot: Path) -> None:
+    main = robot / "main_with_bug.xml"
+    async with connect(robot) as client:
+        await verify(client, main, [PLACED], {**QUICK, "expectations": {PLACED: ">= 0.95"}})
+        found = await why(client, main, PLACED)
+        drop = next(step for step in found["steps"] if "holding: true → false" in step["details"])
+        params = {"textDocument": {"uri": main.as_uri()}, "property": PLACED, "trace": found["trace"]}
+        steps = {"step": drop["lastStep"], "earlier": drop["step"] - 1}
+        groups = {group["name"]: group for group in await ask(client, TRACE_STATE, {**params, **steps})}
+        same = {"step": drop["step"], "earlier": drop["step"]}
+        unchanged = await ask(client, TRACE_STATE, {**params, **same})
+        beyond = await ask(client, TRACE_STATE, {**params, "step": 1 << 40, "earlier": 0})
+    arm = groups["Arm"]
+    assert (arm["value"], arm["hasChanged"], arm["before"]) == ("moving", True, None)
+    holding = next(row for row in arm["rows"] if row["name"] == "holding")
+    assert (holding["value"], holding["before"], holding["hasChanged"]) == ("false", "true", True)
+    assert not groups["PickUp (bt_1003)"]["hasChanged"]
+    assert {"Tree", "Messages", "Time"} <= groups.keys()
+    assert not any(group["hasChanged"] for group in unchanged)
+    assert beyond
+
+
 async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
     robot = tmp_path / "robot"
     shutil.copytree(EXAMPLE.parent / "delivery_robot", robot)
@@ -223,7 +246,7 @@ async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
         found = await why(client, main, name)
         params = {"textDocument": {"uri": main.as_uri()}, "kind": "tree"}
         tree = await ask(client, "as2fm/picture", params)
-    # It holds, which is what must not be: the story is that of a trace in which it does.
+    # The property holds, which is not expected, so the story is that of a trace in which it holds.
     assert (found["verdict"], found["expected"]) == ("passed", "≤ 0.5")
     nodes = {each["node"] for step in found["steps"] for each in step["highlights"] if each["kind"] == "tree"}
     assert nodes
@@ -245,8 +268,8 @@ async def test_progress_contains_the_estimate(robot: Path) -> None:
 
 
 async def until_estimate(client: Client, working: asyncio.Future[object]) -> tuple[str | int, str]:
-    """The token of the verification's progress, and an estimate that was told. The check of the models may show its
-    progress, too."""
+    """The token of the verification's progress, and an estimate that was shown. The check of the models may also show
+    its progress."""
     working.add_done_callback(lambda _: client.news.set())
     await client.until(lambda: working.done() or any(estimates(client)))
     for estimate in estimates(client):
@@ -336,7 +359,7 @@ async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Pa
         assert own.splitlines()[1].endswith(
             "so its value is doubtful; the waiting automata are shown in a separate message"
         )
-        # At the property and at the system.
+        # The lens of the property and the lens of the system.
         assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))
         assert "Show counterexample" in await lenses(client, properties)
         assert "Gets stuck: show the waiting automata" in await lenses(client, main)
@@ -356,7 +379,7 @@ async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Pa
         asked = await verify(client, main, ["stuck"], QUICK)
         assert asked["results"][0]["property"] == "stuck"
         assert asked["stuck"]["example"]["waits"] == known["example"]["waits"]
-        # Mended, the old result is stale, the new one good.
+        # After the fix, the old result is stale and the new one is as expected.
         fetch = tmp_path / "fetch.ascxml"
         client.open(fetch, hospital(mended=True)["fetch.ascxml"])
         assert "Gets stuck, stale: show the waiting automata" in await lenses(client, main)

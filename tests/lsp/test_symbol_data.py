@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symbols that a client keeps for the server: what comes back is what was sent, or nothing."""
+"""Symbols that a client stores for the server: valid data are restored, other data are rejected."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify TREE.xml --mock …`: what it answers, and what it rejects."""
+"""`as2fm-lsp verify TREE.xml --mock …`: its results, and input that it rejects."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("<Mine><Drive/></Mine>", "it is not known what it does with them"),
+        ("<Mine><Drive/></Mine>", "its behaviour is not known"),
         ("<ScriptCondition code='level &gt; 3'/>", "nothing sets the entry `level`"),
         ("<Script code='x := 1 &amp; 2'/>", "works on bits"),
         ("<Script code=\"t := 'a'; t := t .. 'b'\"/>", "texts cannot be joined"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sessions: forwards, backwards, by hand, saved; held against the traces that `verify` makes."""
+"""Sessions that go forwards, backwards and by hand, and saved ones; compared with the traces of `verify`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roaml.smc.record import VERDICTS, Recorder, Recording
 
 ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
 TRACES = 5
-"""Traces of each property that are replayed."""
+"""The number of traces of each property that are replayed."""
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_a_tick_ends_with_the_answer_of_the_root(robot: api.VerificationTarget) 
 
 
 def test_another_outcome_of_a_choice(robot: api.VerificationTarget) -> None:
-    """Back to where the block was dropped by chance; with the other outcome the arm still holds it."""
+    """Go back to the step in which the block was dropped by chance. With the other outcome, the arm still holds it."""
     session = next(
         session
         for trace in range(100)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page about simulation: its program runs, and its tables name the commands that there are."""
+"""The page about simulation: its program runs, and its tables list the existing commands."""
 
 from __future__ import annotations
 

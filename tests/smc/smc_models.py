@@ -28,7 +28,7 @@ def at(array: Any, index: Any) -> Json:
 
 
 def edge(source: str, *ways: Json | str, action: str | None = None, guard: Any = None) -> Json:
-    """An edge; a way is written as its target or made by `way`."""
+    """An edge. A destination is written as its target or made by `way`."""
     row: Json = {"location": source, "destinations": [w if isinstance(w, dict) else {"location": w} for w in ways]}
     if action is not None:
         row["action"] = action
@@ -43,7 +43,7 @@ def way(target: str, probability: Any = None, **assigned: Any) -> Json:
 
 
 def ways(target: str, assignments: Sequence[tuple[Any, Any, int]], probability: Any = None) -> Json:
-    """A destination; its assignments as target, value and index."""
+    """Destinations, with their assignments as target, value and index."""
     row: Json = {"location": target}
     row["assignments"] = [{"ref": ref, "value": value, "index": index} for ref, value, index in assignments]
     if probability is not None:
@@ -80,7 +80,7 @@ def document(
     properties: dict[str, Json] | None = None,
     **more: Any,
 ) -> Json:
-    """A model; each vector of `syncs` names the actions of all automata."""
+    """A model. Each vector of `syncs` lists the actions of all automata."""
     named = {e["action"] for a in automata for e in a["edges"] if "action" in e}
     actions = sorted(named | {action for vector in syncs or () for action in vector if action is not None})
     system: Json = {"elements": [{"automaton": a["name"]} for a in automata]}
@@ -102,7 +102,7 @@ def document(
 
 
 def model(written: Json) -> Model:
-    """The model; it must have no mistakes."""
+    """The model, which must have no errors."""
     value, syntax = parse(json.dumps(written))
     read, findings = read_model(value, "test.jani")
     assert (syntax, [f.message for f in findings]) == ((), [])
@@ -111,7 +111,7 @@ def model(written: Json) -> Model:
 
 
 def answers(written: Json, traces: int = 1, max_steps: int = 10_000, seed: int = 1) -> dict[str, Answer]:
-    """Property -> its answer by so many traces."""
+    """Property -> its answer from a given number of traces."""
     checker = ModelChecker(model(written))
     options = Options(method=FIXED, max_traces=traces, max_steps=max_steps, seed=seed)
     with Pool() as pool:

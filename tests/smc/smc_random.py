@@ -13,7 +13,7 @@ ACTIONS = ("a", "b")
 
 
 def numbers(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
-    """Expressions with small ints as values."""
+    """Expressions with small integers as values."""
     simple = st.one_of(st.sampled_from(names), st.integers(0, 3), st.just(at("v", 1)))
     return st.one_of(
         simple,
@@ -59,7 +59,8 @@ def automata(draw: st.DrawFn, number: int) -> Json:
 
 @st.composite
 def networks(draw: st.DrawFn) -> Json:
-    """A model with a property; writes of synchronised automata to one variable have different indexes or meet."""
+    """A model with a property. Synchronised automata that write one variable use different indexes or the same
+    value."""
     count = draw(st.integers(1, 3))
     parts = [draw(automata(number)) for number in range(count)]
     vectors = st.lists(st.sampled_from([None, *ACTIONS]), min_size=count, max_size=count).filter(any)

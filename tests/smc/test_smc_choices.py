@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of other schedulers than the uniform one: whether all agree, how far apart some are."""
+"""What is known about schedulers other than the uniform one: whether all agree, and how far apart some are."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def looked_at(written: Json, options: Options | None = None) -> Choices:
 
 
 def starving(length: int, chance: bool = False, operator: str = "Pmin") -> Json:
-    """A worker that is done after one step, beside a machine that can go on for ever."""
+    """A worker that is done after one step, and a machine that can continue for ever."""
     goes_on = way("s", c=op("%", op("+", "c", 1), length))
     ways = [way("s", 0.5, c=op("%", op("+", "c", 1), length)), way("s", 0.5, c=0)] if chance else [goes_on]
     return document(
@@ -41,7 +41,7 @@ def starving(length: int, chance: bool = False, operator: str = "Pmin") -> Json:
 
 
 def chain(length: int, type_: str = "mdp") -> Json:
-    """One automaton that has never anything to choose."""
+    """One automaton without choices."""
     steps = [edge("s", way("s", 0.5, c=op("+", "c", 1)), way("e", 0.5, done=True), guard=op("<", "c", length))]
     return document(
         automaton("a", "s e", steps),
@@ -67,14 +67,14 @@ def test_choices_that_do_not_matter() -> None:
     )
     assert choices.agreement.startswith("all ")
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.found) == (pytest.approx(0.25), EXPLORATION)
+    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), EXPLORATION)
     assert choices.maximum is not None
     assert choices.maximum.value == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize("chance", [False, True])
 def test_a_machine_that_can_be_made_to_wait_for_ever(chance: bool) -> None:
-    """The uniform value is 1, the minimum 0: found from all states, where they are few."""
+    """The uniform value is 1 and the minimum 0. It is computed from all states if there are few."""
     choices = looked_at(starving(20, chance))
     assert choices.differ
     assert choices.minimum is not None
@@ -87,11 +87,11 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     choices = looked_at(starving(6000))
     assert choices.differ
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.found) == (0, SAMPLING)
+    assert (choices.minimum.value, choices.minimum.method) == (0, SAMPLING)
     assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert choices.minimum.bounds.upper < 0.2
     assert choices.maximum is not None
-    assert (choices.maximum.value, choices.maximum.found) == (1, UNIFORM)
+    assert (choices.maximum.value, choices.maximum.method) == (1, UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:
@@ -119,12 +119,12 @@ def test_described() -> None:
         "sampled scheduler 2, which lets `two` act only where nothing else can act"
     )
     assert described(FAVOUR | 1, names) == "sampled scheduler 1, which lets `one` act wherever it can"
-    some = candidates(2, each=1, memoryless=2, memory=2)
+    some = candidates(2, per_automaton=1, memoryless=2, memory=2)
     assert len(set(some)) == len(some) == 2 + 4 + 2
 
 
 def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, int]:
-    """Verdict and steps of a trace under a scheduler; both kernels must agree."""
+    """The verdict and the steps of a trace under a scheduler. Both kernels must agree."""
     checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.asked[0])
     found = []
@@ -139,18 +139,19 @@ def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, i
 
 
 def test_a_scheduler_in_a_cycle_never_reaches_the_goal() -> None:
-    """A state comes again without any chance in between, so it does for ever: no need to wait for `max_steps`."""
+    """A state is reached again without a random draw in between, so the trace repeats for ever. The kernel need not run
+    until `max_steps`."""
     starve_worker, favour_worker = STARVE | (1 << 32) | 1, FAVOUR | (1 << 32) | 1
     verdict, steps = outcomes(starving(100), starve_worker)
     assert verdict == FALSE
     assert steps < 500
     assert outcomes(starving(100), favour_worker) == (TRUE, 1)
-    # With chance in it, nothing is concluded.
+    # With random draws in between, this does not follow.
     assert outcomes(starving(100, chance=True), starve_worker, 2000) == (UNKNOWN, 2000)
 
 
 def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
-    """In the only state of these machines, one choice after the other."""
+    """The machines have only one state, in which the choices must be taken one after the other."""
     loops = [automaton(name, "s", [edge("s", "s", action=name)]) for name in ("one", "two")]
     watcher = automaton(
         "watcher",
@@ -188,7 +189,7 @@ def test_limits_of_looking_at_all_states() -> None:
 
 
 def test_goals_of_several_parts_are_not_solved() -> None:
-    """Whether a state is good depends on what was before; that there is no choice is seen all the same."""
+    """Whether a state is good depends on earlier states. The solver still determines that there is no choice."""
     written = chain(5)
     both = op("∧", op("F", "done"), op("F", op("=", "c", 2)))
     written["properties"] = [{"name": "p", "expression": probability(both)}]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine on what another translator has made of the conformance models: it must find the expected probabilities."""
+"""The model checker on models that another translator has made from the conformance models: it must estimate the
+expected probabilities."""
 
 from __future__ import annotations
 

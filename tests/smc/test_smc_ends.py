@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why traces end, in models of which nothing but JANI is known, and in translated systems."""
+"""Why traces end, in JANI models without further information and in translated systems."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_any_model(edges: list[Json], goals: dict[str, Json], reason: End, value
 
 
 def test_reasons_are_counted_with_their_shortest_traces() -> None:
-    """Half of the traces get to the goal at once; of the others some end after two steps, some after three."""
+    """Half of the traces reach the goal at once. Some of the others end after two steps, some after three."""
     ways = [way("goal", 0.5, x=9), way("two", 0.25), way("three", 0.25)]
     edges = [edge("s", *ways), edge("two", "end"), edge("three", "four"), edge("four", "end")]
     places = "s goal two three four end"
@@ -93,7 +93,7 @@ def test_reasons_are_counted_with_their_shortest_traces() -> None:
 
 
 def test_goals_decided_early_keep_their_end(tmp_path: Path) -> None:
-    """It is not known whether the system would have got stuck later in these traces."""
+    """It is unknown whether the system would have got stuck later in these traces."""
     checker = of_system(tmp_path, hospital())
     actual_answer = answer(checker, traces=300)
     assert counts(actual_answer)[End.DECIDED] == actual_answer.tally.successes

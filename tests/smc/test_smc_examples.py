@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The examples mean what their stories say, and the page on verification shows what is printed."""
+"""The examples have the results that the documents describe, and the page on verification shows the actual output."""
 
 from __future__ import annotations
 

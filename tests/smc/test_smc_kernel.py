@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kernel: compiled and as plain Python it does the same, number by number."""
+"""The kernel computes the same numbers compiled and as plain Python."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_codes_are_those_of_the_kernel() -> None:
 
 
 def test_every_attribute_has_a_c_type() -> None:
-    """A name that the declarations lack would fail in the extension only."""
+    """A name without a declaration would fail only in the extension."""
     text = (FOLDER / "kernel.py").read_text(encoding="utf-8")
     declared = (FOLDER / "kernel.pxd").read_text(encoding="utf-8")
     for name in set(re.findall(r"self\.(\w+)(?: =|\[)", text)):
@@ -114,14 +114,14 @@ def test_numbers_that_just_fit() -> None:
 
 
 def test_python_version_is_named_in_the_build() -> None:
-    """The extension belongs to this Python, or it would not have been found."""
+    """The extension was built for this version of Python; otherwise it would not be found."""
     if kernel.compiled():
         assert f"{sys.version_info[0]}{sys.version_info[1]}" in Path(kernel.__file__).name
 
 
 @given(st.integers(0, (1 << 64) - 1), st.integers(0, 1 << 40))
 def test_random_numbers_are_those_of_splitmix(seed: int, trace: int) -> None:
-    """A draw depends on seed, trace and its number only: two kernels agree without having done the same before."""
+    """A draw depends only on the seed, the trace and its number: two kernels with different histories agree."""
     written = document(
         automaton("a", "l m", [edge("l", way("l", 0.5, x=0), way("m", 0.5, x=1))]),
         variables=[variable("x")],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What properties mean, on paths that can be seen at a glance."""
+"""The meaning of properties on short paths."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from roaml.smc.pool import Pool
 from roaml.smc.run import FIXED, Options
 
 A, B = op("=", op("%", "x", 2), 1), op("≥", "x", 2)
-"""`a` holds where the first bit of x is set, `b` where the second one is."""
+"""`a` holds if the first bit of x is set, `b` if the second one is set."""
 
 
 def path_model(labels: Sequence[int], loop: bool, properties: dict[str, Json]) -> Json:
-    """One path: x takes these values one after the other, and then nothing happens; with `loop` a step that changes
-    nothing is still possible at the end."""
+    """One path: x takes these values in order, and then nothing happens. With `loop`, a step that changes nothing is
+    still possible at the end."""
     places = [f"s{i}" for i in range(len(labels))]
     steps = [edge(places[i], way(places[i + 1], x=label)) for i, label in enumerate(labels[1:])]
     if loop:
@@ -33,7 +33,8 @@ def path_model(labels: Sequence[int], loop: bool, properties: dict[str, Json]) -
 
 
 def holds(formula: Json, labels: Sequence[int], loop: bool) -> bool:
-    """The definition, position by position; a loop at the end goes on for longer than any bound here."""
+    """The definition, evaluated position by position. A loop at the end is longer than all bounds that are used
+    here."""
     path = [*labels, *([labels[-1]] * 30 if loop else [])]
     match formula["op"]:
         case "¬":
@@ -128,7 +129,7 @@ def test_a_trace_that_is_cut_is_undecided() -> None:
 
 
 def test_an_end_with_steps_that_change_nothing_is_found() -> None:
-    """Assignments of the same value again and again, in several automata: nothing can happen any more."""
+    """Several automata assign the same values again and again, so nothing can change any more."""
     found = document(
         automaton("a", "l", [edge("l", way("l", x=op("min", 2, op("+", "x", 1))))]),
         automaton("b", "l", [edge("l", "l")]),
@@ -177,7 +178,7 @@ def test_rewards_of_steps_and_states() -> None:
 
 
 def test_rewards_of_transient_variables() -> None:
-    """What an edge assigns counts for its step only, what a location has for its states."""
+    """The value that an edge assigns is used for its step only; the value of a location is used for its states."""
     steps = [edge("l", way("m", cost=5)), edge("m", way("n", x=1))]
     walker = automaton("a", "l m n", steps)
     walker["locations"][1]["transient-values"] = [{"ref": "rent", "value": 7}]
@@ -213,7 +214,7 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
     ],
 )
 def test_properties_that_cannot_be_answered(expression: Json, message: str) -> None:
-    """Each is refused for a reason of its own, and stops no other."""
+    """Each is rejected for a different reason, and the other properties are still answered."""
     found = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
     checker = ModelChecker(model(path_model([0, 1], False, found)))
     assert [asked.question.name for asked in checker.asked] == ["before", "after"]

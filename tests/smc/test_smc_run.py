@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How many traces, on how many workers, and what happens when something goes wrong."""
+"""The number of traces, the number of workers, and the handling of failures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from roaml.smc.statistics import okamoto
 
 
 def coin(p: float = 0.3, extra: int = 0) -> Json:
-    """Heads with probability `p`, after so many steps."""
+    """A coin that shows heads with probability `p`, after a given number of steps."""
     steps = [edge("count", way("count", n=op("+", "n", 1)), guard=op("<", "n", extra))]
     steps += [edge("count", way("end", p, x=1), way("end", 1 - p), guard=op("=", "n", extra))]
     return document(
@@ -89,7 +89,7 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
 
 
 def test_threads_do_not_share_a_kernel() -> None:
-    """Else one thread would continue the trace of another."""
+    """With a shared kernel, one thread would continue the trace of another."""
     checker = ModelChecker(model(coin()))
     payload = checker.payload(checker.asked[0])
     together = Barrier(2)
@@ -104,7 +104,7 @@ def test_threads_do_not_share_a_kernel() -> None:
 
 
 def test_going_on_after_an_interruption() -> None:
-    """Whatever was interrupted, the answer is that of a run without interruption."""
+    """After any interruption, the answer is that of a run without interruption."""
     options = Options(epsilon=0.015)
     whole = ask(options)
     saved: list[str] = []
@@ -139,7 +139,7 @@ def test_a_killed_worker_costs_time_only() -> None:
 
 
 class Hopeless(Executor):
-    """Loses everything."""
+    """An executor that loses every batch."""
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -171,7 +171,7 @@ def test_workers_end_with_the_run() -> None:
 
 
 def test_many_undecided_traces_end_the_run() -> None:
-    """No number of traces would make the interval narrow: a third of them is never decided."""
+    """No number of traces would make the interval narrow enough, because a third of them is never decided."""
     steps = [edge("s", way("end", 1 / 3, x=1), way("end", 1 / 3), way("loop", 1 / 3)), edge("loop", "back")]
     steps.append(edge("back", "loop"))
     written = document(
@@ -230,7 +230,7 @@ def tasks() -> Iterator[Task]:
 
 
 def test_leaving_in_the_middle_of_large_results() -> None:
-    """Workers that were killed while they send would leave the rest of a result to be waited for."""
+    """If a worker were killed while it sends, the main process would wait for the rest of the result."""
     for _ in range(5):
         with Pool(2, start_delay_s=0) as pool:
             found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())

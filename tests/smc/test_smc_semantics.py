@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine against the definitions: `roaml.jani.semantics` for expressions, a slow explorer for networks."""
+"""The model checker compared with the definitions: `roaml.jani.semantics` for expressions, and a slow explorer for
+networks."""
 
 from __future__ import annotations
 
@@ -160,7 +161,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
 
 
 def states_of(actual_model: Model, limit: int) -> set[tuple[Any, ...]]:
-    """All reachable states of the engine, in the form of the slow explorer."""
+    """All reachable states of the model checker, in the form of the slow explorer."""
     checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     layout = checker.legend.layout
@@ -188,7 +189,7 @@ def as_tuple(state: SlowState) -> tuple[Any, ...]:
 
 
 def never(found: Json) -> Json:
-    """The same model with a property that is never decided, so that nothing is cut off."""
+    """The same model with a property that is never decided, so that all states are explored."""
     found["properties"][0]["expression"] = probability(op("F", False))
     return found
 
@@ -269,7 +270,7 @@ def test_assignments_of_synchronised_edges_are_simultaneous() -> None:
 
 
 def test_every_combination_of_a_vector_is_one_choice() -> None:
-    """Two edges of one automaton and three of the other one: six of seven choices are steps of the vector."""
+    """Two edges of one automaton and three of the other: six of seven choices are steps of the vector."""
     first = [edge("l", way("done", x=1), action="go"), edge("l", way("done", x=1), action="go")]
     second = [edge("l", "done", action="go") for _ in range(3)]
     third = [edge("l", way("done", x=2))]
@@ -290,7 +291,7 @@ def test_every_combination_of_a_vector_is_one_choice() -> None:
 
 
 def test_a_loop_is_a_choice_too() -> None:
-    """With a loop beside it, a step comes half of the time: after three steps with 1 - 1/8."""
+    """Because of the loop, the other step is taken with probability 1/2: after three steps, with 1 - 1/8."""
     found = document(
         automaton("a", "l", [edge("l", "l"), edge("l", way("l", x=1))]),
         variables=[variable("x")],
@@ -324,7 +325,7 @@ def test_an_automaton_may_have_two_instances() -> None:
 
 
 def test_arrays_take_the_longest_value() -> None:
-    """A longer value than the first one makes room; a shorter one leaves zeros."""
+    """A longer value than the first one determines the size; a shorter one is padded with zeros."""
     long, short = ({"op": "av", "elements": list(range(1, n))} for n in (5, 2))
     found = document(
         automaton("a", "l m n", [edge("l", way("m", v=long)), edge("m", way("n", x=at("v", 3), v=short))]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models that are small as text and enormous as programs are refused before they are expanded."""
+"""Models with a small text and an enormous translation are rejected before they are expanded."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def call(name: str) -> Any:
 
 
 def doubling(count: int) -> tuple[Any, ...]:
-    """Functions of which each calls the next one twice; the outermost is `f`."""
+    """Functions that each call the next one twice. The outermost is `f`."""
     names = ["f", *(f"f{number}" for number in range(1, count))]
     inner = itertools.pairwise(names)
     twice = [function(name, {"op": "+", "left": call(other), "right": call(other)}) for name, other in inner]

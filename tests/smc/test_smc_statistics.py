@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quantiles against SciPy, sums and tables; intervals keep what they promise, also when sampling stops early."""
+"""Quantiles compared with SciPy, sums and tables. Intervals have the stated confidence, also if sampling stops
+early."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml.smc.run import FIRST_BATCH, GROWTH, LARGEST_BATCH, PEEKING
+from roaml.smc.run import BATCH_GROWTH, FIRST_BATCH_TRACES, MAX_BATCH_TRACES, STOPPING_ERROR_SHARE
 from roaml.smc.statistics import (
     Bounds,
     Mean,
@@ -122,7 +123,8 @@ def test_number_of_traces_by_okamoto() -> None:
 
 @pytest.mark.parametrize(("p", "confidence"), [(p, c) for p in (0.01, 0.1, 0.37, 0.5, 0.93) for c in (0.8, 0.95)])
 def test_coverage_of_intervals(p: float, confidence: float) -> None:
-    """Exactly, over all numbers of successes: the true value is in the interval often enough."""
+    """Computed exactly, over all numbers of successes: the probability that the interval contains the true value is
+    high enough."""
     n = 150
     covered = math.fsum(
         binomial_tail(k, n, p) - binomial_tail(k + 1, n, p)
@@ -135,12 +137,13 @@ def test_coverage_of_intervals(p: float, confidence: float) -> None:
 @cache
 def stop(n: int, k: int, confidence: float, epsilon: float) -> tuple[float, float] | None:
     """The interval if sampling stops here."""
-    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * PEEKING)
+    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
     return bounds if bounds.half_width <= epsilon else None
 
 
 def added(open_: dict[int, float], size: int, p: float) -> dict[int, float]:
-    """How probable each number of successes is after `size` further traces, of which each succeeds with `p`."""
+    """The probability of each number of successes after `size` further traces, each of which succeeds with probability
+    `p`."""
     chances = [math.comb(size, i) * p**i * (1 - p) ** (size - i) for i in range(size + 1)]
     after: dict[int, float] = {}
     for k, weight in open_.items():
@@ -152,12 +155,12 @@ def added(open_: dict[int, float], size: int, p: float) -> dict[int, float]:
 
 @pytest.mark.parametrize("p", [0.02, 0.05, 0.08, 0.12, 0.29, 0.41, 0.5])
 def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
-    """Exactly, over everything that can happen until the adaptive method stops."""
+    """Computed exactly, over all runs until the adaptive method stops."""
     confidence, epsilon = 0.95, 0.06
     open_: dict[int, float] = {0: 1.0}
     done, covered = 0, 0.0
     while open_:
-        size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
+        size = max(FIRST_BATCH_TRACES, min(MAX_BATCH_TRACES, int(done * BATCH_GROWTH)))
         done += size
         after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
@@ -172,12 +175,12 @@ def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
 @pytest.mark.parametrize("most", [100, 150, 200, 300])
 @pytest.mark.parametrize("p", [0.05, 0.29, 0.5])
 def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> None:
-    """Exactly: the adaptive method keeps its promise also where `--max-traces` ends it."""
+    """Computed exactly: the adaptive method has the stated confidence also if `--max-traces` ends it."""
     confidence, epsilon = 0.95, 0.06
     open_: dict[int, float] = {0: 1.0}
     done, covered = 0, 0.0
     while open_:
-        size = min(FIRST_BATCH, most - done)
+        size = min(FIRST_BATCH_TRACES, most - done)
         done += size
         after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
@@ -185,7 +188,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
             if interval is None and done < most:
                 open_[k] = weight
                 continue
-            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * PEEKING)
+            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
             covered += weight if lower <= p <= upper else 0.0
     assert covered >= confidence
 
@@ -194,7 +197,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
 def test_confidence_sequences_contain_the_estimate_and_the_interval_of_clopper_and_pearson(
     n: int, data: st.DataObject, confidence: float
 ) -> None:
-    """What may be looked at whenever one likes is never narrower than what may be looked at once."""
+    """An interval that is valid at any stopping time is never narrower than one for a fixed number of traces."""
     k = data.draw(st.integers(0, n))
     lower, upper = confidence_sequence(k, n, confidence)
     once = clopper_pearson(k, n, confidence)
@@ -226,8 +229,8 @@ def covers(interval: Bounds, p: float) -> bool:
 
 @pytest.mark.parametrize("p", [0.03, 0.2, 0.5, 0.9])
 def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float) -> None:
-    """Exactly, over all runs: not even who looks after each trace and waits for a miss finds more of them than
-    promised. An interval for one look fails this."""
+    """Computed exactly, over all runs: even if sampling stops as soon as an interval misses the true value, this
+    happens no more often than stated. An interval for a fixed number of traces fails this test."""
     for method, keeps in ((confidence_sequence, True), (clopper_pearson, False)):
         confidence, open_, missed = 0.9, {0: 1.0}, 0.0
         for n in range(1, 400):
@@ -236,7 +239,7 @@ def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float)
                 after[k] = after.get(k, 0.0) + weight * (1 - p)
                 after[k + 1] = after.get(k + 1, 0.0) + weight * p
             likely = {k: weight for k, weight in after.items() if weight >= 1e-12}
-            # Both bounds grow with the number of successes: it suffices to look from both ends.
+            # Both bounds increase with the number of successes, so it is enough to search from both ends.
             counts = sorted(likely)
             while counts and not covers(method(counts[0], n, confidence), p):
                 missed += likely[counts.pop(0)]
@@ -256,8 +259,8 @@ def test_bounds_grow_with_the_number_of_successes(method: Callable[[int, int, fl
 
 @pytest.mark.parametrize("p", [0.62, 0.65, 0.68, 0.7, 0.73, 0.75, 0.8])
 def test_intervals_and_errors_of_the_sequential_test(p: float) -> None:
-    """Exactly, over all runs until the test decides: the interval beside the decision keeps its promise, and so does
-    the decision outside of the zone of indifference."""
+    """Computed exactly, over all runs until the test decides: the interval has the stated confidence, and so has the
+    decision outside the indifference region."""
     error, ratio = 0.05, Ratio(0.7, 0.05, 0.05)
     open_, covered, above, covered_once = {0: 1.0}, 0.0, 0.0, 0.0
     n = 0
@@ -299,12 +302,12 @@ def test_errors_of_the_sequential_test(p: float, above: bool) -> None:
             successes += source.random() < p
             decision = ratio.decision(successes, traces)
         wrong += decision is not above
-    # At most 5 percent are expected; more than 9 percent would happen once in ten thousand times.
+    # At most 5 percent are expected. More than 9 percent would occur once in ten thousand times.
     assert wrong <= 0.09 * tests
 
 
 def test_intervals_of_means_are_valid_at_all_times() -> None:
-    """Of many runs, in nearly none the interval ever misses the mean once there are some values."""
+    """In almost none of many runs, an interval misses the mean after the first values."""
     source, missed, runs = random.Random(3), 0, 300
     for _ in range(runs):
         mean, wrong = Mean(), False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An independent judge: Storm computes what our traces estimate."""
+"""Comparison with an independent model checker: Storm computes the probabilities that traces estimate."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ TRACES = 3000
 
 
 def estimates(actual_model: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
-    """Property -> successes and traces."""
+    """Property -> the numbers of successes and traces."""
     checker = ModelChecker(actual_model)
     with Pool() as pool:
         options = Options(method=FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
@@ -44,7 +44,7 @@ def estimates(actual_model: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
 
 
 def two_sided(successes: int, traces: int, p: float) -> float:
-    """How probable it is to be as far off as that, by the normal approximation with continuity correction."""
+    """The probability of a deviation of at least this size, by the normal approximation with continuity correction."""
     if p in (0, 1):
         return 1.0 if successes == p * traces else 0.0
     deviation = abs(successes - p * traces) - 0.5
@@ -56,7 +56,7 @@ def chain(source: random.Random, number: int) -> Json:
     places = [f"s{i}" for i in range(source.randint(3, 6))]
     edges = []
     for following, place in enumerate(places[:-1], 1):
-        # The last place is always reached.
+        # The last location is always reached.
         targets = list(dict.fromkeys((places[following], *source.sample(places, source.randint(1, 2)))))
         weights = [source.randint(1, 5) for _ in targets]
         found = []
@@ -84,7 +84,7 @@ def chain(source: random.Random, number: int) -> Json:
 
 
 def computed(written: Json) -> dict[str, float]:
-    """Property -> its probability by Storm."""
+    """Property -> the probability that Storm computes."""
     parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(written))
     found = {}
     for each in properties:
@@ -117,7 +117,7 @@ def test_translated_systems_agree_with_storm(name: str) -> None:
 
 
 def induced(actual_model: Model, limit: int, folder: Path) -> float | None:
-    """The probability that Storm computes for the Markov chain that uniform choices make of a model."""
+    """The probability that Storm computes for the Markov chain that uniform choices induce in a model."""
     checker = ModelChecker(actual_model)
     explorer = Explorer(checker.compiled(checker.asked[0]))
     try:
@@ -167,7 +167,7 @@ def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -
 
 
 def example(seed: int) -> Json:
-    """A network with nondeterminism, made of random numbers."""
+    """A network with nondeterminism, made from random numbers."""
     source = random.Random(seed)
     parts = []
     for number in range(2):
@@ -190,7 +190,7 @@ ARRAY: Any = {"op": "av", "elements": [1, 2]}
 
 
 def test_exact_answers() -> None:
-    """Least and greatest over all schedulers, of which the uniform one is between."""
+    """The least and the greatest probability over all schedulers. The uniform one is between them."""
     steps = [edge("l", way("m", 0.25, x=1), way("m", 0.75, x=2)), edge("l", way("m", 0.5, x=1), way("m", 0.5, x=2))]
     actual_model = model(
         document(
@@ -210,7 +210,7 @@ def test_exact_answers() -> None:
 
 
 def test_extremes_from_all_states_are_those_of_storm() -> None:
-    """Random networks, with the goal, its opposite, and one until: the enclosures hold what Storm computes."""
+    """Random networks with the goal, its negation, and one until: the bounds contain the values of Storm."""
     solved = differing = 0
     for seed in range(80):
         written = example(seed)
@@ -251,6 +251,6 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
     with Pool() as pool:
         state = Search()
         checker.search(checker.asked[0], Options(epsilon=0.02), pool, state)
-    share = {side: tally.successes / tally.traces for side, (_, tally) in state.found.items()}
+    share = {side: tally.successes / tally.traces for side, (_, tally) in state.selected.items()}
     assert share[GREATEST] == pytest.approx(expected.greatest, abs=0.03)
     assert share[LEAST] == pytest.approx(expected.least, abs=0.03)

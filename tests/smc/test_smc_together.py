@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several questions asked of the same traces: each has exactly the answer that it has alone."""
+"""Several questions that share traces: each has exactly the answer that it has alone."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ QUESTIONS: dict[str, Json] = {
 
 
 def walk(**more: Json) -> Json:
-    """Counts x up to 4 with a chance in each step, and y up to 30."""
+    """A model that counts x up to 4 with a random draw in each step, and y up to 30."""
     steps = [
         edge("go", way("go", 0.4, x=op("+", "x", 1), y=op("+", "y", 1)), way("go", 0.5, y=op("+", "y", 1)),
              way("end", 0.1), guard=op("∧", op("<", "x", 4), op("<", "y", 30))),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Actions with more combinations of edges than any integer holds: each has its weight, and each edge its share."""
+"""Actions with more combinations of edges than an integer can represent: each has its weight, and each edge its
+probability."""
 
 from __future__ import annotations
 
@@ -20,11 +21,11 @@ from roaml.smc.statistics import clopper_pearson
 from twin import difference
 
 SURE = 1 - 1e-9
-"""Tests that hold a probability against an interval fail by chance once in so many times."""
+"""The probability that a test which compares a frequency with an interval fails by chance."""
 
 
 def wide(count: int, edges: int, **more: Json) -> Json:
-    """`count` automata with `edges` edges each on one action: which one is taken, `x0`, `x1`, ... say."""
+    """`count` automata with `edges` edges each on one action. The variables `x0`, `x1`, ... contain the taken edges."""
     parts = []
     for number in range(count):
         taken = [edge("s", way("t", **{f"x{number}": pick}), action="a") for pick in range(edges)]
@@ -37,7 +38,7 @@ def wide(count: int, edges: int, **more: Json) -> Json:
 
 @pytest.mark.parametrize(("count", "edges"), [(11, 2), (12, 2), (13, 2), (31, 3), (63, 2), (64, 2), (1100, 2)])
 def test_each_automaton_draws_its_edge(count: int, edges: int) -> None:
-    """From one combination for each of 2^11 to one of 2^1100, which is no number of any register."""
+    """From one combination for each of 2^11 to one of 2^1100, which exceeds every register."""
     traces = 500
     for answer in answers(wide(count, edges), traces).values():
         lower, upper = clopper_pearson(answer.tally.successes, traces, SURE)
@@ -45,7 +46,8 @@ def test_each_automaton_draws_its_edge(count: int, edges: int) -> None:
 
 
 def test_one_edge_with_three_among_many_with_two() -> None:
-    """3 * 2^30 combinations by one number of 32 bits: every third one came twice as often as the others."""
+    """With 3 * 2^30 combinations and one number of 32 bits, every third combination would be twice as probable as the
+    others."""
     parts = [automaton("three", "s t", [edge("s", way("t", x=n), action="a") for n in range(3)])]
     parts += [automaton(f"m{n}", "s t", [edge("s", "t", action="a"), edge("s", "t", action="a")]) for n in range(30)]
     goals = {"p": probability(op("F", op("=", "x", 0)))}
@@ -58,7 +60,7 @@ def test_one_edge_with_three_among_many_with_two() -> None:
 @pytest.mark.parametrize("common", [8, 40, 1100])
 @pytest.mark.parametrize("more", [0, 2])
 def test_the_weight_of_an_action_is_the_number_of_its_combinations(common: int, more: int) -> None:
-    """Two actions, one with 2^more times as many combinations as the other."""
+    """Two actions, one of which has 2^more times as many combinations as the other."""
     parts = []
     for number in range(common + more):
         edges = [edge("s", "t", action="a")] * 2 + [edge("s", "t", action="b")] * (2 if number < common else 1)
@@ -73,7 +75,7 @@ def test_the_weight_of_an_action_is_the_number_of_its_combinations(common: int, 
 
 
 def test_an_action_that_is_negligible_is_never_taken() -> None:
-    """A choice of 1 beside 2^1200 others, which is less than the smallest number of 64 bits."""
+    """One choice beside 2^1200 others has a probability below the smallest number of 64 bits."""
     parts = [automaton(f"m{n}", "s t", [edge("s", "t", action="a")] * 2) for n in range(1200)]
     alone = automaton("alone", "s t", [edge("s", way("t", x=1))])
     goals = {
@@ -104,7 +106,7 @@ def test_both_kernels_draw_the_same(count: int, edges: int, scheduler: int) -> N
 
 
 def test_schedulers_choose_every_edge() -> None:
-    """No scheduler looks at all combinations; together they choose all edges alike."""
+    """No scheduler considers all combinations, but together they choose all edges equally often."""
     checker = ModelChecker(model(wide(64, 2)))
     compiled = checker.compiled(checker.asked[0])
     actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
@@ -120,7 +122,7 @@ def test_schedulers_choose_every_edge() -> None:
 
 
 def test_a_scheduler_is_a_function_of_the_state() -> None:
-    """The same scheduler does the same in the same state, whatever the trace and its random numbers."""
+    """A scheduler makes the same choice in the same state, whatever the trace and its random numbers are."""
     checker = ModelChecker(model(wide(64, 3)))
     compiled = checker.compiled(checker.asked[0])
     actual_kernel = kernel.Kernel(compiled.program, compiled.goal)

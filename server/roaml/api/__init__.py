@@ -12,7 +12,7 @@
     for result in api.verify(system, jobs=2, expectations=["alarm >= 0.95"]):
         print(result.name, result.answer.value, result.answer.bounds, result.is_met)
 
-Errors in the user's files are neither printed nor raised; a path that does not exist is a `PathError`. Each
+Errors in the user's files are neither printed nor raised. A path that does not exist raises a `PathError`. Each
 name is imported when it is used, so that a program loads only what it needs.
 """
 

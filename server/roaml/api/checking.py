@@ -51,15 +51,15 @@ def check(
 ) -> CheckResult:
     """Check system files, single files and folders.
 
-    A system file is checked with all files that it names; a folder with all systems and files in it. Any other file is
-    checked as a part of the systems that name it. They are searched for in the configured roots, otherwise in the
-    enclosing repository, otherwise in the folder of the file.
+    A system file is checked together with all files that it names, and a folder with all systems and files in it. Any
+    other file is checked as a part of the systems that name it. These systems are searched for in the configured roots;
+    if there are none, in the enclosing repository; if there is none, in the folder of the file.
 
     Args:
         paths: the files and folders to check.
         ros_paths: folders with ROS interface packages, in addition to the configured ones.
-        settings: used instead of the configuration found around the first path.
-        texts: path -> text, or the bytes of a file, used instead of the content of the file.
+        settings: the settings; if not given, the configuration file around the first path is read.
+        texts: path -> text or bytes that replace the content of the file.
 
     Raises:
         PathError: a path does not exist or cannot be read, and `texts` has no text for it.

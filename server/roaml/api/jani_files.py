@@ -14,11 +14,11 @@ from roaml.text import SourceFile, decode
 
 
 class PathError(ValueError):
-    """A given path cannot be read; the message contains the reason."""
+    """Raised for a path that cannot be read. The message contains the reason."""
 
 
 class JaniError(ValueError):
-    """A JANI file has errors: `diagnostics`, with positions in `source`."""
+    """Raised for a JANI file with errors. `diagnostics` are the errors, with positions in `source`."""
 
     def __init__(self, diagnostics: tuple[Diagnostic, ...], source: SourceFile) -> None:
         super().__init__(f"{diagnostics[0].path}: {diagnostics[0].message}")

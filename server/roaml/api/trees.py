@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 UNTRANSLATABLE = "untranslatable-tree"
-"""The code of the reason why a tree without errors cannot be translated."""
+"""The code of the diagnostic that says why a tree without errors cannot be translated."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

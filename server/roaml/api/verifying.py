@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 class ConstantError(ValueError):
-    """A constant cannot have this value, or a model does not declare the constant or parameter; the message contains
-    the reason."""
+    """Raised if a constant cannot have the given value, or if a model does not declare the constant or parameter. The
+    message contains the reason."""
 
 
 def target(
@@ -53,12 +53,12 @@ def target(
 
     if not path.endswith(".jani"):
         if constants:
-            raise ConstantError("a system has no constants; they are for JANI models")
+            raise ConstantError("a system has no constants; only JANI models have them")
         from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
 
         return as_target(load(path, ros_paths, settings, texts, overrides)).expecting(_expected(settings))
     if overrides != NO_OVERRIDES:
-        raise ConstantError("a JANI model has no parameters to override; they are for systems")
+        raise ConstantError("a JANI model has no parameters to override; only systems have them")
     from roaml.jani.constants import with_constants  # noqa: PLC0415
 
     model, source = read_jani(path)
@@ -74,7 +74,7 @@ def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
 
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
-    """The target for a system, which is translated first, or for a model."""
+    """The verification target of a system, which is translated for it, or of a JANI model."""
     from roaml.verification.target import VerificationTarget, target_of  # noqa: PLC0415
 
     if isinstance(subject, VerificationTarget):
@@ -117,7 +117,7 @@ def verifier(
     *,
     only_uniform: bool = False,
 ) -> Verifier:
-    """A verification of single properties that can be observed, interrupted and continued.
+    """A verifier, which verifies properties one by one. A verification can be observed, interrupted and continued.
 
     Args:
         subject, properties, options, expectations, only_uniform: as for `verify`.

@@ -57,14 +57,14 @@ def level_of(document: Document) -> str:
 
 @_lazy
 def after(document: Document, element: Element, *lines: str) -> TextEdit:
-    """Insert lines after an element, as its next sibling."""
+    """An edit that inserts lines after an element, as its next sibling."""
     at = element.span.end
     return TextEdit(Span(at, at), _block(document, indent_of(document.text, element), lines))
 
 
 @_lazy
 def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
-    """Insert lines into an element, before all its content."""
+    """An edit that inserts lines into an element, before all its content."""
     if parent.self_closing or not parent.elements:
         return _last_in(document, parent, *lines)
     at = parent.open_span.end
@@ -73,7 +73,7 @@ def first_in(document: Document, parent: Element, *lines: str) -> TextEdit:
 
 @_lazy
 def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
-    """Insert lines into an element, after all its child elements."""
+    """An edit that inserts lines into an element, after all its child elements."""
     return _last_in(document, parent, *lines)
 
 

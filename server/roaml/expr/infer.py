@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The type of an expression, and its type errors (docs/spec/expressions.md#operators).
 
-- Pure: `Scope`, which the caller provides, resolves names.
-- Problems are data (`Problem`); the rules write the messages.
-- A part that is already reported has type `Unknown` and causes no further problems.
+- The functions are pure: `Scope`, which the caller provides, resolves names.
+- Problems are data (`Problem`). The rules create the messages.
+- A part with a problem has the type `Unknown`, which causes no further problems.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class DivisionByZero:
 
 @dataclass(frozen=True, slots=True)
 class IntegerDivision:
-    """`/` of two ints: the result is real (docs/spec/expressions.md#operators)."""
+    """`/` divides two ints. The result is real (docs/spec/expressions.md#operators)."""
 
     span: Span
 
@@ -151,7 +151,7 @@ class RandomUsed:
 
 @dataclass(frozen=True, slots=True)
 class LengthOfStruct:
-    """`.length` of a struct, which is not an array (docs/spec/types.md#leaves)."""
+    """`.length` is read from a struct, which is not an array (docs/spec/types.md#leaves)."""
 
     span: Span
     struct: Struct
@@ -166,7 +166,7 @@ class ObjectUsed:
 
 @dataclass(frozen=True, slots=True)
 class ElementComputed:
-    """An element of an array literal that is not a literal (docs/spec/expressions.md#grammar)."""
+    """An array literal has an element that is not a literal (docs/spec/expressions.md#grammar)."""
 
     span: Span
 
@@ -193,7 +193,7 @@ Problem: TypeAlias = (
 def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, tuple[Problem, ...]]:
     """The type of `expr` and its problems, in the order of the text.
 
-    With `reprinted`, the type is the one after the translation has printed the numbers: `2.0` becomes `2`, an int
+    With `reprinted`, the type is that of the translated expression, in which `2.0` is written as `2` and is an int
     (docs/spec/expressions.md#whole-reals).
     """
     if isinstance(expr, Name) and (known := scope(expr.name)) is not None:

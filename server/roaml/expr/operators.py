@@ -63,7 +63,7 @@ UNARY_PRECEDENCE = 7
 
 
 class FunctionResult(Vocabulary):
-    """The type of the result of a function, in the words of hover texts."""
+    """The type of the result of a function, as hover texts show it."""
 
     INT = "int"
     REAL = "float"
@@ -76,7 +76,7 @@ class Function:
     """A function of `Math`.
 
     Attributes:
-        parameters: their names, in order.
+        parameters: the names of the parameters, in order.
         documentation: a description of the result.
         optional: the number of parameters at the end that may be omitted.
     """

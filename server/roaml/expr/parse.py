@@ -41,7 +41,7 @@ from roaml.expr.words import PREFIXES, STATEMENTS
 from roaml.text import Decoded, Span, TextEdit
 
 MAX_DEPTH = 150
-"""The maximum depth of a tree; everything after the parser may recurse."""
+"""The maximum depth of a tree, so that functions over trees may recurse."""
 
 MAX_FINDINGS = 20
 """The maximum number of errors that are reported in one expression."""
@@ -51,7 +51,7 @@ UNSUPPORTED = "unsupported-expression"
 
 
 class ExpressionTokenKind(Vocabulary):
-    """The values are the names of groups in `_TOKEN`."""
+    """The kind of a token. The values are the names of groups in `_TOKEN`."""
 
     NUMBER = "number"
     NAME = "name"
@@ -62,7 +62,7 @@ class ExpressionTokenKind(Vocabulary):
 
 
 class ExpressionToken(NamedTuple):
-    """`start` and `end` index the decoded text."""
+    """A token of an expression. `start` and `end` are offsets in the decoded text."""
 
     kind: ExpressionTokenKind
     text: str
@@ -398,7 +398,8 @@ class _Parser:
         return ErrorExpr(span)
 
     def regular_expression(self) -> int:
-        """The number of tokens of the regular expression that begins here; 0 if there is none."""
+        """The index of the token after the regular expression that begins at the current token; 0 if none begins
+        there."""
         for at in range(self.at + 1, len(self.tokens)):
             if self.tokens[at].text == "/":
                 flags = at + 1 < len(self.tokens) and self.tokens[at + 1].start == self.tokens[at].end
@@ -482,7 +483,7 @@ class _Parser:
         self.report(self.span(opener), f"`{opener.text}` is never closed with `{closer}`", SYNTAX, insert)
 
     def skip_to_closer(self) -> None:
-        """Skip tokens up to the next bracket that closes one opened before them."""
+        """Skip tokens up to the next closing bracket whose opening bracket precedes the current token."""
         opened = 0
         while (token := self.peek()) is not None:
             if token.text in _OPENERS:
@@ -511,7 +512,7 @@ class _Parser:
             raise _TooDeepError
 
     def since(self, first: int) -> Span:
-        """The span from token `first` to the last one read, or to the position after it where something is missing."""
+        """The span from token `first` to the last token that was read, or to the position where a part is missing."""
         return self.source.span(self.tokens[first].start, max(self.tokens[self.at - 1].end, self.gap))
 
     def span(self, token: ExpressionToken) -> Span:
@@ -524,7 +525,7 @@ class _Parser:
 
 
 def _in_xml(symbol: str) -> str:
-    """`symbol` as it is written in XML."""
+    """`symbol` with `&` and `<` escaped for XML."""
     return symbol.replace("&", "&amp;").replace("<", "&lt;")
 
 

@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """`object.name`; `name` is empty while it is being typed."""
+    """A member access `object.name`. `name` is empty if it has not been typed yet."""
 
     span: Span
     object: Expr
@@ -57,7 +57,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """`object[index]`."""
+    """An access `object[index]` to an element of an array."""
 
     span: Span
     object: Expr
@@ -89,7 +89,7 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Conditional:
-    """`test ? then : otherwise`."""
+    """A conditional expression `test ? then : otherwise`."""
 
     span: Span
     test: Expr
@@ -185,7 +185,7 @@ def walk(expr: Expr) -> list[Expr]:
 
 
 def placed(expr: Expr, source: Decoded) -> Expr:
-    """`expr`, whose spans are positions in the text of `source`, with spans in the file."""
+    """`expr` with spans in the file. The spans of `expr` are positions in the text of `source`."""
     span = source.span(*expr.span)
     match expr:
         case Name():

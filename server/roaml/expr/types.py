@@ -36,7 +36,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array of at most `bound` elements; without a bound, the bound is `max_array_size` of the system."""
+    """An array of at most `bound` elements. If it is `None`, the maximum is `max_array_size` of the system."""
 
     element: Type
     bound: int | None = None
@@ -94,7 +94,7 @@ class EmptyArray:
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """The type of an expression with a reported error. It fits everything, so that an error is reported once."""
+    """The type of an expression with a reported error. It fits every type, so that each error is reported only once."""
 
     def __str__(self) -> str:
         return "unknown"
@@ -202,8 +202,8 @@ def is_kind(type_: Type, kind: ScalarKind) -> bool:
 def fits(value: Type, target: Type) -> bool:
     """Whether a value of type `value` may be stored where `target` is declared.
 
-    An int fits a real; widths and bounds are not compared (docs/spec/types.md#conversion: integers are mathematical);
-    structs fit by name. An unknown type fits everything.
+    An int fits a real. Widths and bounds are not compared, because integers are mathematical
+    (docs/spec/types.md#conversion). A struct fits a struct with the same name. An unknown type fits every type.
     """
     match value, target:
         case (Unknown(), _) | (_, Unknown()):

@@ -72,7 +72,7 @@ class Possible:
 
     def _tree(self, name: str) -> Answers:
         if name not in self._trees:
-            self._trees[name] = ANYTHING  # during its analysis, for trees that contain themselves
+            self._trees[name] = ANYTHING  # used during the analysis, if the tree contains itself
             _, tree = self.forest.trees[name]
             if len(tree.roots) == 1 and self._depth < MAX_SUBTREES:
                 self._depth += 1
@@ -142,7 +142,7 @@ class Possible:
             order.append(node)
             stack += node.children
         stopped_nodes = []
-        for node in reversed(order):  # children before their parents
+        for node in reversed(order):  # so that children are visited before their parents
             stopped = self._stopped(node, answers)
             if stopped is not None and stopped[1] not in has_inner:
                 stopped_nodes.append(stopped)

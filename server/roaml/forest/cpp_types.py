@@ -59,7 +59,7 @@ def element_type(name: str) -> str | None:
 
 
 def is_converted(type_name: str) -> bool:
-    """Whether the library itself converts texts to a type; other types need a function of the program."""
+    """Whether the library itself converts texts to a type. For other types, the program must provide a function."""
     name = normal(type_name)
     inner = element_type(name)
     return is_converted(inner) if inner is not None else name in (*SIMPLE_TYPES, *_REALS, ANY, SCRIPT)

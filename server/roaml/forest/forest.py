@@ -77,7 +77,7 @@ class Forest:
 
     @cached_property
     def trees(self) -> Mapping[str, tuple[str, Tree]]:
-        """Name -> path of the file and tree; if names are equal, the first tree."""
+        """Name -> path of the file, and tree. If several trees have the same name, the first is used."""
         trees: dict[str, tuple[str, Tree]] = {}
         for path, file in self.files:
             for tree in file.trees:
@@ -87,7 +87,7 @@ class Forest:
 
     @cached_property
     def subtrees(self) -> Mapping[str, frozenset[str]]:
-        """Tree -> the trees that it uses, known or not."""
+        """The name of each tree -> the names of the trees that it uses, including unknown ones."""
         return {
             name: frozenset(
                 node.plugin.value
@@ -116,7 +116,8 @@ class Forest:
 
     @cached_property
     def models(self) -> Mapping[str, Node]:
-        """The nodes that models in the files describe, without subtrees; if names are equal, the first one."""
+        """The nodes that models in the files describe, by name, without subtrees. If several models have the same name,
+        the first is used."""
         models: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
@@ -165,7 +166,7 @@ class Forest:
         return len(names) > 1
 
     def node(self, name: str) -> Node | None:
-        """The declaration of the node type with a name; `None` if there is none."""
+        """The declaration of the node type `name`; `None` if there is none."""
         declaration = CPP.nodes.get(name)
         if declaration is not None and not declaration.until and not self.is_newer_than_used(declaration):
             return declaration

@@ -56,5 +56,5 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
 
 @functools.lru_cache(maxsize=2048)
 def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
-    """The script in a text; cached, because many rules read it."""
+    """The script in a text, and its syntax errors. The result is cached, because many rules need it."""
     return parse(source)

@@ -37,7 +37,7 @@ class Lens:
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """The text of a lens, and the counted places."""
+    """The text of a lens, and the places of the uses that it counts."""
 
     title: str
     places: tuple[Location, ...]
@@ -132,7 +132,7 @@ def _counted(analysis: Analysis, symbol: Symbol, system: str | None) -> Counted:
 
 
 def _within(analysis: Analysis, symbol_uses: Iterable[SymbolUse], system: str | None) -> list[SymbolUse]:
-    """The uses in the files of a system; all if there is no system."""
+    """The uses in the files of a system; all uses if `system` is `None`."""
     files = frozenset(analysis.files_of(system)) if system else None
     return [use for use in symbol_uses if files is None or use.path in files]
 

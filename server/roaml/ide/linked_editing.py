@@ -8,7 +8,7 @@ from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 NAME_PATTERN = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
-"""The pattern of a name while it is typed."""
+"""A pattern for names of elements, including unfinished ones, as LSP's `wordPattern`."""
 
 
 def linked_names(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:

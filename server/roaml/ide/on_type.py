@@ -65,7 +65,7 @@ def open_element(text: str, offset: int) -> str:
                 break
             last = elements[-1]
         elif before.text[last.open_span.end - 1] != ">":
-            return ""  # in a tag
+            return ""  # the offset is in a tag
         if last.close_span is not None or last.self_closing or before.text[last.open_span.end - 1] != ">":
             break
         name, nodes = before.text[last.name_span.start : last.name_span.end], last.nodes

@@ -64,7 +64,7 @@ def _in_xml(analysis: Analysis, path: str, system: str) -> Iterator[Verifiable]:
 
 
 def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
-    """The expectations of the properties in XML of a system, by their names."""
+    """The expectations in the XML property files of a system, by the names of the properties."""
     expected: dict[str, Comparison] = {}
     for listed in analysis.listed(system):
         is_xml = listed.usable and listed.required_kind is FileKind.XML_PROPERTIES

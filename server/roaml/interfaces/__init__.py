@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS 2 interface definitions, `.msg`, `.srv` and `.action`, read from their files without any ROS installation.
 
-Nothing of a workspace is imported or executed. The standard packages of ROS 2 are included as definition files in
-`standard/`: the types of Jazzy, in the form that they have there; comments state what Humble lacks and what later
-distributions changed. The comments are written for this project.
+Nothing in a workspace is imported or executed. `standard/` contains definition files of the standard packages of ROS 2:
+the types of Jazzy. Their comments are written for this project; they say what Humble lacks and what later distributions
+changed.
 """
 
 from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, PACKAGE_NAME, TYPE_NAME

@@ -2,10 +2,11 @@
 """Text of a `.msg`, `.srv` or `.action` file -> definition.
 
 - Never fails and takes time linear in the text: every error becomes a finding with its span, and parsing continues.
-- Readable parts are kept: a field with an invalid name or type is still a field, so its users get no further errors.
-  Only the second of two equal names is left out.
-- Comments are attached to elements as in `rosidl`: the block that opens a section to the section; lines directly above
-  an element, after it, and indented below it to that element. An empty line ends a comment.
+- Readable parts are kept: a field with an invalid name or type is still a field, so that uses of the field cause no
+  further errors. If two elements have the same name, only the second is left out.
+- Comments are attached as in `rosidl`. The comment at the beginning of a section belongs to the section. Comment lines
+  directly above an element, after it on its line, or indented below it belong to the element. An empty line ends a
+  comment.
 
 Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `rosidl_adapter`.
 """
@@ -88,7 +89,7 @@ class _Parser:
         self.kind = kind
         self.report = report
         self.sections = [_OpenSection()]
-        self.opening = True  # only comment lines so far in this section
+        self.opening = True  # whether only comment lines have been read in this section
         self.above: list[str] = []  # comment lines above the next element
         self.last: _Element | None = None  # the element that an indented comment line continues
 
@@ -164,7 +165,7 @@ class _Parser:
     # -------------------------------------------------------------- elements
 
     def element(self, start: int, end: int) -> None:
-        """A field or constant: `type name`, `type name default` or `type NAME=value`, and its trailing comment."""
+        """Read a field or constant (`type name`, `type name default` or `type NAME=value`) and its comment."""
         text = self.text
         comment, self.above, self.last = self.above, [], None
         type_span = find_type(text, start, end)

@@ -2,8 +2,8 @@
 """Names of messages, services and actions -> their definitions.
 
 - Never fails: a type that is not found is a `NotFound` with the reason and similar names.
-- Files are read through the caller, so an open editor's text takes precedence over the disk; a definition is parsed
-  again only when the digest of its file has changed.
+- The caller provides the function that reads files, so that the text in an editor takes precedence over the file. A
+  definition is parsed again only if the digest of its file has changed.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ FOREIGN_TYPES: Mapping[str, str] = {
 
 Scalar: TypeAlias = bool | int | float | str
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
-"""A constant or default: a tuple for an array."""
+"""The value of a constant or default; that of an array is a tuple."""
 
 
 class ArrayKind(enum.Enum):
@@ -71,7 +71,7 @@ class FieldType:
     """The type of a field or constant.
 
     `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; in a file with errors it may be
-    neither, and resolving it fails like that of any unknown type. `string_bound` is the maximum number of characters of
+    neither, and is then treated as an unknown type. `string_bound` is the maximum number of characters of
     a `string<=N`. `size` is set for the array kinds FIXED and BOUNDED.
     """
 
@@ -95,7 +95,7 @@ class FieldType:
         return FieldType(self.name, self.string_bound)
 
     def __str__(self) -> str:
-        """The type as a definition file spells it."""
+        """The type as it is written in a definition file."""
         bound = "" if self.string_bound is None else f"<={self.string_bound}"
         match self.array:
             case ArrayKind.NONE:
@@ -178,7 +178,7 @@ class Definition:
         return self.sections[0].comment
 
     def section(self, name: str) -> Section:
-        """The section of that name in `SECTION_NAMES[kind]`. Raises `KeyError` for other names."""
+        """The section with a name of `SECTION_NAMES[kind]`. Raises `KeyError` for other names."""
         try:
             return self.sections[SECTION_NAMES[self.kind].index(name)]
         except ValueError:

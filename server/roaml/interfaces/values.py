@@ -28,7 +28,8 @@ _MAX_DIGITS = 1000
 
 
 def skip_blanks(text: str, start: int, end: int) -> int:
-    """The first offset from `start` on without a blank or tab; `end` if there is none."""
+    """The offset of the first character between `start` and `end` that is not a blank or tab; `end` if there is
+    none."""
     while start < end and text[start] in " \t":
         start += 1
     return start

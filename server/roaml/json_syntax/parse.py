@@ -61,7 +61,7 @@ _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7,
 _COLON = re.compile(rf"{_SPACE}:")
 _ASSIGNMENT = re.compile(r"=>?")
 _NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
-"""The text after a key that is never closed."""
+"""The text of a key without a closing quote, and the colon after it."""
 _STRING_BODY = {
     '"': re.compile(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
     "'": re.compile(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
@@ -74,7 +74,7 @@ _INTERLUDES = (
     (re.compile(r"[^\S \t\n\r]+|\ufeff+"), "this character is not white space in JSON", " "),
     (re.compile(";"), "values must be separated by commas", ","),
 )
-"""Text that is skipped: pattern, message, replacement."""
+"""Invalid text that is skipped: its pattern, the message of its finding, and the text that replaces it."""
 _SLOPPY_NUMBER = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
 _FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "None": "null", "NULL": "null"}
 _NO_NUMBERS = {"nan", "infinity", "inf"}
@@ -94,7 +94,7 @@ class _Key(NamedTuple):
 
 
 class _Bracket(NamedTuple):
-    """An open bracket around the innermost one."""
+    """An open bracket that is not the innermost one, with the state of the parser inside it."""
 
     start: int
     is_object: bool
@@ -198,7 +198,7 @@ class _Parser:
             self.root = value
 
     def nulls(self, start: int, end: int, comma: int) -> int:
-        """`null` or, in a list, `null,null,...`; return the offset after them."""
+        """Read `null` or, in a list, `null,null,...`; return the offset after it."""
         first = JsonNull(start, start + 4)
         if self.is_object or not self.stack or end == first.end:
             self.value(first, comma)

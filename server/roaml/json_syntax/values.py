@@ -29,12 +29,13 @@ class _Value:
 
 @dataclass(frozen=True, slots=True)
 class JsonObject(_Value):
-    """`members` are in the order of the text; members with equal keys are all kept."""
+    """An object. `members` are in the order of the text; members with equal keys are all kept."""
 
     members: tuple[Member, ...]
 
     def get(self, key: str) -> JsonValue | None:
-        """The value of the last member with `key` (the one that other readers use), if there is any."""
+        """The value of the last member with `key`, which is the one that other JSON parsers use; `None` if there is
+        none."""
         for member in reversed(self.members):
             if member.key == key:
                 return member.value
@@ -96,7 +97,8 @@ class JsonArray(_Value):
 
 @dataclass(frozen=True, slots=True)
 class JsonString(_Value):
-    """`value` has its escapes resolved. `quotes` are the lengths of the opening and the closing quote in the text."""
+    """A string. `value` has its escapes resolved. `quotes` are the lengths of the opening and closing quote in the
+    text, 0 if a quote is missing."""
 
     value: str
     quotes: tuple[int, int] = (1, 1)
@@ -109,7 +111,7 @@ class JsonString(_Value):
 
 @dataclass(frozen=True, slots=True)
 class JsonNumber(_Value):
-    """`value` is an int if `text` has neither a point nor an exponent; `text` is as written."""
+    """A number. `text` is the number as written; `value` is an int if `text` has neither a point nor an exponent."""
 
     value: int | float
     text: str

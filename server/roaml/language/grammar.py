@@ -60,8 +60,8 @@ class PortType:
 
     Attributes:
         type: a base type or "any".
-        required: whether it must be set.
-        default: its value if it is not set.
+        required: whether the port must be set.
+        default: the value of the port if it is not set.
         constant: whether its value must be a constant.
         alias_of: the port of which this is another name, or "".
     """
@@ -264,7 +264,7 @@ class _Shape:
 
 
 class _Reader:
-    """Reads one schema file."""
+    """Reads one schema file into tables."""
 
     def __init__(self, schema: str) -> None:
         from lxml import etree  # noqa: PLC0415 - models in JANI do not need it

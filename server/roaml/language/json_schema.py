@@ -33,7 +33,7 @@ class Key:
 
 @dataclass(frozen=True)
 class JsonGrammar:
-    """One schema file."""
+    """The grammar of JSON documents that a schema file defines."""
 
     name: str
 

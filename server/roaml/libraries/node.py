@@ -16,9 +16,9 @@ class Port:
 
     Attributes:
         type: the C++ type as written, such as `unsigned int`; "" if it is not known. `script` is the script language.
-        default: `None` if the port has no default.
+        default: the value if the port is not set; `None` if the port has no default.
         required: whether the node needs a value; known only for ports of libraries and of subtrees.
-        alias_of: the port for which this is another name in trees of systems, or "".
+        alias_of: the port of which this is another name in trees of systems, or "".
         system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
     """
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""HL-SCXML systems -> plain SCXML (docs/spec/plain-scxml.md).
+"""Translates systems in HL-SCXML to plain SCXML (docs/spec/plain-scxml.md). This is called lowering.
 
-- Total: every system without errors is lowered; a rule has reported everything that cannot be lowered. An assertion
-  that fails here is a bug in the tool, never an error in a model.
-- All output has an origin, including the added automata.
-- Pure, except for the package's own resources: the nodes of BehaviorTree.CPP in `nodes/`.
+- Every system without errors can be lowered: rules report everything that cannot be. If an assertion in this package
+  fails, the tool has a bug; it is never an error in a model.
+- All output has an origin, including the automata that the translation adds.
+- The functions depend only on their arguments, and on the files of this package with the nodes of BehaviorTree.CPP.
 """
 
 from roaml.lower.program import TranslatableSystem

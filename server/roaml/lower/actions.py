@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton), which
-decides on one goal at a time.
+"""The handler between the clients and the server of a ROS action (docs/spec/plain-scxml.md#action-automaton). It passes
+on one goal at a time, and waits until the server has accepted or rejected it.
 
-A client is identified by its goal id, its index among the clients of the action.
+All goals of a client have the same id: the index of the client among the clients of the action.
 """
 
 from __future__ import annotations
@@ -85,8 +85,8 @@ def _store(parameter: str, origin: Location) -> Statement:
 def _to_client(
     action: Channel, event: Callable[[SystemAutomaton], ScxmlEvent], params: tuple[Param, ...], origin: Location
 ) -> Body:
-    """Sends the event that `event` returns for a client to the client with the stored goal id. (An action without
-    clients has a handler as well.)"""
+    """The statements that send an event to the client with the stored goal id. `event` returns the event for a client.
+    They are empty for an action without clients, which has a handler, too."""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)

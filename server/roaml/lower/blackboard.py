@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The automaton that holds the blackboard (docs/spec/plain-scxml.md#blackboard)."""
+"""The automaton that stores the blackboard (docs/spec/plain-scxml.md#blackboard)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def blackboard_write(variable: str) -> ScxmlEvent:
 
 
 def blackboard(program: TranslatableSystem) -> Automaton | None:
-    """The automaton; `None` if the tree uses no variables."""
+    """The automaton that stores the blackboard of a system; `None` if the tree uses no variables."""
     system = program.system
     if program.library is not None:
         return board_automaton(
@@ -56,7 +56,12 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
 
 
 def board_automaton(board: Board, origin: Location, *, is_read: bool) -> Automaton | None:
-    """The automaton for the entries of a tree that is executed as by the library."""
+    """The automaton that stores the entries of a tree that is executed as BehaviorTree.CPP executes it; `None` if there
+    are none.
+
+    Args:
+        is_read: whether a node reads an entry.
+    """
     entries = [*board.entries.values(), *board.flag_of.values()]
     if not entries:
         return None
@@ -77,7 +82,8 @@ def board_automaton(board: Board, origin: Location, *, is_read: bool) -> Automat
 
 
 def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, ...]:
-    """What the blackboard does when an entry is written: its observers see that it was."""
+    """The assignments of the blackboard when an entry is written: its value, and the flags of the nodes that observe
+    it."""
     flags = board.flags.get(entry.variable, ())
     return (
         Assign(name(entry.variable), event_data("value"), origin),
@@ -86,6 +92,6 @@ def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, 
 
 
 def _place(program: TranslatableSystem, variable: str) -> Location:
-    """The first node that uses a variable."""
+    """The place of the first node that uses a variable."""
     instance = program.system.blackboard[variable][0].automaton.instance
     return program.node(instance.number if instance else 0)

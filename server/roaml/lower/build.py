@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small expressions that the lowering creates."""
+"""Functions that create small expressions for the lowering."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def integer(value: int, span: Span = NOWHERE) -> Number:
 
 
 def event_data(parameter: str, span: Span = NOWHERE) -> Expr:
-    """`_event.data.<parameter>`: a parameter of the event that the transition waits for."""
+    """The expression `_event.data.<parameter>`: a parameter of the event that the transition waits for."""
     return Member(span, Member(span, Name(span, EVENT_DATA), "data", span), parameter, span)
 
 
@@ -49,5 +49,5 @@ def equal(left: Expr, right: Expr, span: Span = NOWHERE) -> Expr:
 
 
 def both(left: Expr | None, right: Expr, span: Span = NOWHERE) -> Expr:
-    """`left && right`; without left only `right`."""
+    """The expression `left && right`; if `left` is `None`, only `right`."""
     return right if left is None else binary(left, Operator.AND, right, span)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One chart that is being lowered: its place in the system, and the meaning of its names."""
+"""The context in which a chart is lowered: its place in the system, and the names that it can use."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ from roaml.text import Decoded, Location, Span
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoweringContext:
-    """
+    """The context in which a chart is lowered.
+
     Attributes:
         name: the name of the plain automaton.
         thread: the number of the copy of an action thread; `None` for the machine itself.
-        timers: timer handle -> the event of its ticks for this chart.
-        ports: key -> the value of a port that the tree does not set.
-        variables: the chart's variables with their types.
+        timers: handle of a timer -> the event of its ticks for this chart.
+        ports: port that the tree does not set -> its value.
+        variables: variable of the chart -> its type.
     """
 
     program: TranslatableSystem
@@ -45,19 +46,21 @@ class LoweringContext:
     variables: Mapping[str, Type]
 
     def origin(self, span: Span) -> Location:
-        """A place in the machine's file; for nodes of BehaviorTree.CPP, which have none, the tree node."""
+        """The location of `span` in the file of the machine. A node of BehaviorTree.CPP has no file, so its location is
+        the node in the tree."""
         if self.automaton.path:
             return Location(self.automaton.path, span)
         return self.program.place_of(self.automaton)
 
     def scope(self, handler: Handler | None = None, part: str = "body") -> LoweringScope:
-        """The meaning of names in a part ("cond" or "body") of a handler, or in `<onentry>` and `<onexit>`."""
+        """The names that can be used in `part` of a handler, "cond" or "body"; without a handler, those in `<onentry>`
+        and `<onexit>`."""
         if handler is None:
             return LoweringScope(self.variables, {}, {})
         return LoweringScope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})
 
     def port(self, read: PortRead) -> PortValue:
-        """The value of the port. A port that is not set has been reported; it is treated as empty."""
+        """The value of a port. A port that is not set has the value ""; a rule reports it."""
         key = read.key.value if read.key else ""
         value = self.automaton.port(key)
         return PortConstant(self.ports.get(key, "")) if value is None else value
@@ -86,7 +89,7 @@ class LoweringContext:
 
 
 def variables_of(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
-    """The variables of a chart with their types; if ids are equal, the first declaration is used."""
+    """Variable of a chart -> its type; if ids are equal, the first declaration is used."""
     types: dict[str, Type] = {}
     for data in chart.data:
         if data.id is not None:
@@ -100,7 +103,7 @@ def type_of(data: Data, program: TranslatableSystem) -> Type:
 
 
 def literal(text: str, type_: Type, span: Span) -> Expr:
-    """A port's text as a value of its type; strings need no quotes (docs/spec/trees.md#port-values)."""
+    """The text of a port as a value of its type. Strings have no quotes (docs/spec/trees.md#port-values)."""
     if type_ in (STRING, UNKNOWN):
         return String(span, text)
     if is_kind(type_, ScalarKind.BOOL):

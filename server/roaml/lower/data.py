@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variables of HL-SCXML -> plain ones: a struct becomes one variable per leaf member
+"""Translates variables of HL-SCXML to plain SCXML: a struct becomes one variable for each leaf
 (docs/spec/plain-scxml.md#flattening).
 
-Numbers keep their point here: `1.0` is a real initial value (docs/spec/expressions.md#whole-reals).
+In initial values, `1.0` remains a real number (docs/spec/expressions.md#whole-reals).
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from roaml.text import Location
 
 
 def lower_data(identifier: str, type_: Type, value: Expr | None, origin: Location) -> Iterator[Data]:
-    """The plain variables of one variable; without `value` they get their defaults."""
+    """The plain variables for one variable. If `value` is `None`, they have the default values of their types."""
     given = {} if value is None else dict(_leaf_values(type_, value))
     for path, leaf in leaves(type_):
         yield Data(SEPARATOR.join((identifier, *path)), leaf, given.get(path) or zero(leaf), origin)
 
 
 def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
-    """The initial values of the leaf members; a list of objects is turned into one list per leaf."""
+    """The paths and initial values of the leaves. A list of objects becomes one list for each leaf."""
     match type_, value:
         case Struct(), ObjectLiteral():
             for member in value.members:
@@ -42,8 +42,8 @@ def _leaf_values(type_: Type, value: Expr) -> Iterator[tuple[Path, Expr]]:
 
 
 def as_type(value: Expr, element: Type) -> Expr:
-    """Literals of a real type are reals, including those written without a point
-    (docs/spec/plain-scxml.md#initial-reals)."""
+    """A copy of the literal `value` in which numbers are reals if the type of the elements is real, even if they are
+    written without a point (docs/spec/plain-scxml.md#initial-reals)."""
     if not is_kind(element, ScalarKind.REAL):
         return value
     match value:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The goals that an automaton of an action server executes, for the actions whose cancel requests it handles
+"""Stores which goals an automaton of an action server executes, for the actions whose cancel requests it handles
 (docs/spec/plain-scxml.md#cancel).
 
-For each client that cancels goals, a boolean variable says whether the automaton executes its goal: the server from the
-acceptance on, a thread from its start on, until the automaton ends the goal or passes it on.
+For each client that cancels goals, a boolean variable states whether the automaton executes the goal of the client. The
+server executes a goal from its acceptance, a thread from its own start, until the automaton ends the goal or passes it
+on to a thread.
 """
 
 from __future__ import annotations
@@ -29,7 +30,11 @@ _BOOL = BASE_TYPES["bool"]
 
 @dataclass(frozen=True, slots=True)
 class ExecutedGoals:
-    """`variables`: for the name of each action, the variables by the goal ids of the clients that cancel."""
+    """The variables for the executed goals of one automaton.
+
+    Attributes:
+        variables: name of an action -> id of the goals of a client that cancels goals -> name of the variable.
+    """
 
     variables: Mapping[str, Mapping[int, str]]
 
@@ -39,7 +44,8 @@ class ExecutedGoals:
                 yield Data(variable, _BOOL, zero(_BOOL), origin)
 
     def is_executed(self, action: Channel) -> Expr | None:
-        """The condition that the automaton executes the goal of a cancel request."""
+        """The condition that the automaton executes the goal that a cancel request names; `None` if there are no
+        variables for the action."""
         condition: Expr | None = None
         for number, variable in self._of(action).items():
             own = both(equal(event_data(GOAL_ID), integer(number)), name(variable))
@@ -47,11 +53,11 @@ class ExecutedGoals:
         return condition
 
     def start(self, action: Channel, origin: Location) -> Iterator[Assign]:
-        """The changes when a thread receives its goal."""
+        """The assignments when a thread starts and receives its goal."""
         return self._assign(action, lambda _, number: equal(event_data(GOAL_ID), integer(number)), origin)
 
     def sent(self, action: Channel, part: ProtocolPart, goal_id: Expr | None, origin: Location) -> Iterator[Assign]:
-        """The changes when a server or thread sends something."""
+        """The assignments when a server or thread sends `part` of the action for the goal `goal_id`."""
         match part:
             case ProtocolPart.GOAL_ACCEPTED if goal_id is not None:
                 accepted = goal_id

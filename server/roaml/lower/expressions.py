@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expressions of HL-SCXML -> plain ones (docs/spec/plain-scxml.md#expressions): event variables renamed, structs
-flattened, indices last.
+"""Translates expressions of HL-SCXML to plain SCXML (docs/spec/plain-scxml.md#expressions). Event variables are
+renamed, structs are flattened, and indices follow the whole name.
 
-- `a[i].b[j].c` -> `a__b__c[i][j]`, `_msg.pose.x` -> `_event.data.ros_fields__pose__x`, `points.length` ->
-  `points__x.length`.
-- The value of a struct becomes one value for each leaf member.
+- `a[i].b[j].c` becomes `a__b__c[i][j]`, `_msg.pose.x` becomes `_event.data.ros_fields__pose__x`, and `points.length`
+  becomes `points__x.length`.
+- The value of a struct becomes one value for each leaf.
 - `2.0` becomes `2`, as in the reference translator (docs/spec/expressions.md#whole-reals).
 """
 
@@ -38,12 +38,12 @@ Path = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class LoweringScope:
-    """The meaning of names at one place.
+    """The names that expressions in one place can use.
 
     Attributes:
-        variables: the machine's own, with their types.
-        event: the event variables (`_msg`, `_event`, ...) with their types.
-        constants: names of numbers (`SUCCESS` in the condition of a child's status).
+        variables: variable of the machine -> its type.
+        event: event variable (`_msg`, `_event`, ...) -> its type.
+        constants: name of a number, such as `SUCCESS` in the condition of `<bt_child_status>` -> the number.
     """
 
     variables: Mapping[str, Type]
@@ -53,13 +53,13 @@ class LoweringScope:
 
 @dataclass(frozen=True, slots=True)
 class AccessedVariable:
-    """A variable or parameter, or a part of one.
+    """A variable or parameter, or a part of one, to which an expression refers.
 
     Attributes:
         event: whether it is data of an event.
-        names: the variable and the members on the way.
-        indexes: all of them, lowered, in order.
-        length: whether its `.length` is accessed.
+        names: the variable, followed by the members that are accessed.
+        indexes: the lowered indices, in order.
+        length: whether the `.length` of the part is accessed.
         type: the type of the part, without `.length`.
     """
 
@@ -71,7 +71,7 @@ class AccessedVariable:
     type: Type
 
     def leaf(self, path: Path = ()) -> Expr:
-        """The plain expression of the leaf member at `path`."""
+        """The plain expression for the leaf at `path`."""
         identifier = SEPARATOR.join((*self.names, *path))
         variable = event_data(identifier, self.span) if self.event else name(identifier, self.span)
         expr = indexed(variable, self.indexes, self.span)
@@ -79,7 +79,7 @@ class AccessedVariable:
 
 
 def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
-    """The plain form of a value that is not a struct."""
+    """The plain expression for a value that is not a struct."""
     match expr:
         case Number():
             return integer(int(expr.value), expr.span) if expr.is_real and expr.value == int(expr.value) else expr
@@ -107,7 +107,7 @@ def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
 
 
 def _lower_part(expr: Name | Member | Index, scope: LoweringScope) -> Expr:
-    """A part of a value that has no name: `'abc'.length`."""
+    """The plain expression for a part of a value that is not a variable, such as `'abc'.length`."""
     chosen = _chosen_part(expr)
     if chosen is not None:
         return lower_expr(chosen, scope)
@@ -120,7 +120,8 @@ def _lower_part(expr: Name | Member | Index, scope: LoweringScope) -> Expr:
 
 
 def _chosen_part(expr: Expr) -> Conditional | None:
-    """`(b ? p : q).x` as `b ? p.x : q.x`: in the model, only named values have parts."""
+    """`b ? p.x : q.x` for an expression of the form `(b ? p : q).x`; `None` for other forms. In plain SCXML, only
+    variables have parts."""
     match expr:
         case Conditional():
             return expr
@@ -131,10 +132,11 @@ def _chosen_part(expr: Expr) -> Conditional | None:
 
 
 def lower_leaves(expr: Expr, scope: LoweringScope, type_: Type) -> list[tuple[Path, Expr]]:
-    """A value as one plain value for each leaf member of its type; one with an empty path if it is not a struct.
+    """The paths of the leaves of a value with their plain expressions. A value that is not a struct has one leaf, with
+    an empty path.
 
     Args:
-        type_: the type as which the value is used.
+        type_: the type that is required for the value.
     """
     chosen = _chosen_part(expr)
     if chosen is not None:
@@ -150,13 +152,13 @@ def lower_leaves(expr: Expr, scope: LoweringScope, type_: Type) -> list[tuple[Pa
 
 
 def first_leaf(type_: Type) -> Path:
-    """The path of the first leaf member of a struct; empty for everything else."""
+    """The path of the first leaf of a struct; empty for other types."""
     return next((path for path, _ in leaves(type_)), ())
 
 
 def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
-    """The variable or part that `expr` reads or writes, if it is a chain of members and indices that begins with a
-    name."""
+    """The variable, or the part of one, to which `expr` refers; `None` if `expr` is not a chain of members and indices
+    that begins with a name."""
     steps: list[Member | Index] = []
     root = expr
     while isinstance(root, (Member, Index)):
@@ -184,7 +186,8 @@ def access_of(expr: Expr, scope: LoweringScope) -> AccessedVariable | None:
 
 
 def _event_parameter(variable: str, names: list[str]) -> Path:
-    """The parameter that an event variable refers to (docs/spec/machines.md#event-variables)."""
+    """The path of the event parameter to which an event variable with the members `names` refers
+    (docs/spec/machines.md#event-variables)."""
     match variable:
         case "_event":
             return tuple(names[1:])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Common parts of the handlers of services and actions: they pass fields on in their own variables."""
+"""Common parts of the handlers of services and actions. A handler stores the fields of an event in its own variables,
+and sends them on."""
 
 from __future__ import annotations
 
@@ -16,12 +17,12 @@ from roaml.text import Location
 
 
 def copied(fields: Iterable[str], sent: Set[str], origin: Location) -> Body:
-    """Stores the fields of the event that its sender sends."""
+    """The assignments that store the fields of the received event that its sender sends."""
     return tuple(Assign(name(field), event_data(field), origin) for field in fields if field in sent)
 
 
 def stored(fields: Iterable[str], origin: Location) -> tuple[Param, ...]:
-    """The stored fields as parameters."""
+    """The stored fields as parameters of an event."""
     return tuple(Param(field, name(field), origin) for field in fields)
 
 
@@ -47,5 +48,6 @@ def declared_at(endpoint: ChannelEndpoint, program: TranslatableSystem) -> Locat
 
 
 def handler_place(channel: Channel, program: TranslatableSystem) -> Location:
-    """The place of a handler: that of the server; without one (which is reported) that of the first client."""
+    """The place of the declaration that a handler has as its origin: that of the server; without a server, which a rule
+    reports, that of the first client."""
     return declared_at(channel.endpoints[0], program)

@@ -21,9 +21,11 @@ def topic_event(topic: str) -> ScxmlEvent:
 
 
 def tree_event(node: int | str, kind: str) -> ScxmlEvent:
-    """The tick or halt of a node of the tree, or its answer: `tick`, `halt`, `response` or `halt_response`.
+    """An event between a node of the tree and its parent.
 
-    `node` is its number, or the address of a node behind conditions (`roaml.lower.library_tree`).
+    Args:
+        node: the number of the node, or its address if it has conditions (`roaml.lower.library_tree`).
+        kind: `tick`, `halt`, `response` or `halt_response`.
     """
     return ScxmlEvent(f"bt_{node}_{kind}", EventRole.BLOCKING)
 
@@ -55,7 +57,7 @@ class ServiceEvents:
 
 @dataclass(frozen=True, slots=True)
 class ActionEvents:
-    """The events of one action. Whether its feedback waits for its receivers depends on the action's name
+    """The events of one action. The name of the action determines whether its feedback waits for its receivers
     (docs/spec/jani.md#synchronising-names)."""
 
     action: str
@@ -70,9 +72,11 @@ class ActionEvents:
 
     @property
     def cancel(self) -> ScxmlEvent:
-        """A request is received only when goals have been passed on to threads (docs/spec/ros.md#cancel). Its name does
-        not begin like those of the other events of the action, so it never waits for its receivers
-        (docs/spec/jani.md#synchronising-names)."""
+        """The request to cancel a goal. It is received only while no start of a thread waits (docs/spec/ros.md#cancel).
+
+        Its name does not begin like the names of the other events of the action, so it never waits for its receivers
+        (docs/spec/jani.md#synchronising-names).
+        """
         return ScxmlEvent(f"{CANCEL_PREFIX}{sanitise(self.action)}", after=self.thread_start.name)
 
     @property
@@ -100,7 +104,7 @@ class ActionEvents:
         return ScxmlEvent(f"{self.stem}_thread_free", EventRole.BLOCKING)
 
     def goal_of(self, client: SystemAutomaton) -> ScxmlEvent:
-        """A goal is received only when each earlier cancel request has been (docs/spec/ros.md#cancel)."""
+        """The goal of a client. It is received only after all earlier cancel requests (docs/spec/ros.md#cancel)."""
         name = f"{self.stem}_goal_req_client_{safe_name(client.name)}"
         return ScxmlEvent(name, EventRole.BLOCKING, after=self.cancel.name)
 
@@ -133,7 +137,7 @@ def fields(channel: Channel, part: ProtocolPart, environment: Environment) -> di
 
 
 def sent_parameters(endpoint: ChannelEndpoint, part: ProtocolPart) -> set[str]:
-    """The event parameters that one side sends for the fields of a part."""
+    """The names of the event parameters that one client or server sends for the fields of a part."""
     return {
         parameter((*field.name.split("."), *path))
         for field in dict(endpoint.use.fields).get(part, ())
@@ -142,5 +146,5 @@ def sent_parameters(endpoint: ChannelEndpoint, part: ProtocolPart) -> set[str]:
 
 
 def parameter(path: Iterable[str]) -> str:
-    """The event parameter of a leaf field."""
+    """The name of the event parameter for a leaf field."""
     return FIELD_PREFIX + SEPARATOR.join(path)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A machine in its place in the system -> plain automata: its own, then one per copy of its action threads."""
+"""Translates a machine in its place in the system to plain automata: one for the machine itself, and one for each copy
+of its action threads."""
 
 from __future__ import annotations
 
@@ -32,11 +33,12 @@ from roaml.scxml.model import Data, Send, State, Statement, Target, Transition
 from roaml.scxml.names import STATUSES, named
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
-"""(name of a plain automaton, timer handle) -> the event of its ticks."""
+"""(name of a plain automaton, handle of a timer) -> the event of the ticks of the timer."""
 
 
 def copies(automaton: SystemAutomaton, machine: Machine) -> Iterator[tuple[str, Chart, int | None]]:
-    """The plain automata of a machine: their names, their charts and the number of the thread."""
+    """The names of the plain automata of a machine, with their charts and the numbers of their threads; the number is
+    `None` for the machine itself."""
     yield automaton.name, machine.chart, None
     for thread in machine.threads:
         server = next(
@@ -84,8 +86,9 @@ class _ChartLowering:
         return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, tuple(states), origin, thread_of)
 
     def discarded(self, state: State) -> Iterator[Transition]:
-        """Transitions that are never taken: they make the machine a receiver of the cancel requests that only its
-        threads handle, so that none is delivered while it passes a goal on (docs/spec/plain-scxml.md#cancel)."""
+        """Transitions that are never taken. They make the machine a receiver of the cancel requests that only its
+        threads handle, so that no request is delivered while the machine passes a goal on to a thread
+        (docs/spec/plain-scxml.md#cancel)."""
         if self.context.thread is not None:
             return
         own = set(self.cancel_events(self.context.chart))
@@ -126,7 +129,8 @@ class _ChartLowering:
     # ------------------------------------------------------------------ states
 
     def state(self, state: hl.State) -> Iterator[State]:
-        """The state, and an additional one after each handler that reads the blackboard."""
+        """The plain states for a state: the state itself, and an additional one for each handler that reads the
+        blackboard."""
         assert state.id is not None
         scope = self.context.scope()
         entry = self.statements.body(state.entry.statements, scope) if state.entry else ()
@@ -156,7 +160,7 @@ class _ChartLowering:
         )
 
     def waiting_state(self, state: str, handler: Handler, number: int) -> State:
-        """The state in which the machine waits for the blackboard's answer before it executes the handler
+        """The state in which the machine waits for the answer of the blackboard before it executes the handler
         (docs/spec/plain-scxml.md#blackboard-read)."""
         origin = self.context.origin(handler.element.span)
         target = handler.targets[0]
@@ -171,8 +175,8 @@ class _ChartLowering:
         return State(identifier, (), (), (answered,), origin)
 
     def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
-        """The first half of a handler that reads the blackboard: its trigger and condition, and the request to the
-        blackboard."""
+        """The transitions for the first half of a handler that reads the blackboard. They have its trigger and
+        condition, and send the request to the blackboard."""
         origin = self.context.origin(handler.element.span)
         ask = (Send(REQUEST, (), origin),)
         body = (*self.started(handler), *ask)
@@ -214,7 +218,7 @@ class _ChartLowering:
             yield from self.goals.start(self.context.channel(handler), origin)
 
     def triggers(self, handler: Handler) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
-        """The events that the handler waits for, each with its condition; usually one."""
+        """The events that the handler waits for, each with its condition. Most handlers wait for one event."""
         cond = self.condition(handler)
         match handler.trigger:
             case ProtocolPart.CHILD_STATUS | ProtocolPart.CHILD_HALTED:
@@ -313,7 +317,7 @@ def values_in(statement: hl.Statement) -> Iterator[Value | None]:
 
 
 def probabilities(handler: Handler) -> list[float]:
-    """The probabilities of the targets, which add up to 1: the last one may be omitted
+    """The probabilities of the targets. They add up to 1, because a missing probability is what remains
     (docs/spec/machines.md#targets)."""
     given = [_decimal(target.probability.value) if target.probability else None for target in handler.targets]
     rest = 1 - sum((p for p in given if p is not None), Decimal(0))

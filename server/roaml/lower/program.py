@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TranslatableSystem:
-    """A system without errors.
+    """A system without errors, with everything that its translation needs.
 
     Attributes:
-        machines: the machines that the system lists, by path.
+        machines: path -> machine that the system lists.
         environment: structs, ROS types and the data of plain events.
-        place: the root of the system file, as the origin of parts that come from the system as a whole.
+        place: the root element of the system file: the origin of parts that belong to the system as a whole.
         nodes: number of a tree node -> its place.
         parameters: the parameters of the translation, which may differ from those in the system file.
-        library: the translation of a tree that is executed as by the library; `None` for other trees.
+        library: the translation of a tree that is executed as BehaviorTree.CPP executes it; `None` for other trees.
     """
 
     system: System
@@ -39,14 +39,15 @@ class TranslatableSystem:
     library: LibraryTree | None = None
 
     def place_of(self, automaton: SystemAutomaton) -> Location:
-        """The place of an automaton as a whole: its file, or the tree node if it has no file."""
+        """The place of an automaton as a whole: the root of its file; if it has no file, the node in the tree."""
         machine = self.machines.get(automaton.path)
         if machine is not None:
             return Location(automaton.path, machine.element.name_span)
         return self.node(automaton.instance.number if automaton.instance else 0)
 
     def address(self, number: int) -> str:
-        """The address of a tree node in events; usually its number."""
+        """The address of a tree node in names of events. It is the number of the node, unless the node has
+        conditions."""
         return str(number) if self.library is None else self.library.address(number)
 
     def node(self, number: int) -> Location:
@@ -54,4 +55,4 @@ class TranslatableSystem:
 
 
 NOWHERE = Span(0, 0)
-"""The span of expressions that the lowering creates; the origin of the statement around them is their place."""
+"""The span of expressions that the lowering creates. Their place is the origin of the enclosing statement."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handler between the clients and the server of a ROS service: one request at a time
+"""The handler between the clients and the server of a ROS service. It handles one request at a time
 (docs/spec/plain-scxml.md#service-automaton)."""
 
 from __future__ import annotations

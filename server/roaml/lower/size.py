@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The size of the translation of a system, computed without creating it.
+"""Computes the size of the translation of a system without translating it.
 
-- Total, also on systems with errors: unknown parts have the size 0.
-- Follows `roaml.lower` and `roaml.to_jani` step by step where they multiply something: a machine by the nodes of the
-  tree and by its threads, a handler by the children that it listens to, an alternative by those before it, an array by
-  its bounds, a random number by its values. Tests compare the result with the translation itself.
+- The size is also computed for systems with errors; unknown parts have the size 0.
+- The computation follows `roaml.lower` and `roaml.to_jani` where they multiply parts: a machine by the nodes of the
+  tree and by its threads, a handler by the children that it listens to, a branch by the earlier branches, an array by
+  its bounds, and a random number by its values. Tests compare the result with the size of translations.
 """
 
 from __future__ import annotations
@@ -48,23 +48,25 @@ _EDGE = 4
 """The size of an edge without its expressions: a destination, an action and two locations."""
 
 _CHILD_CONDITION = 4
-"""`!(child = 3)`: the parts of one earlier alternative in the guard of a child with a variable index."""
+"""The size of a condition such as `!(child = 3)`, for one earlier alternative in the guard of a child with a variable
+index."""
 
 _PLACES = 20
-"""The number of entries of synchronisations that count as one part: each lists all automata, most as `null`."""
+"""The number of entries of synchronisations that have the size of one part. A synchronisation has an entry for each
+automaton, and most entries are `null`."""
 
 
 def size_of(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Size:
-    """The size of a system, the largest shares first.
+    """The size of the translation of a system, with the largest shares first.
 
     Args:
-        globals_: the global variables of the translation.
+        globals_: the global variables of the translation, by name.
     """
     return Size(_sorted(_cells(program, globals_)), _sorted(_parts(program, globals_)))
 
 
 def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
-    """The shares, sorted; shares of the same thing are added."""
+    """The shares, the largest first. Shares with the same phrase, path and symbol are added up."""
     counts: dict[tuple[str, str, Symbol | None], int] = {}
     for share in shares:
         key = (share.words, share.path, share.symbol)
@@ -90,7 +92,7 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
                 words = f"the variable `{name}` of `{automaton.outline.name}`"
                 yield Share(copies * count, words, automaton.path, symbol)
             if single:
-                words = f"the variables of `{automaton.outline.name}` that have one value"
+                words = f"the variables of `{automaton.outline.name}` that are not arrays or strings"
                 yield Share(single, words, automaton.path, _machine_symbol(automaton))
     for variable in globals_.values():
         source = variable.source
@@ -119,14 +121,14 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
 def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Machine]]:
     for automaton in program.system.automata:
         if not automaton.path and program.system.is_library_tree:
-            continue  # programs have few variables; the size of a tree is limited anyway
+            continue  # programs have few variables, and the size of a tree is limited
         machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
         if machine is not None:
             yield automaton, machine
 
 
 def _charts(machine: Machine) -> Iterator[tuple[Chart, int]]:
-    """The charts of a machine and the number of copies of each."""
+    """The charts of a machine with their numbers of copies."""
     yield machine.chart, 1
     yield from ((thread.chart, thread.count or 0) for thread in machine.threads)
 
@@ -166,7 +168,7 @@ def _machine_symbol(automaton: SystemAutomaton) -> Symbol | None:
 
 
 class _Query(NamedTuple):
-    """An expression whose type was needed for a count, and the type."""
+    """An expression whose type a count depends on, with this type."""
 
     tree: Expr
     handler: Handler | None
@@ -175,7 +177,7 @@ class _Query(NamedTuple):
 
 
 class _Counted(NamedTuple):
-    """The counts of a chart, and their other dependencies: types that other files declare."""
+    """The numbers of parts and actions of a chart, with the types that other files declare and on which they depend."""
 
     parts: int
     actions: int
@@ -184,8 +186,8 @@ class _Counted(NamedTuple):
 
 
 def _count(machine: Machine, chart: Chart, children: int, program: TranslatableSystem) -> _Counted:
-    """The counts of one copy of a chart. They are cached with the chart: a keystroke changes one machine of a
-    system."""
+    """The numbers of parts and actions of one copy of a chart. They are cached with the chart, because an edit changes
+    only one machine of a system."""
     parameters = program.parameters
     known: dict[object, _Counted] = chart.__dict__.setdefault("translation_parts", {})
     key = (children, parameters.max_array_size, parameters.random_values)
@@ -199,7 +201,7 @@ def _count(machine: Machine, chart: Chart, children: int, program: TranslatableS
 
 @dataclass(eq=False)
 class _Counter:
-    """Counts the parts of one copy of a chart, for a node with a given number of children."""
+    """Counts the parts and actions of one copy of a chart, for a node with the given number of children."""
 
     machine: Machine
     of: Chart
@@ -209,7 +211,7 @@ class _Counter:
     queries: list[_Query] = field(default_factory=list)
 
     def confirms(self, query: _Query) -> bool:
-        """Whether an expression still has the same type."""
+        """Whether the expression of a query still has the same type."""
         return self.inferred(query.tree, query.handler, query.part) == query.type
 
     def chart(self) -> int:
@@ -218,8 +220,8 @@ class _Counter:
         return sum(self.state(state, entries, len(events)) for state in self.of.states)
 
     def state(self, state: State, entries: Mapping[str, int], events: int) -> int:
-        """The edges of a state: each transition is guarded against the earlier ones with the same event, and events
-        without one are discarded."""
+        """The number of parts of the edges of a state. The guard of a transition contains the conditions of the earlier
+        transitions on the same event, and edges discard the other events."""
         leaving = self.body(state.exit.statements, None) if state.exit else 0
         count = events * _EDGE
         earlier: dict[object, int] = {}
@@ -241,7 +243,7 @@ class _Counter:
         return count + sum(earlier.values())
 
     def actions(self) -> int:
-        """The number of actions of the copy itself, one for each step on the way from state to state."""
+        """The number of actions of the copy: one for each step between states that is not the receipt of an event."""
         bodies = [b.statements for s in self.of.states for b in (s.entry, s.exit) if b]
         count = sum(map(self.steps, bodies)) + 1
         for state in self.of.states:
@@ -263,7 +265,7 @@ class _Counter:
         return count
 
     def trigger(self, handler: Handler) -> object:
-        """The key that distinguishes the events of handlers."""
+        """A key for the event of a handler. Handlers of the same event have equal keys."""
         name = handler.event or handler.handle or handler.child
         return handler.trigger, name.value if name else ""
 
@@ -271,7 +273,7 @@ class _Counter:
         return handler.child is not None and not handler.child.value.isdigit()
 
     def copies(self, handler: Handler) -> int:
-        """A handler of a child with a variable index becomes one for each child."""
+        """The number of transitions for a handler: one for each child if it handles a child with a variable index."""
         return self.children if self.by_variable(handler) else 1
 
     def body(self, body: Iterable[Statement], handler: Handler | None) -> int:
@@ -310,7 +312,7 @@ class _Counter:
         return draws * _EDGE * (values + 1) + read_and_written + stored
 
     def padding(self, statement: Assign, handler: Handler | None) -> int:
-        """Literals are padded to the capacity of the array in which they are stored."""
+        """The number of parts by which literals are padded to the capacity of the array in which they are stored."""
         assert isinstance(statement.value, Expression)
         if statement.location is None or not _literals(statement.value.tree):
             return 0
@@ -319,7 +321,7 @@ class _Counter:
         return size * len(_literals(statement.value.tree)) if size > 1 else 0
 
     def param(self, param: Param, handler: Handler | None) -> int:
-        """A literal that is sent is padded to the maximum size of arrays."""
+        """The number of parts of a parameter. A literal that is sent is padded to the maximum size of arrays."""
         if not isinstance(param.value, Expression):
             return 3
         literals = _literals(param.value.tree)
@@ -345,7 +347,7 @@ class _Counter:
         return count + _EDGE + earlier + otherwise
 
     def comparisons(self, value: Expression | None, handler: Handler | None, part: str) -> int:
-        """Two arrays are compared element by element."""
+        """The number of parts of the comparisons of arrays in an expression, which compare each element."""
         count = 0
         for node in walk(value.tree) if value else ():
             if isinstance(node, Binary) and node.operator.kind is OperatorKind.EQUALITY:
@@ -374,5 +376,5 @@ def _is_literal(tree: Expr) -> bool:
 
 
 def _literals(tree: Expr) -> list[Expr]:
-    """The outermost literals of an array expression."""
+    """The outermost literals of an array expression, at most 8."""
     return [] if isinstance(tree, Name) else [node for node in walk(tree) if _is_literal(node)][:8]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Executable content of HL-SCXML -> plain statements (docs/spec/plain-scxml.md#events)."""
+"""Translates executable content of HL-SCXML to statements of plain SCXML (docs/spec/plain-scxml.md#events)."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
 _NAMED = {ScalarKind.INT: BASE_TYPES["int64"], ScalarKind.REAL: REAL}
-"""The type of a variable for a value whose type has no name, by the kind of the value."""
+"""Kind of a value whose type has no name -> the type of a variable for it."""
 
 MAX_COMBINATIONS = 10_000
-"""The maximum number of combinations of random numbers that are drawn at once in one assignment: each combination is a
-destination in JANI."""
+"""The maximum number of combinations of random numbers that one assignment draws at once. It is limited because each
+combination is a destination in JANI."""
 
 
 def combinations(value: Expr, random_values: int) -> int | None:
-    """The number of combinations of the random numbers of an assignment, if they are drawn at once; `None` if they are
-    drawn one after the other."""
+    """The number of combinations of the random numbers in an assignment of `value` if they are drawn at once; `None` if
+    they are drawn one after the other, because there are too many."""
     count: int = random_values ** sum(map(is_draw, walk(value)))
     return count if count <= MAX_COMBINATIONS else None
 
@@ -51,7 +51,7 @@ TypedParam: TypeAlias = tuple[Param, Type]
 
 @dataclass(eq=False)
 class StatementLowering:
-    """Lowers the bodies of one automaton. `drawn` are variables for random numbers, created on the way."""
+    """Lowers the bodies of one automaton. Variables for random numbers are added to `drawn`."""
 
     context: LoweringContext
     goals: ExecutedGoals
@@ -106,7 +106,8 @@ class StatementLowering:
             yield from self.store(target.leaf(path), value, origin)
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
-        """An assignment. Many random numbers are drawn one after the other, and reset after their use."""
+        """The statements for an assignment. If it contains too many random numbers, they are drawn one after the other
+        into variables, which are reset afterwards."""
         if combinations(value, self.context.program.parameters.random_values) is not None:
             yield Assign(location, value, origin)
             return
@@ -129,7 +130,8 @@ class StatementLowering:
         return [((), self.value(value, scope))]
 
     def value(self, value: Value | None, scope: LoweringScope) -> Expr:
-        """A value that is not a struct. A port that is bound to the blackboard is read from the blackboard's answer."""
+        """The plain expression for a value that is not a struct. The value of a port that is bound to the blackboard is
+        read from the answer of the blackboard."""
         match value:
             case Expression():
                 return lower_expr(value.tree, scope)
@@ -171,7 +173,7 @@ class StatementLowering:
         return infer(value.tree, known.get)[0]
 
     def send(self, event: ScxmlEvent, params: Iterable[TypedParam], origin: Location) -> Iterator[Statement]:
-        """Random numbers are drawn and stored before the event can be received
+        """The statements that send an event. Random numbers are drawn and stored before the event is sent
         (docs/spec/plain-scxml.md#random-draws)."""
         ready = []
         for param, type_ in params:
@@ -184,7 +186,7 @@ class StatementLowering:
         yield Send(event, tuple(ready), origin)
 
     def fresh(self, type_: Type, origin: Location) -> Data:
-        """A new variable of the automaton, for a random number."""
+        """Add a variable for a random number to the automaton, and return it."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
         while (unused := f"random_{count}") in taken:
@@ -216,7 +218,7 @@ class StatementLowering:
             yield Param("thread_id", integer(self.context.thread), origin)
 
     def goal_id_of_client(self, statement: RosSend) -> int:
-        """The id of all goals of this client (docs/spec/ros.md#goal-ids)."""
+        """The id that all goals of this client have (docs/spec/ros.md#goal-ids)."""
         users = self.context.channel(statement).users
         return next(number for number, user in enumerate(users) if user.automaton is self.context.automaton)
 
@@ -274,9 +276,10 @@ class StatementLowering:
         return Param("status", value, origin)
 
     def call_child(self, statement: CallChild, origin: Location) -> Iterator[Statement]:
-        """A child with a variable index is found by a comparison with every index (docs/spec/plugins.md#children).
+        """The statements that tick or halt a child. A variable index is compared with every index
+        (docs/spec/plugins.md#children).
 
-        The origin of what is sent to the child is the child in the tree.
+        The origin of the sent event is the node of the child in the tree.
         """
         assert statement.child is not None
         children = self.children
@@ -310,5 +313,5 @@ class StatementLowering:
 
 
 def literal_index(child: Name) -> int | None:
-    """The index of a child that is given as a number."""
+    """The index of a child if it is a number; `None` if it is a variable."""
     return int(child.value) if child.value.isascii() and child.value.isdigit() else None

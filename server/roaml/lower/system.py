@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A whole system -> a network of plain automata, in processing order (docs/spec/systems.md#processing-order)."""
+"""Translates a whole system to a network of plain automata, in processing order
+(docs/spec/systems.md#processing-order)."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timers and the clock that makes them fire (docs/spec/plain-scxml.md#time).
 
-- Times are integers throughout: nothing is rounded except the periods, as in the reference translator.
-- Every automaton that uses a timer has its own ticks; in the common case of one user the event has the timer's name.
+- All times are integers. Only the periods are rounded, as in the reference translator.
+- Every automaton that uses a timer has a separate event for its ticks. If only one automaton uses it, the event has the
+  name of the timer.
 """
 
 from __future__ import annotations
@@ -35,11 +36,12 @@ from roaml.text import Location
 
 @dataclass(frozen=True, slots=True)
 class Timer:
-    """A timer of one automaton. `event` is `None` if nothing waits for its ticks.
+    """A timer of one automaton.
 
     Attributes:
-        user: the plain automaton that it triggers.
+        user: the name of the plain automaton that it triggers.
         handle: its name in that automaton.
+        event: the event of its ticks; `None` if no handler waits for them.
     """
 
     user: str
@@ -50,7 +52,8 @@ class Timer:
 
 
 def timers_of(program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]]) -> list[Timer]:
-    """All timers in the order of their declaration: nodes, then the tree's own, then the nodes of the tree."""
+    """All timers in the order of their declarations: those of the ROS nodes, that of the tree, and those of the nodes
+    of the tree."""
     declared: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
     for automaton, machine in members:
@@ -74,7 +77,8 @@ def _event(user: str, handle: str, alone: bool) -> ScxmlEvent:
 def _declared(
     automaton: SystemAutomaton, machine: Machine, program: TranslatableSystem
 ) -> Iterator[tuple[str, str, Fraction, bool, Location]]:
-    """(user, handle, rate in Hz, whether anything waits for it, place) for each timer of a machine."""
+    """For each timer of a machine: its user, its handle, its rate in Hz, whether a handler waits for it, and its
+    place."""
     for declaration in machine.declarations:
         if declaration.kind is SymbolKind.TIMER:
             assert declaration.handle is not None
@@ -86,7 +90,7 @@ def _declared(
 
 
 def _awaited(chart: Chart) -> set[str]:
-    """The timers for which a chart has callbacks."""
+    """The handles of the timers for which a chart has callbacks."""
     return {
         handler.handle.value
         for state in chart.states
@@ -110,7 +114,7 @@ STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
 def clock(timers: list[Timer], max_time: int, origin: Location) -> PlainAutomaton:
-    """The automaton that counts the time, up to `max_time` in ns, and makes timers fire."""
+    """The automaton that advances the time and triggers timers. `max_time`, in ns, is its maximum time."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
     step = math.gcd(*periods)

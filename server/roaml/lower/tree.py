@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The root of the behavior tree, which ticks the topmost node at the tree's rate
+"""The automaton of the tree root, which ticks the topmost node at the rate of the tree
 (docs/spec/plain-scxml.md#tree-root)."""
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ def _stem(program: TranslatableSystem) -> str:
 
 
 def tick_timer(program: TranslatableSystem) -> tuple[str, str]:
-    """The automaton that ticks the tree, and the timer that triggers it."""
+    """The name of the automaton that ticks the tree, and the name of the timer that triggers it."""
     return f"{TREE_ROOT_PREFIX}{_stem(program)}", f"{_stem(program)}_tick"
 
 
 def tree_root(program: TranslatableSystem, tick: ScxmlEvent) -> Automaton:
-    """`tick` is the event of the tree's timer."""
+    """The automaton of the tree root. `tick` is the event of the timer of the tree."""
     origin = program.node(ROOT_NUMBER)
 
     def on(event: ScxmlEvent, target: str, cond: Expr | None = None, *body: Send) -> Transition:
@@ -40,7 +40,7 @@ def tree_root(program: TranslatableSystem, tick: ScxmlEvent) -> Automaton:
     running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
     transitions: dict[str, tuple[Transition, ...]] = {"idle": idle}
     if program.parameters.tick_if_not_running and program.library is not None:
-        # The library resets a tree that has ended.
+        # BehaviorTree.CPP halts the tree after it has ended.
         reset = Send(tree_event(ROOT_NUMBER, "halt"), (), origin)
         transitions["wait_tick_res"] = (on(ANSWER, "idle", running), on(ANSWER, "wait_reset", None, reset))
         transitions["wait_reset"] = (on(tree_event(ROOT_NUMBER, "halt_response"), "idle"),)

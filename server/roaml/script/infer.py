@@ -79,7 +79,8 @@ def _of_binary(operator: str, left: Type, right: Type) -> Type:
 
 
 def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """The operations of a script that always fail. `entry` returns the type that a name has before the script."""
+    """Report the operations of a script that always fail. `entry` returns the type that a name has before the
+    script."""
     known: dict[str, Type] = {}
 
     def lookup(name: str) -> Type:

@@ -41,7 +41,7 @@ UNARY = ("-", "~", "!")
 BINARY = {
     "*": 9, "/": 9, "+": 8, "-": 8, "..": 8, "&": 7, "|": 6, "^": 6, "&&": 4, "||": 3,
 }  # fmt: skip
-"""The precedences of the binary operators, without comparisons (5)."""
+"""The precedences of the binary operators except comparisons, whose precedence is 5."""
 
 _COMPARISON, _CONDITIONAL, _ASSIGNMENT = 5, 2, 1
 
@@ -58,7 +58,7 @@ _TOKEN = re.compile(
 )
 
 _INSTEAD = {
-    "%": "the script language does not support the remainder",
+    "%": "the script language does not support remainders",
     "++": "write `+= 1`",
     "<<": "the script language does not support shifts",
     ">>": "the script language does not support shifts",
@@ -93,7 +93,7 @@ _KINDS = {**{kind.value: kind for kind in _TokenKind}, "strange": _TokenKind.JUN
 
 
 class _Token(NamedTuple):
-    """`start` and `end` are offsets in the decoded text."""
+    """A token of a script. `start` and `end` are offsets in the decoded text."""
 
     kind: _TokenKind
     text: str
@@ -102,7 +102,7 @@ class _Token(NamedTuple):
 
 
 class _ScriptError(Exception):
-    """Raised inside a statement and caught at its end."""
+    """Raised for a syntax error in a statement, whose remaining text is then skipped; never leaves this module."""
 
     def __init__(self, token: _Token, message: str, replacement: str = "") -> None:
         super().__init__(message)

@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Unary:
-    """`operator` is `-`, `~` or `!`."""
+    """A unary operation. `operator` is `-`, `~` or `!`."""
 
     span: Span
     operator: str
@@ -56,7 +56,7 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """An operator that is neither a comparison nor an assignment."""
+    """A binary operation whose operator is neither a comparison nor an assignment."""
 
     span: Span
     operator: str
@@ -67,7 +67,8 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`a < b == c`: each of `operators` is between two of `operands`; all must hold."""
+    """One or more comparisons, such as `a < b == c`. Each of `operators` is between two of `operands`, and all
+    comparisons must be true."""
 
     span: Span
     operators: tuple[str, ...]
@@ -76,7 +77,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Conditional:
-    """`test ? yes : no`."""
+    """A conditional expression `test ? yes : no`."""
 
     span: Span
     test: Expr
@@ -107,7 +108,7 @@ Expr: TypeAlias = Number | Boolean | String | Name | Unary | Binary | Comparison
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The statements; the value of a script is that of the last one."""
+    """A script. Its value is that of its last statement."""
 
     span: Span
     statements: tuple[Expr, ...]

@@ -44,7 +44,7 @@ def unescape(raw: str) -> str:
 
 
 def escape(value: str, quote: str = '"') -> str:
-    """`value` as attribute text between `quote` characters."""
+    """`value` with escapes, as the text of an attribute between `quote` characters."""
     value = value.replace("&", "&amp;").replace("<", "&lt;")
     return value.replace('"', "&quot;") if quote == '"' else value.replace("'", "&apos;")
 

@@ -21,8 +21,8 @@ ASCII_NAME = f"{_ASCII_LOCAL_NAME}(?::{_ASCII_LOCAL_NAME})?"
 
 
 class _Pattern:
-    """Tries ASCII first. The pattern for all of Unicode is compiled on first use: most models do not need it, and it
-    would slow down every start of the tool."""
+    """A pattern for names, which is tried with ASCII names first. The pattern for Unicode names is compiled on first
+    use, because it takes long and most models do not need it."""
 
     def __init__(self, form: str) -> None:
         self._ascii = re.compile(form.format(_ASCII_LOCAL_NAME))

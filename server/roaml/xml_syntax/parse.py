@@ -30,7 +30,7 @@ MAX_FINDINGS = 100
 
 _MAX_SKIPPED_DEPTH = 10_000
 
-# A tag without errors, in ASCII names. (Other tags are read by the general, slower patterns.)
+# A tag without errors whose names are ASCII. Other tags are read with the general patterns, which are slower.
 _SPACE = f"[{SPACE}]"
 _SOUND_TAG = re.compile(
     f"<({ASCII_NAME})((?:{_SPACE}+{ASCII_NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>"
@@ -128,7 +128,7 @@ class _Parser:
         return self.start_tag(at, match)
 
     def sound_tag(self, match: re.Match[str]) -> int:
-        """Read a start tag without errors: the common case, read fast."""
+        """Read a start tag without errors. This is the most common case, so it must be fast."""
         attributes: list[Attribute] = []
         start, end = match.span(2)
         if start != end:
@@ -180,7 +180,7 @@ class _Parser:
         return self.open_element(match, attributes, space.end() if space else position, False, complete=False)
 
     def attribute(self, match: re.Match[str], at: int) -> Attribute:
-        """Read the attribute in the text after `at`."""
+        """Read the attribute that follows the offset `at`, possibly after white space."""
         name, equals = match[1], match[2]
         name_span = Span(*match.span(1))
         self.check_name(name_span)
@@ -625,7 +625,7 @@ class _Parser:
             self.findings.append(Finding("xml-syntax", span, "too many errors: the file is not read from here on"))
 
     def trim(self, start: int, end: int) -> int:
-        """`end` moved back over white space, but not before `start`."""
+        """The end of the text from `start` to `end` without white space at its end."""
         while end > start and self.text[end - 1] in SPACE:
             end -= 1
         return end

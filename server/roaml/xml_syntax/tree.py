@@ -48,7 +48,7 @@ class CData(NamedTuple):
 
 
 class Comment(NamedTuple):
-    """`value` is the text between `<!--` and `-->`."""
+    """A comment. `value` is the text between `<!--` and `-->`."""
 
     value: str
     span: Span
@@ -71,12 +71,12 @@ class Element:
         attributes: in document order; attributes with equal names are all kept.
         nodes: all children, in document order.
         elements: only the child elements.
-        span: from `<` to after the end tag; without one, to after the last child.
-        open_span: the start tag, from `<` to after `>`; without one, to the next `<`.
+        span: the whole element. If it has no end tag, it ends with its last child.
+        open_span: the start tag. If it has no `>`, it ends before the next `<`.
         close_span: the end tag; `None` if the element is self-closing or was never closed.
         close_name_span: the name in the end tag.
         self_closing: written as `<a/>`.
-        complete: the start tag has its `>` and, unless self-closing, its end tag.
+        complete: whether the start tag has its `>` and the element is self-closing or has its end tag.
     """
 
     __slots__ = (
@@ -159,7 +159,7 @@ class Document:
 
     @property
     def namespaces(self) -> Mapping[str, str]:
-        """Prefix -> namespace as declared on the root; the prefix of the default namespace is empty."""
+        """The namespaces that the root declares: prefix -> namespace. The prefix of the default namespace is empty."""
         if self.root is None:
             return {}
         return {

@@ -26,16 +26,18 @@ _RELATIONS = {
     BinaryOperator.GREATER_EQUAL: (">=", "<="),
     BinaryOperator.EQUAL: ("==", "=="),
 }
-"""Operator -> the relation of the value to the number, if the value is at its left and at its right."""
+"""Operator -> the relation of the value to the number, if the value is the left operand, and if it is the right one."""
 _JUDGING = (FilterFunction.FORALL, FilterFunction.EXISTS)
-"""Functions whose values are comparisons; they differ only if there are several initial states."""
+"""Functions of filters whose values are comparisons. Their results differ only if there are several initial states."""
 
 
 class MovableExpectation(NamedTuple):
-    """
+    """An expectation that can be moved to the configuration.
+
     Attributes:
-        expected: such as `>= 0.9`.
-        edits: remove it from the property file.
+        name: the name of the property.
+        expected: the expectation, such as `>= 0.9`.
+        edits: the edits that remove it from the property file.
     """
 
     name: str
@@ -53,7 +55,8 @@ def movable_expectations(analysis: Analysis, path: str) -> tuple[MovableExpectat
 def moved(
     analysis: Analysis, path: str, expectations: tuple[MovableExpectation, ...], configuration: str
 ) -> WorkspaceEdit:
-    """
+    """The edits that move expectations to the configuration; empty if the configuration cannot be changed.
+
     Args:
         path: the property file.
         configuration: the configuration file, which need not exist.

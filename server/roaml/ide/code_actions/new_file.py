@@ -51,7 +51,7 @@ def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
 
 
 def node(name: str) -> str:
-    """A machine without behaviour."""
+    """A machine without behavior."""
     return f"""{_DECLARATION}<ascxml name="{name}" version="1.0" initial="run">
     <state id="run" />
 </ascxml>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The two ways to write a node of a tree: `<Action ID="X"/>`, explicit, and `<X/>`, compact."""
+"""Conversions between the two forms of a node of a tree: `<Action ID="X"/>` (explicit) and `<X/>` (compact)."""
 
 from __future__ import annotations
 

@@ -20,11 +20,11 @@ from roaml.text import Edit, Span
 from roaml.xml_syntax import Element
 
 _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.receives is ProtocolPart.RESULT)
-"""The handlers of the results that an action may have."""
+"""The names of the elements that handle the results of a ROS action."""
 
 
 def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """The refactorings at a place."""
+    """The refactorings that are possible at a place."""
     analysis = snapshot.analysis
     machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
     if machine is not None:

@@ -160,6 +160,6 @@ def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionIte
 
 
 def _may_become(typed: str, label: str) -> bool:
-    """Whether the label contains the typed characters in this order."""
+    """Whether the label contains the typed characters in the same order, possibly with others in between."""
     rest = iter(label)
     return all(character in rest for character in typed)

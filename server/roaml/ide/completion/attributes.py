@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Attributes that an element does not have yet."""
+"""Completion of attributes that an element does not have yet."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def attributes(request: Request, parents: tuple[Typed, ...], typed: Typed, *, ba
 
 
 def _plugin_type() -> ElementType:
-    """The type of a plugin in the compact form: the attributes that all nodes have."""
+    """The element type that is used for a node in compact form. It has the attributes that all nodes have."""
     return BEHAVIOR_TREE.elements["Action"]
 
 

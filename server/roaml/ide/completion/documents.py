@@ -87,7 +87,7 @@ _PROPERTIES = """\
 
 
 def documents(path: str) -> Iterator[CompletionItem]:
-    """The documents that an empty file may become."""
+    """Items that insert the initial content of a file of the kinds that the name of the file allows."""
     name = path.replace("\\", "/").rpartition("/")[2].partition(".")[0]
     if path.lower().endswith(MACHINE_EXTENSIONS):
         yield _item("state machine", _MACHINE.format(name=name), Rank.BEST)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fields of a ROS message that a sending element can set."""
+"""Completion of the fields of a ROS message that a sending element can set."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
 
 
 def _all(made: Snippet, types: Mapping[str, Type], lead: str) -> Snippet:
-    """Several fields, each on a separate line."""
+    """Add several `<field>` elements to a snippet, each on a separate line."""
     for number, (path, type_) in enumerate(types.items()):
         made.text(lead if number or "\t" in lead else "")
         _field(made, path, type_)

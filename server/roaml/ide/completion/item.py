@@ -34,7 +34,7 @@ class ItemKind(enum.Enum):
 
 
 class Rank(enum.IntEnum):
-    """The order of the list; items of equal rank keep their order."""
+    """The rank of an item in the list, the best one first. Items of equal rank keep their order."""
 
     BEST = 0
     LIKELY = 1
@@ -80,7 +80,7 @@ class Completions:
 
 
 def escaped(text: str) -> str:
-    """A text as a part of a snippet."""
+    """A text with the special characters of snippets escaped."""
     return re.sub(r"[\\$}]", r"\\\g<0>", text)
 
 
@@ -88,7 +88,8 @@ _STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\
 
 
 def plain(snippet: str) -> str:
-    """The text of a snippet for editors without snippets: the first choice, the default, or nothing."""
+    """The text of a snippet for editors without snippets. Each placeholder is replaced by its first choice, by its
+    default, or by nothing."""
     return _STOP.sub(lambda stop: stop[1] or _unescaped(stop[2] or stop[3] or ""), snippet)
 
 
@@ -97,7 +98,7 @@ def _unescaped(text: str) -> str:
 
 
 class Snippet:
-    """Text with placeholders, in order."""
+    """A snippet: text with placeholders, which is built from left to right."""
 
     def __init__(self) -> None:
         self._parts: list[str] = []
@@ -108,7 +109,7 @@ class Snippet:
         return self
 
     def stop(self, likely: Iterable[str] = ()) -> Snippet:
-        """A placeholder; `likely` are its likely values."""
+        """Add a placeholder. `likely` are the values that it suggests."""
         self._stops += 1
         choices = [text for text in dict.fromkeys(likely) if text]
         if not choices:
@@ -121,7 +122,7 @@ class Snippet:
         return self
 
     def end(self) -> Snippet:
-        """The final position of the caret."""
+        """Mark the final position of the caret."""
         self._parts.append("$0")
         return self
 

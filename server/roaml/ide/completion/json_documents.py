@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Completion in property files and in struct declarations in JSON: keys, operators, names, whole formulas."""
+"""Completion in property files and in struct declarations in JSON: keys, operators, names and complete formulas."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def _quoted(text: str) -> str:
 
 
 def _names(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
-    """The variables of the translated systems."""
+    """The global variables of the translated systems of the file."""
     for path_of_system in analysis.systems_of(path):
         system = analysis.system(path_of_system) if path_of_system else None
         for name, variable in analysis.globals(system.path).items() if system else ():

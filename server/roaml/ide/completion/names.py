@@ -22,7 +22,7 @@ _SHOWN = 3
 
 
 def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The symbols of a kind that `subject` may refer to."""
+    """Items for the symbols of the kind `kind` to which `subject` may refer."""
     if kind in HANDLES:
         yield from _handles(request, kind)
     elif kind in _PROVIDERS:
@@ -30,7 +30,7 @@ def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> 
 
 
 def undefined(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """Names for a new definition: those that are used but not defined."""
+    """Suggestions for the name of a new definition: names that are used but not defined."""
     if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
     elif kind is SymbolKind.PARAMETER:
@@ -241,7 +241,7 @@ def _plugin_names(request: Request, subject: CompletionSubject) -> Iterator[Comp
 
 
 def port_list(outline: MachineOutline) -> str:
-    """The ports of a plugin in one line."""
+    """The directions, keys and types of the ports of a plugin, in one line."""
     return ", ".join(
         f"{port.direction} {port.key}: {port.type}" for port in outline.ports if port.key != CHILDREN_COUNT
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ports of tree nodes, and their possible values."""
+"""Completion of the ports of tree nodes, and of their values."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> I
 
 
 def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The attributes for ports that are not set: each port, and all required ones at once."""
+    """The attributes for ports that are not set: one item for each port, and one for all required ports."""
     element = subject.element
     assert element is not None
     given = {attribute.name for attribute in element.attributes}

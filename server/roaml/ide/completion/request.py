@@ -15,6 +15,7 @@ from roaml.language import ElementType
 from roaml.model.machine import Chart, Handler, Machine, RosSend
 from roaml.model.property_file import PropertyFile
 from roaml.model.system import System
+from roaml.model.system_file import SystemSection
 from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
@@ -53,13 +54,13 @@ class Request:
 
     @cached_property
     def systems(self) -> tuple[System, ...]:
-        """The systems of the file; for a system file, itself."""
+        """The systems to which the file belongs; for a system file, its own system."""
         paths = (self.path, *self.analysis.systems_of(self.path))
         owners = (self.analysis.system(path) for path in dict.fromkeys(paths) if path in self.analysis.system_paths)
         return tuple(system for system in owners if system is not None)
 
     @cached_property
-    def sections(self) -> frozenset[str]:
+    def sections(self) -> frozenset[SystemSection]:
         """The sections of system files that list the file."""
         listed = (listed_file for system in self.systems for listed_file in self.analysis.listed(system.path))
         return frozenset(listed_file.input.section for listed_file in listed if listed_file.path == self.path)
@@ -100,7 +101,7 @@ class Request:
 
     @cached_property
     def handler(self) -> Handler | None:
-        """The transition or callback around the caret."""
+        """The handler around the caret; `None` if there is none."""
         states = self.chart.states if self.chart else ()
         handlers = (handler for state in states for handler in state.handlers)
         return next((handler for handler in handlers if _is_around(handler.element, self.offset)), None)

@@ -159,7 +159,7 @@ def _data_type(request: Request, subject: CompletionSubject) -> Type:
     """The declared type of the variable whose value is completed."""
     element = subject.element
     if subject.type.name != "data" and subject.parents:
-        element = subject.parents[-1].element  # `<expr>` is inside of the variable
+        element = subject.parents[-1].element  # the parent of `<expr>` declares the variable
     type_ = type_of(element.get("type")) if element is not None else None
     if type_ is None or type_.name is None:
         return UNKNOWN

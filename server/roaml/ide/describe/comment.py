@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The comment of an author about an element, before it or after it on the same line."""
+"""Reads the comment about an element: before the element, or after it on the same line."""
 
 from __future__ import annotations
 

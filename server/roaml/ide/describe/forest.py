@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes and ports of trees that belong to no system, as libraries and models describe them."""
+"""Descriptions, as Markdown, of nodes and ports in trees that belong to no system, from libraries and models."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def can_format(analysis: Analysis, path: str) -> bool:
 
 
 def has_formatter(analysis: Analysis, path: str) -> bool:
-    """Whether a file is of a kind that is formatted."""
+    """Whether files of this kind are formatted."""
     return analysis.kind(path) in (*_XML, *_JSON)
 
 
@@ -50,7 +50,7 @@ def format_edits(
     changes = sorted(edits(source.text, _gaps(analysis, path, layout)))
     if within is not None:
         start, end = _lines_around(source, within)
-        last = end if end == len(source.text) else end - 1  # an insertion after the line end is in the next line
+        last = end if end == len(source.text) else end - 1  # an insertion after the line end belongs to the next line
         changes = [edit for edit in changes if start <= edit.span.start <= last and edit.span.end <= end]
     return tuple(changes)
 

@@ -166,10 +166,10 @@ def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
 
 
 def _places(analysis: Analysis, system: str, automaton: SystemAutomaton, use: InterfaceUse) -> tuple[Span, ...]:
-    """The places where a machine uses a declaration; the declaration itself if there are none."""
+    """The places where a machine uses a declaration; if there are none, the place of the declaration."""
     known = uses(analysis, automaton.path, system).by_symbol
     occurrences = list(known.get(automaton.symbol(use), ()))
-    if use.name and not occurrences:  # the interface itself is the handle
+    if use.name and not occurrences:  # the name of the interface is used as the handle
         occurrences = list(known.get(interface_symbol(system, use.kind, use.name), ()))
     access = Access.WRITE if use.kind in _SENDING else Access.READ
     chosen = [occurrence for occurrence in occurrences if occurrence.access is access] or [

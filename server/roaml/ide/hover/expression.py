@@ -16,7 +16,7 @@ from roaml.text import Span
 
 
 def in_expression(place: Place) -> tuple[Span, str] | None:
-    """The description of a part of an expression; `None` outside of expressions and if there is none."""
+    """The description of the part of an expression at a place; `None` outside of expressions, or if there is none."""
     if place.expression is None:
         return None
     for node in reversed(walk(place.expression.tree)):

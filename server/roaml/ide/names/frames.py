@@ -169,7 +169,7 @@ class Trees:
 
     @cached_property
     def _nodes(self) -> Mapping[TreeKey, tuple[TreeNode, ...]]:
-        """The nodes of each tree by their position."""
+        """The nodes of each tree, in the order of their positions."""
         frames = {frame.key: frame.tree for frame in self.frames}
         return {key: tuple(nodes(tree)) for key, tree in frames.items()}
 

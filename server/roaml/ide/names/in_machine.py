@@ -85,7 +85,7 @@ def in_machine(
 
 @dataclass(frozen=True, slots=True)
 class _Machine:
-    """The arguments of `in_machine`."""
+    """Finds the occurrences in a machine. The attributes are the arguments of `in_machine`."""
 
     text: str
     machine: Machine
@@ -187,7 +187,7 @@ class _Machine:
                 yield from self.keys(value.tree, required_type)
 
     def keys(self, expr: Expr, required_type: Type) -> Iterator[Occurrence]:
-        """The member names in an initial value."""
+        """The occurrences of members in an initial value."""
         if isinstance(expr, ArrayLiteral) and isinstance(required_type, Array):
             for element in expr.elements:
                 yield from self.keys(element, required_type.element)

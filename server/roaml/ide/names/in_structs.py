@@ -63,7 +63,7 @@ def _span(text: str, name: Name | None) -> Span | None:
 
 
 def _refers(text: str, type_: object) -> bool:
-    """Whether the type of a member is a `$ref` and not an inline definition."""
+    """Whether the type of a member is a `$ref` instead of an inline definition."""
     span = getattr(type_, "span", None)
     return isinstance(span, Span) and '"$ref"' in text[span.start : span.end]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One entry of an outline, and its kinds."""
+"""The entries of outlines, and their kinds."""
 
 from __future__ import annotations
 

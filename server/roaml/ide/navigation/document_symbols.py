@@ -176,7 +176,8 @@ def _struct(struct: StructDeclaration) -> DocumentSymbol:
 
 
 def _properties(analysis: Analysis, path: str) -> Iterator[DocumentSymbol]:
-    """The properties in the text, including those with errors, which the model does not contain."""
+    """The symbols of the properties in the text. They include properties with errors, which the model does not
+    contain."""
     json = analysis.json(path)
     entries = json[0].get("properties") if json and isinstance(json[0], JsonObject) else None
     for entry in entries.items if isinstance(entries, JsonArray) else ():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of BehaviorTree.CPP as HL-SCXML machines (docs/spec/nodes.md).
 
-Each is a document beside this module; `Switch`, whose size varies, is generated on demand. In addition to the ports in
-the schema they have some that are set here.
+Each node is a document in the directory of this module, except `Switch2` to `Switch6`, which are generated on demand.
+The machines have some ports that are not in the schema; this module sets them.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def builtin_machine(automaton: SystemAutomaton, program: TranslatableSystem) -> 
 
 
 def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> dict[str, str]:
-    """The ports of the node that the tree does not set: defaults of the schema, number of children, rate of the
-    tree."""
+    """The values of the ports of a node that the tree does not set: the defaults of the schema, the number of children,
+    and the rate of the tree."""
     rate = Fraction(str(program.parameters.tick_rate))
     ports = {
         CHILDREN_COUNT: str(_children(automaton)),
@@ -51,13 +51,13 @@ def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> di
 
 
 def node_file(name: str) -> str | None:
-    """The document for a node of BehaviorTree.CPP; `None` if it is generated on demand."""
+    """The path of the document for a node of BehaviorTree.CPP; `None` if there is none, or if it is generated."""
     file = importlib.resources.files(__name__) / f"{_current(name)}.ascxml"
     return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
 
 
 def _current(name: str) -> str:
-    """The name of a node in version 4."""
+    """The name of a node in version 4 of BehaviorTree.CPP."""
     renamed = library(BEHAVIORTREE_CPP).renamed.get(name)
     return renamed.now if renamed else name
 

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`Switch2` to `Switch6`: ticks the child whose case equals a variable, otherwise the last child."""
+"""The machines of `Switch2` to `Switch6`. They tick the child whose case equals a variable; if no case does, the last
+child."""
 
 from __future__ import annotations
 
 
 def switch(name: str, cases: int, type_: str) -> str:
-    """The machine of a switch with this number of cases. Its ports hold values of the HL-SCXML type `type_`: string or
-    int."""
+    """The document for a switch with `cases` cases. Its ports have the HL-SCXML type `type_`, string or an integer
+    type."""
     keys = ["variable", *(f"case_{i + 1}" for i in range(cases))]
     ports = "".join(f'<bt_declare_port_in key="{key}" type="{type_}"/>' for key in keys)
     initial = "''" if type_ == "string" else "0"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs of nodes -> instructions (docs/spec/mocks.md#nodes).
+"""Compiles the programs of nodes to instructions (docs/spec/mocks.md#nodes).
 
-A program is a class in the syntax of Python; the comment at the top of `definitions/behaviortree_cpp.txt` describes its
-statements. Nothing is executed by Python: the syntax tree is compiled.
+A program is a class in the syntax of Python. The comment at the top of `definitions/behaviortree_cpp.txt` describes its
+statements. Python does not execute a program: its syntax tree is compiled.
 """
 
 from __future__ import annotations
@@ -42,13 +42,15 @@ if result == SUCCESS or result == FAILURE:
 
 
 class CodeLabel:
-    """A place in a list of instructions; `index` is set when it is placed."""
+    """The target of jumps in a list of instructions. `index` is the index of the instruction that follows the label; it
+    is -1 until the label is placed."""
 
     index = -1
 
 
 class SetVariable(NamedTuple):
-    """`target` is a variable; with `element`, the variable of the child with this number."""
+    """Assigns `value` to the variable `target`; if `element` is not `None`, to the variable for the child with this
+    number."""
 
     target: str
     element: ast.expr | None
@@ -60,21 +62,21 @@ class Jump(NamedTuple):
 
 
 class Test(NamedTuple):
-    """Jumps to `otherwise` unless the condition holds."""
+    """Jumps to `otherwise` if the condition does not hold."""
 
     condition: ast.expr
     otherwise: CodeLabel
 
 
 class Choose(NamedTuple):
-    """Continues with the probability, and jumps to `otherwise` with the remaining one."""
+    """Continues with the given probability; otherwise jumps to `otherwise`."""
 
     probability: ast.expr
     otherwise: CodeLabel
 
 
 class TickChild(NamedTuple):
-    """Ticks a child; `target` gets the code of its answer."""
+    """Ticks a child, and assigns the code of its answer to `target`."""
 
     child: ast.expr
     target: str
@@ -98,7 +100,7 @@ class Evaluate(NamedTuple):
 
 
 class Updated(NamedTuple):
-    """Jumps to `otherwise` unless the observed entry was written since this was asked last."""
+    """Jumps to `otherwise` if the observed entry was not written since the last execution of this instruction."""
 
     otherwise: CodeLabel
 
@@ -108,17 +110,17 @@ class WriteOutputs(NamedTuple):
 
 
 class HaltSelf(NamedTuple):
-    """Halts the node itself, which is then skipped."""
+    """Halts the node itself. Its tick is answered with SKIPPED."""
 
 
 class Read(NamedTuple):
-    """Reads the ports that are bound to entries."""
+    """Reads the entries to which `ports` are bound."""
 
     ports: tuple[str, ...]
 
 
 class Write(NamedTuple):
-    """Writes the entry to which a port is bound."""
+    """Writes `value` to the entry to which a port is bound."""
 
     port: str
     value: ast.expr
@@ -160,11 +162,12 @@ class NodeProgram:
     """The program of a node.
 
     Attributes:
-        name: of the node.
-        fixed: the initial values of the variables that are known during translation.
-        variables: the initial values of the variables of the automaton.
+        name: the name of the node.
+        fixed: variable whose value is known during the translation -> its initial value.
+        variables: variable of the automaton -> its initial value.
         flags: the names of the variables that exist once for each child.
-        tick, halt: the instructions; `halt` is executed only if the node is running.
+        tick, halt: the instructions that are executed when the node is ticked, and when it is halted while it is
+            RUNNING.
         is_stateless: whether resetting the node has no effect.
     """
 
@@ -178,7 +181,7 @@ class NodeProgram:
 
     @functools.cached_property
     def needed_ports(self) -> tuple[str, ...]:
-        """The ports that the program reads when it is ticked; it cannot work without them."""
+        """The ports that the program reads when it is ticked. They must be set."""
         return tuple(dict.fromkeys(port for part in self.tick if isinstance(part, Read) for port in part.ports))
 
     @functools.cached_property
@@ -191,14 +194,14 @@ class NodeProgram:
 
     @functools.cached_property
     def asks_world(self) -> bool:
-        """Whether the program depends on something that happens in the world."""
+        """Whether the program depends on an event in the world (docs/spec/mocks.md#world)."""
         choices = (part.probability for part in self.tick if isinstance(part, Choose))
         return any(isinstance(probability, ast.Name) and probability.id == "event" for probability in choices)
 
 
 @functools.cache
 def programs() -> Mapping[str, NodeProgram]:
-    """The programs of all nodes, by name."""
+    """Name of a node -> its program."""
     result: dict[str, NodeProgram] = {}
     for file in FILES:
         text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
@@ -211,24 +214,25 @@ def programs() -> Mapping[str, NodeProgram]:
 
 @functools.cache
 def before(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """What is executed before the tick of a node that has these conditions (docs/spec/mocks.md#conditions)."""
+    """The instructions before the tick of a node that has the conditions `given` (docs/spec/mocks.md#conditions)."""
     return _Assembler(given).function(ast.parse(_BEFORE).body)
 
 
 @functools.cache
 def after(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """What is executed after the tick of a node that has these scripts."""
+    """The instructions after the tick of a node that has the scripts `given`."""
     return _Assembler(given).function(ast.parse(_AFTER).body)
 
 
 @functools.cache
 def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """What is executed after a node with these scripts was halted."""
+    """The instructions after a node that has the scripts `given` was halted."""
     return _Assembler(given).function(ast.parse('script("_onHalted")').body)
 
 
 def _program(definition: ast.ClassDef, known: Mapping[str, NodeProgram]) -> NodeProgram:
-    """The program of a class. A class with a base is a program with the same statements and other fixed values."""
+    """The program that a class defines. A class with a base class has the statements of the base, and may set other
+    initial values."""
     base = known[definition.bases[0].id] if definition.bases and isinstance(definition.bases[0], ast.Name) else None
     fixed = dict(base.fixed) if base else {}
     variables = dict(base.variables) if base else {}
@@ -263,7 +267,8 @@ def _constant(value: ast.expr) -> int | bool:
 
 @dataclass
 class _Assembler:
-    """Compiles the statements of one function. `given` are the scripts of a node; `None` for all."""
+    """Compiles the statements of one function. `given` contains the scripts that the node has; `None` means all
+    scripts."""
 
     given: frozenset[str] | None = None
     instructions: list[Instruction] = field(default_factory=list)
@@ -368,7 +373,7 @@ class _Assembler:
                 raise AssertionError(function)
 
     def reset(self, arguments: list[ast.expr]) -> None:
-        """All children, or all but one, or all from one on."""
+        """Compile the reset of all children; with an argument, of all children except the one with this number."""
         text = "_k = 0\nwhile _k < COUNT:\n    reset(_k)\n    _k += 1\n"
         if arguments:
             text = text.replace("    reset(_k)", f"    if _k != {ast.unparse(arguments[0])}:\n        reset(_k)")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The entries of the blackboard that a translated tree needs, with their types (docs/spec/mocks.md#blackboard).
 
-An entry is needed if a script or a node of the libraries reads it. All others may have any C++ type and are left out.
+An entry is needed if a script or a node of the libraries reads it. Other entries are left out, because they may have
+any C++ type.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
 OBSERVING = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
-"""The nodes that ask whether an entry was written; their port is `entry`."""
+"""The nodes that check whether an entry was written. The entry is in their port `entry`."""
 
 MAX_VALUES = 6
 """The maximum number of values that a mock writes to an entry."""
@@ -34,13 +35,18 @@ _TYPE = {kind: type_ for type_, kind in _KIND.items()}
 
 @dataclass(frozen=True, eq=False)
 class Board:
-    """Attributes:
-    entries: those that are needed, by name; without those that nothing sets.
-    flags: observed entry -> for each observer the entry that states whether it was written.
-    flag_of: number of an observer -> its flag.
-    values: what mocks write to an entry.
-    read, written: the entries that programs and scripts read, and those that something writes.
-    in_system: whether the tree belongs to a system.
+    """The entries of the blackboard of a translated tree.
+
+    An observer is a node that checks whether an entry was written. Its flag is an additional entry that stores this.
+
+    Attributes:
+        entries: name -> needed entry that is set by the tree or the user.
+        flags: observed entry -> the flags of its observers.
+        flag_of: number of an observer -> its flag.
+        values: entry -> the values that mocks may write to it.
+        read: the names of the entries that programs and scripts read.
+        written: the names of the entries that nodes and scripts write.
+        in_system: whether the tree is part of a system.
     """
 
     entries: Mapping[str, BoardEntry]
@@ -52,14 +58,14 @@ class Board:
     in_system: bool
 
     def unset(self, name: str) -> str:
-        """Why an entry that nothing sets cannot be read."""
+        """A message that says why the entry `name`, which nothing sets, cannot be read."""
         if self.in_system:
-            return f"nothing writes `{name}`: no script, port or `<SubTree>` of the tree"
+            return f"nothing sets the entry `{name}`; a script, a port or a `<SubTree>` of the tree must set it"
         return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
 
 
 def node_scripts(node: ExecutedNode) -> Iterator[tuple[str, Script, bool]]:
-    """The scripts of a node: attribute, script, and whether its value is a condition."""
+    """The scripts of a node, each with its attribute, and with whether its value is used as a condition."""
     for attribute in script_attributes(node.node):
         is_condition = attribute.name in CONDITIONS or (
             attribute.name in script_ports().get(node.type, ()) and node.type in CONDITION_NODES
@@ -77,11 +83,12 @@ def build_board(
     used: Mapping[int, NodeProgram | None],
     typed: Mapping[str, str] | None = None,
 ) -> Board:
-    """
+    """The entries of the blackboard that a tree needs.
+
     Args:
-        given: entry of the root blackboard -> the text that the host sets.
+        given: entry of the root blackboard -> the text to which the program that runs the tree sets it.
         used: number of a node -> its program; `None` for mocks and machines.
-        typed: in a system, entry -> the name of the type that machines give it; all of them are needed.
+        typed: in a system, entry that ports of machines use -> the name of its type; all of them are needed.
     """
     reader = _Reader(tree, given, used, typed)
     for entry, type_ in (typed or {}).items():
@@ -90,7 +97,7 @@ def build_board(
 
 
 def _kind_of_type(name: str) -> EntryKind:
-    """The kind of the values of a type of a port of a machine."""
+    """The kind of the values of `name`, the type of a port of a machine."""
     if name == "string":
         return EntryKind.TEXT
     return EntryKind.REAL if name.startswith("float") else EntryKind.INTEGER
@@ -98,9 +105,11 @@ def _kind_of_type(name: str) -> EntryKind:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _ScriptFacts:
-    """Attributes:
-    typed: the parts of a script that show types of entries, in the order of the text.
-    read: the names of the entries that it reads.
+    """The parts of a script from which types and uses of entries are inferred.
+
+    Attributes:
+        typed: the assignments and comparisons, which determine types of entries, in the order of the text.
+        read: the names of the entries that the script reads.
     """
 
     typed: tuple[Assignment | Comparison, ...]
@@ -152,7 +161,7 @@ class _Reader:
         return self.result()
 
     def add(self, entry: str, kind: EntryKind | None) -> None:
-        """A use of an entry with values of a kind."""
+        """Record that an entry is used with values of `kind`; `None` means that the kind is not known."""
         if kind is None or entry in (self.typed or {}):
             return
         known = self.kinds.get(entry)
@@ -232,14 +241,14 @@ class _Reader:
                 continue
             full = node.frame.entry(expr.target.name)
             self.writers.add(full)
-            self.stored.add(full)  # a value that is computed has to be stored
+            self.stored.add(full)  # a computed value must be stored
             if expr.operator in _PLAIN_ASSIGNMENTS:
                 self.add(full, _KIND.get(type_of(expr.value, entry)))
         for name in facts.read:
             self.readers.add(node.frame.entry(name))
 
     def compared(self, node: ExecutedNode, operands: tuple[object, ...]) -> None:
-        """A comparison of an entry with a constant shows the type of the entry."""
+        """Infer the kinds of entries from a comparison with a constant."""
         names = [operand for operand in operands if isinstance(operand, Name)]
         constants = [operand.value for operand in operands if isinstance(operand, (Number, String))]
         for operand in names:
@@ -253,7 +262,7 @@ class _Reader:
                     self.mentioned[full].append(constant)
 
     def from_texts(self) -> None:
-        """Types of entries that get texts only: numbers if all texts are numbers."""
+        """Infer the kinds of entries to which only texts are assigned: they are numbers if all texts are numbers."""
         for entry, texts in self.texts.items():
             for text in texts:
                 kind = read_literal(text)[0]
@@ -287,7 +296,7 @@ class _Reader:
         return Board(entries, observers, flag_of, values, read, written, self.typed is not None)
 
     def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
-        """What a mock writes to an entry: the values with which the tree compares it, and one other."""
+        """The values that a mock may write to an entry: those with which the tree compares the entry, and others."""
         other: list[int | float | str] = [""] if kind is EntryKind.TEXT else [0, 1]
         mentioned = self.mentioned.get(name, [])
         fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
@@ -295,8 +304,8 @@ class _Reader:
 
 
 def set_entry(node: ExecutedNode, *, in_system: bool) -> str | None:
-    """The entry that a `SetBlackboard` writes; `None` if it is only known when the tree runs. In a system, `{v}` is the
-    variable itself (docs/spec/nodes.md#library)."""
+    """The entry that a `SetBlackboard` writes; `None` if its name is known only when the tree runs. In a system, `{v}`
+    refers to the entry `v` itself (docs/spec/nodes.md#library)."""
     for port, entry, text, _ in node.ports():
         if port in ("output_key", "key"):
             return node.frame.entry(text.strip()) if entry is None else entry if in_system else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What determines the automaton of a node of a tree: its program, its children, and the values of its ports."""
+"""The input for the automaton of a node of a tree: its program, its children, and the values of its ports."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from roaml.lower.programs.scripts import CompiledScript
 from roaml.text import Location
 
 IDLE, SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = range(6)
-"""The codes of statuses and answers. SKIPPED: the node was skipped and is IDLE; HELD: it was skipped and has another
-status. For its parent, this makes a difference (docs/spec/mocks.md#skipped)."""
+"""The codes of statuses and answers. SKIPPED means that the node was skipped and is IDLE; HELD means that it was
+skipped and has another status. The parent of the node treats these answers differently (docs/spec/mocks.md#skipped)."""
 STATUS_CODES = {
     "IDLE": IDLE,
     "SUCCESS": SUCCESS,
@@ -39,12 +39,12 @@ TYPES: Mapping[EntryKind, Type] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Child:
-    """What a node knows of a child.
+    """The properties of a child that the automaton of its parent depends on.
 
     Attributes:
-        address: of the child in events: its number, or another word.
-        answers: the codes with which it can answer.
-        is_stateless: whether a reset has no effect on it.
+        address: the address of the child in names of events: its number, or another word.
+        answers: the codes with which it may answer.
+        is_stateless: whether resetting the child has no effect.
     """
 
     address: str
@@ -57,18 +57,17 @@ class NodeCode:
     """Everything that determines the automaton of a node.
 
     Attributes:
-        known: the values of ports and parameters that are constants.
-        bound: the ports that are bound to entries of the blackboard.
-        scripts: by attribute or port.
-        address: of the node in events: its number, or another word.
-        updated: the entry that states whether the observed one was written; `None` if nothing writes it.
-        outputs: what a mock writes when it succeeds: entries, each with its possible values.
-        elements: of the queue of a loop.
-        flags_at: port that writes an observed entry whose value nothing reads -> what states for its observers that it
-            was written.
-        rate: of the tree, in Hz.
+        address: the address of the node in names of events: its number, or another word.
+        known: port or parameter with a constant value -> the value.
+        bound: port that is bound to an entry of the blackboard -> the entry.
+        scripts: attribute or port -> its script.
+        updated: the flag that states whether the observed entry was written; `None` if no node or script writes it.
+        outputs: the entries that a mock writes when it succeeds, each with its possible values.
+        elements: the elements of the queue of a loop.
+        flags_at: port that writes an observed entry whose value is never read -> the flags of its observers.
+        rate: the rate of the tree, in Hz.
         counts: whether counters for measurements are included.
-        is_halted_always: whether the node is halted even if that has no effect: its parent may be a machine.
+        is_halted_always: whether the node is halted even if that has no effect, because its parent may be a machine.
     """
 
     address: str
@@ -89,9 +88,10 @@ class NodeCode:
 
     @property
     def shape(self) -> Hashable:
-        """What determines the states of the automaton: those of two nodes with equal shapes differ only in names.
+        """A key for everything that determines the states of the automaton. The automata of two nodes with equal shapes
+        differ only in names and values.
 
-        Expressions with variables are not part of it, because both of their outcomes are followed.
+        Conditions on variables are not part of the shape, because the automaton contains both of their outcomes.
         """
         positions: dict[str, int] = {}
 

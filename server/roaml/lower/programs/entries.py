@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Entries of the blackboard in a translated tree: numbers and texts (docs/spec/mocks.md#blackboard)."""
+"""Entries of the blackboard in a translated tree. Their values are numbers or texts (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class BoardEntry:
     """An entry that scripts or nodes of the libraries read.
 
     Attributes:
-        variable: its name in the whole tree.
-        initial: its value before anything writes it; `None` if it does not exist then.
-        type: the type of the variable of the blackboard if a plugin determines it; "" for the type of `kind`.
+        variable: the full name of the entry, which is unique in the tree.
+        initial: the value before the first write; `None` if the entry does not exist then.
+        type: the type of the variable of the blackboard if a plugin determines it; "" if `kind` determines it.
     """
 
     variable: str
@@ -35,26 +35,26 @@ class BoardEntry:
 
     @property
     def local(self) -> str:
-        """The variable of an automaton that holds the value that was read last."""
+        """The name of the variable in which an automaton stores the value that it has read last."""
         return f"entry__{self.variable}"
 
     @property
     def zero(self) -> Expr:
-        """A value of its type."""
+        """The default value of the entry: 0 or an empty text."""
         return constant(self.kind, "" if self.kind is EntryKind.TEXT else 0)
 
     @property
     def start(self) -> Expr:
-        """The first value of the variable of the blackboard."""
+        """The initial value of the variable of the blackboard."""
         value = self.zero if self.initial is None else constant(self.kind, self.initial)
         return Boolean(NOWHERE, bool(self.initial)) if self.type == "bool" else value
 
     def read(self, value: Expr) -> Expr:
-        """The value of the variable of the blackboard as one of the kind: booleans are numbers."""
+        """`value`, read from the variable of the blackboard, as a value of `kind`. A boolean becomes 0 or 1."""
         return Conditional(NOWHERE, value, integer(1), integer(0)) if self.type == "bool" else value
 
     def written(self, value: Expr) -> Expr:
-        """A value of the kind as one of the variable of the blackboard."""
+        """`value`, of the kind `kind`, as a value for the variable of the blackboard."""
         return binary(value, Operator.NOT_EQUAL, integer(0)) if self.type == "bool" else value
 
     @property
@@ -65,7 +65,7 @@ class BoardEntry:
 
 
 def constant(kind: EntryKind, value: int | float | str) -> Expr:
-    """A value as an expression of a type."""
+    """A literal of the kind `kind` for `value`."""
     if kind is EntryKind.TEXT:
         return String(NOWHERE, str(value))
     number = float(value) if kind is EntryKind.REAL else int(value)
@@ -74,7 +74,8 @@ def constant(kind: EntryKind, value: int | float | str) -> Expr:
 
 
 def kind_of_cpp(type_: str) -> EntryKind | None:
-    """The kind of values of a C++ type by its normal name; `None` if it is none or not known."""
+    """The kind of the values of a C++ type, which is given by its normal name; `None` if they are neither numbers nor
+    texts, or if the type is not known."""
     if type_ in ("double", "float"):
         return EntryKind.REAL
     if type_ == "string":
@@ -85,7 +86,7 @@ def kind_of_cpp(type_: str) -> EntryKind | None:
 
 
 def read_literal(text: str) -> tuple[EntryKind, int | float | str]:
-    """The value of a text that is written where an entry may be, with its kind."""
+    """The kind and the value of a text in a port. Texts that are numbers or booleans become numbers."""
     stripped = text.strip()
     if stripped in ("true", "false", "True", "False", "TRUE", "FALSE"):
         return EntryKind.INTEGER, int(stripped.lower() == "true")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The executed tree: every node once for each use, with the entries to which its names refer
+"""The executed tree. It contains a node once for each use of its tree, with the entries to which the names refer
 (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from roaml.text import Location, Span
 
 
 class Names(Protocol):
-    """The meaning of the names in one use of a tree."""
+    """The mapping of the names in one use of a tree to entries of the blackboard."""
 
     def entry(self, name: str) -> str:
-        """The full name of the entry to which a name refers."""
+        """The full name of the entry to which `name` refers."""
         ...
 
 
@@ -29,10 +29,11 @@ class ExecutedNode:
     """A node of the executed tree.
 
     Attributes:
-        number: 1000 for the root, then counted in pre-order.
+        number: 1000 for the root, then increasing in pre-order.
         type: the name of its type; `SubTree` for a subtree.
-        name: its name, otherwise that of its type or of the subtree.
+        name: its name; if it has none, the name of its type or of the subtree.
         known: the declaration of its type; `None` if there is none.
+        frame: the mapping of names to entries in the use of its tree.
     """
 
     number: int
@@ -53,7 +54,8 @@ class ExecutedNode:
         return f"BT_plugin_{self.number}_{self.name}"
 
     def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
-        """Each port that the tree sets: its name, the entry to which it is bound (or `None`), and its text."""
+        """The ports that the tree sets: name, entry to which the port is bound (`None` for a constant), text, and
+        position of the text."""
         for setting in ports_of(self.node):
             bound = entry_of(setting)
             entry = None if bound is None else self.frame.entry(bound)
@@ -62,10 +64,12 @@ class ExecutedNode:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExecutedTree:
-    """Attributes:
-    name: of the tree.
-    nodes: in pre-order.
-    initial: entry -> the text that a `<SubTree>` gives it.
+    """The executed tree.
+
+    Attributes:
+        name: the name of the tree.
+        nodes: its nodes, in pre-order.
+        initial: entry -> the constant text to which an attribute of a `<SubTree>` sets it.
     """
 
     name: str
@@ -74,6 +78,6 @@ class ExecutedTree:
 
 
 def identifier(name: str) -> str:
-    """A name as a name of a variable."""
+    """`name` in the form of the name of a variable: `_` replaces invalid characters."""
     word = re.sub(r"\W", "_", name, flags=re.ASCII)
     return word if word[:1].isalpha() or word[:1] == "_" else f"_{word}"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of an executed tree: their programs, and the values of their ports (docs/spec/mocks.md#nodes)."""
+"""Determines the programs of the nodes of an executed tree, and the values of their ports
+(docs/spec/mocks.md#nodes)."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ from roaml.text import Location
 
 
 def program_of(node: ExecutedNode) -> NodeProgram | None:
-    """The program of a node of the libraries; `None` for a leaf of the user's program.
+    """The program of a node of the libraries; `None` for a leaf that is not from a library.
 
     Raises:
         TreeRefusal: the node cannot be executed.
@@ -33,7 +34,7 @@ def program_of(node: ExecutedNode) -> NodeProgram | None:
         _check_children(node)
         return programs()[node.type]
     if node.children:
-        reason = f"`{node.type}` has children, and it is not known what it does with them"
+        reason = f"`{node.type}` has children, but its behaviour is not known"
         raise TreeRefusal(node.origin, reason)
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
         raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
@@ -47,15 +48,15 @@ def _check_children(node: ExecutedNode) -> None:
     assert node.known is not None
     least, most = node.known.children
     if not least <= len(node.children) <= most:
-        reason = f"`{node.type}` has {len(node.children)} children, which the library rejects"
+        reason = f"`{node.type}` has {len(node.children)} children, but the library does not allow this number"
         raise TreeRefusal(node.origin, reason, is_reported=True)
 
 
 def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
-    """The scripts of a node, by attribute or port.
+    """Attribute or port of a node -> its script.
 
     Raises:
-        TreeRefusal: one cannot be translated.
+        TreeRefusal: a script cannot be translated.
     """
     result = {}
     for attribute, script, is_condition in node_scripts(node):
@@ -82,8 +83,13 @@ def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
 
 @dataclass(eq=False)
 class PortValues:
-    """The values of the ports that a program uses: constants, or entries. `elements` are those of the queue of a
-    loop."""
+    """The values of the ports that a program uses.
+
+    Attributes:
+        known: port with a constant value -> the value.
+        bound: port that is bound to an entry -> the entry.
+        elements: the elements of the queue of a loop.
+    """
 
     known: dict[str, Known] = field(default_factory=dict)
     bound: dict[str, BoardEntry] = field(default_factory=dict)
@@ -120,7 +126,7 @@ class _Reader:
         known: dict[str, Known],
         bound: dict[str, BoardEntry],
     ) -> None:
-        """The values of the ports that a program uses: constants, or entries."""
+        """Add the values of the ports that a program uses to `known` and `bound`."""
         if program.name in ("SetBlackboard", "UnsetBlackboard"):
             self.set_blackboard(node, board, known, bound)
             return
@@ -154,10 +160,10 @@ class _Reader:
         if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
             program.name.startswith("Switch")
         ):
-            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to a text")
+            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to an entry whose value is a text")
         for port_name in ("else", "return_on_mismatch", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
             if port_name in bound:
-                raise TreeRefusal(node.origin, f"the port `{port_name}` must be a constant to be translated")
+                raise TreeRefusal(node.origin, f"the port `{port_name}` cannot be translated; it must be a constant")
 
     def switch_entries(
         self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
@@ -173,15 +179,17 @@ class _Reader:
         for port, entry, _, span in node.ports():
             if port in ("output_key", "key") and target is None:
                 reason = (
-                    f"`{{{entry}}}` means the entry whose name is the text in `{entry}`, which is only known when "
-                    f'the tree runs; write `{port}="{entry}"` for the entry itself'
+                    f"`{{{entry}}}` means the entry whose name is the value of `{entry}`, which is only known when "
+                    f'the tree runs; write `{port}="{entry}"` for the entry `{entry}` itself'
                 )
                 raise TreeRefusal(Location(node.origin.path, span), reason)
         if target is None or target not in board.entries:
             known["value"] = 0
             return
         if node.type == "UnsetBlackboard":
-            raise TreeRefusal(node.origin, f"`{target}` is read by the tree; a model cannot remove it")
+            raise TreeRefusal(
+                node.origin, f"the tree reads the entry `{target}`, and the translation cannot remove entries"
+            )
         bound["output_key"] = board.entries[target]
         kind = board.entries[target].kind
         for port, entry, text, span in node.ports():
@@ -192,7 +200,7 @@ class _Reader:
             elif entry in board.entries and (board.entries[entry].kind is EntryKind.TEXT) is (kind is EntryKind.TEXT):
                 bound["value"] = board.entries[entry]
             else:
-                reason = f"the value of `{entry}` is not known, and the tree reads `{target}`"
+                reason = f"the tree reads the entry `{target}`, but the value of `{entry}` is not known"
                 raise TreeRefusal(Location(node.origin.path, span), reason)
 
     def elements(self, node: ExecutedNode, known: dict[str, Known]) -> tuple[Known, ...]:
@@ -212,7 +220,7 @@ class _Reader:
 
 
 def flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ...]]:
-    """The flags of observed entries that a node writes and whose values nothing reads, by port."""
+    """Port of a node that writes an observed entry whose value is never read -> the flags of the observers."""
     flags: dict[str, tuple[BoardEntry, ...]] = {}
     for port, bound, text, _ in node.ports():
         names_entry = node.type == "SetBlackboard" and port == "output_key" and bound is None
@@ -223,10 +231,10 @@ def flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ..
 
 
 def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
-    """A constant as the library reads it.
+    """The value of a constant, as the library reads it.
 
     Raises:
-        TreeRefusal: the library rejects it.
+        TreeRefusal: the library rejects the constant.
     """
     if type_ == "NodeStatus" and text.strip() in _STATUS_NUMBERS:
         return int(text)
@@ -239,11 +247,11 @@ def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
 
 
 _STATUS_NUMBERS = ("1", "2", "3")
-"""Statuses as trees of systems may write them."""
+"""The numbers that trees of systems may use for statuses."""
 
 
 def _case(text: str, kinds: set[EntryKind]) -> Known:
-    """A constant of a switch: a number if the variable is one."""
+    """The value of a case of a switch: a number if the variable of the switch is a number, otherwise the text."""
     if not kinds or EntryKind.TEXT in kinds:
         return text
     return read_literal(text)[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why a tree cannot be executed without its program."""
+"""The reason why a tree cannot be translated."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ INVALID_SCRIPT = "the script is not valid"
 
 
 class TreeRefusal(Exception):  # noqa: N818 - the tree may be correct
-    """A tree cannot be translated.
+    """Raised if a tree cannot be translated.
 
     Attributes:
-        origin: the position of the reason.
-        is_reported: whether the checks of nodes, ports and scripts report the reason as well.
+        origin: the position of the cause.
+        is_reported: whether the rules for nodes, ports and scripts also report the reason.
     """
 
     def __init__(self, origin: Location, reason: str, *, is_reported: bool = False) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scripts of BehaviorTree.CPP -> assignments and conditions (docs/spec/mocks.md#scripts).
+"""Translates scripts of BehaviorTree.CPP to assignments and conditions (docs/spec/mocks.md#scripts).
 
-All entries that a script reads are read at once before it; all that it assigns are written after it. Nothing else is
-executed in between.
+All entries that a script reads are read at once before the script, and all entries that it assigns are written after
+it. Nothing else is executed in between.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from roaml.script import tree as syntax
 from roaml.text import Span
 
 
-class ScriptRefusal(Exception):  # noqa: N818 - a reason, not a mistake
-    """Why a script cannot be translated, and where."""
+class ScriptRefusal(Exception):  # noqa: N818 - the script may be correct
+    """Raised if a script cannot be translated. `span` is the position of the cause."""
 
     def __init__(self, span: Span, reason: str) -> None:
         super().__init__(reason)
@@ -35,11 +35,14 @@ class ScriptRefusal(Exception):  # noqa: N818 - a reason, not a mistake
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CompiledScript:
-    """Attributes:
-    reads, writes: entries.
-    assignments: variables of the automaton with their new values, in order.
-    conditions: what must hold before; otherwise the library throws an exception.
-    truth: whether the value of the script is true; `None` if it is a text.
+    """A script that is translated to assignments.
+
+    Attributes:
+        reads: the entries that are read before the script.
+        assignments: variables of the automaton with their new values, in order.
+        writes: the entries that are written after the script.
+        conditions: conditions that must hold before the assignments; otherwise the library throws an exception.
+        truth: the condition that the value of the script is true; `None` if its value is not used.
     """
 
     reads: tuple[BoardEntry, ...]
@@ -49,9 +52,12 @@ class CompiledScript:
     truth: Expr | None
 
 
+_JOINED = "texts cannot be joined in the translation"
+
+
 @dataclass(frozen=True, slots=True)
 class _Value:
-    """An expression; `kind` is `None` for a condition."""
+    """A translated expression. `kind` is the kind of its value; `None` for a condition."""
 
     expr: Expr
     kind: EntryKind | None
@@ -64,12 +70,12 @@ def compiled(
     *,
     is_condition: bool,
 ) -> CompiledScript:
-    """A script as assignments.
+    """The translation of a script.
 
     Args:
-        entry: name -> the entry; `None` if nothing sets it.
-        unset: name -> why it cannot be read if nothing sets it.
-        is_condition: whether its value is used.
+        entry: returns the entry to which a name refers; `None` if nothing sets it.
+        unset: returns the message for a name to which no entry belongs.
+        is_condition: whether the value of the script is used.
 
     Raises:
         ScriptRefusal: the script cannot be translated.
@@ -145,7 +151,7 @@ class _Compiler:
             case "-":
                 number = self.number(operand, expr.operand)
                 return _Value(UnaryExpr(NOWHERE, UnaryOperator.NEGATE, number.expr), number.kind)
-        raise ScriptRefusal(expr.span, f"`{expr.operator}` works on bits, which a model does not have")
+        raise ScriptRefusal(expr.span, f"`{expr.operator}` works on bits, which JANI does not support")
 
     def binary(self, expr: syntax.Binary) -> _Value:
         left, right = self.value(expr.left), self.value(expr.right)
@@ -155,11 +161,11 @@ class _Compiler:
                 sides = self.truth(left, expr.left.span), self.truth(right, expr.right.span)
                 return _Value(binary(sides[0], symbol, sides[1]), None)
             case "&" | "|" | "^" as operator:
-                self.refuse(expr, f"`{operator}` works on bits, which a model does not have")
+                self.refuse(expr, f"`{operator}` works on bits, which JANI does not support")
             case "..":
-                self.refuse(expr, "texts cannot be joined in a model")
+                self.refuse(expr, _JOINED)
         if EntryKind.TEXT in (left.kind, right.kind):
-            self.refuse(expr, "texts cannot be joined in a model")
+            self.refuse(expr, _JOINED)
         first, second = self.number(left, expr.left), self.number(right, expr.right)
         symbol = {"+": Operator.ADD, "-": Operator.SUBTRACT, "*": Operator.MULTIPLY, "/": Operator.DIVIDE}[
             expr.operator
@@ -175,7 +181,10 @@ class _Compiler:
         for position, operator in enumerate(expr.operators):
             left, right = self.comparable(expr, values[position], values[position + 1])
             if left.kind is EntryKind.TEXT and operator not in ("==", "!="):
-                self.refuse(expr, f"texts cannot be compared by `{operator}` in a model")
+                self.refuse(
+                    expr,
+                    f"texts cannot be compared with `{operator}` in the translation; only `==` and `!=` are possible",
+                )
             symbol = next(known for known in Operator if known.symbol == operator)
             result = both(result, binary(left.expr, symbol, right.expr))
         assert result is not None
@@ -189,14 +198,14 @@ class _Compiler:
         return self.number(left, expr), self.number(right, expr)
 
     def with_text(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
-        """A text that is compared with a number is read as a number."""
+        """The sides of a comparison of a text with a number, in which the text is read as a number."""
         sides = []
         for side in (left, right):
             text = getattr(side.expr, "value", None)
             if side.kind is EntryKind.TEXT:
                 kind, literal = read_literal(text) if isinstance(text, str) else (EntryKind.TEXT, "")
                 if kind is EntryKind.TEXT:
-                    self.refuse(expr, "a text is compared with a number")
+                    self.refuse(expr, "a text that is not a number is compared with a number")
                 sides.append(_Value(constant(kind, literal), kind))
             else:
                 sides.append(self.number(side, expr))
@@ -215,7 +224,7 @@ class _Compiler:
         )
         if EntryKind.TEXT in (yes.kind, no.kind):
             if yes.kind is not no.kind:
-                self.refuse(expr, "the value is a text or a number")
+                self.refuse(expr, "the two results of `? :` must both be texts or both be numbers")
             return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), EntryKind.TEXT)
         first, second = self.number(yes, expr.yes), self.number(no, expr.no)
         kind = EntryKind.REAL if EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
@@ -236,19 +245,20 @@ class _Compiler:
         return current
 
     def converted(self, expr: syntax.Assignment, value: _Value, entry: BoardEntry) -> Expr:
-        """A value as one of the type of an entry, which keeps its type."""
+        """A value that is converted to the type of the entry to which it is assigned."""
         if entry.kind is EntryKind.TEXT or value.kind is EntryKind.TEXT:
             if entry.kind is value.kind:
                 return value.expr
             text = getattr(value.expr, "value", None)
             if value.kind is EntryKind.TEXT and isinstance(text, str) and read_literal(text)[0] is not EntryKind.TEXT:
                 return constant(entry.kind, read_literal(text)[1])
-            self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}")
+            self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the value has another type")
         number = self.number(value, expr.value)
         if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
             floor = Call(NOWHERE, Member(NOWHERE, name("Math"), "floor", NOWHERE), (number.expr,))
             if self.assignments:
-                self.refuse(expr, f"`{expr.target.name}` is an integer and gets a real number after another assignment")
+                reason = f"a real number is assigned to the integer `{expr.target.name}` after another assignment"
+                self.refuse(expr, f"{reason}; use separate scripts")
             self.conditions.append(equal(floor, number.expr))
             return floor
         return number.expr
@@ -258,12 +268,12 @@ class _Compiler:
             as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
             return _Value(as_number, EntryKind.INTEGER)
         if value.kind is EntryKind.TEXT:
-            self.refuse(expr, "a number is needed here, and this is a text")
+            self.refuse(expr, "a number is needed here, but the value is a text")
         return value
 
     def truth(self, value: _Value, span: Span) -> Expr:
         if value.kind is None:
             return value.expr
         if value.kind is EntryKind.TEXT:
-            raise ScriptRefusal(span, "a text is neither true nor false")
+            raise ScriptRefusal(span, "the value is a text, which is neither true nor false")
         return UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(value.expr, integer(0)))

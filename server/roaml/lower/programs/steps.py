@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps into which instructions on the blackboard are divided: scripts, outputs of mocks, and observed entries."""
+"""Divides instructions that use the blackboard into steps: scripts, outputs of mocks, and checks of observed
+entries."""
 
 from __future__ import annotations
 
@@ -14,14 +15,14 @@ from roaml.lower.programs.scripts import CompiledScript
 from roaml.lower.programs.values import expr
 
 Place: TypeAlias = "tuple[str, int]"
-"""A segment of the code, and the index of an instruction in it."""
+"""The name of a segment of the code, and the index of an instruction in it."""
 
 EXCEPTION: Place = ("exception", 0)
-"""The place after an exception of the library."""
+"""The place at which the execution continues after an exception of the library."""
 
 
 class Ask(NamedTuple):
-    """Reads entries."""
+    """Reads the entries `entries` at once."""
 
     entries: tuple[BoardEntry, ...]
 
@@ -42,7 +43,7 @@ class Decide(NamedTuple):
 
 
 class Draw(NamedTuple):
-    """Continues at `yes` with the probability, otherwise at `no`."""
+    """Continues at `yes` with the given probability, otherwise at `no`."""
 
     probability: float
     yes: Place
@@ -53,7 +54,8 @@ Step: TypeAlias = Ask | Update | Decide | Draw
 
 
 def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Place) -> tuple[Step, ...]:
-    """Whether the observed entry was written; if so, it counts as seen."""
+    """The steps that check whether the observed entry was written. If it was, they reset its flag and continue at
+    `following`; otherwise they continue at `otherwise`."""
     return (
         Ask((flag,)),
         Decide(equal(name(flag.local), integer(1)), (segment, 2), otherwise),
@@ -65,7 +67,7 @@ def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Pl
 def output_steps(
     segment: str, outputs: Sequence[tuple[BoardEntry, tuple[Known, ...]]], following: Place
 ) -> tuple[Step, ...]:
-    """Each output gets one of its values, all with the same probability."""
+    """The steps that write one of its possible values to each output. All values have the same probability."""
     steps: list[Step] = []
     for entry, values in outputs:
         end = len(steps) + 3 * len(values)
@@ -79,8 +81,8 @@ def output_steps(
 
 
 def script_steps(segment: str, script: CompiledScript, following: Place, otherwise: Place | None) -> tuple[Step, ...]:
-    """A script: it reads all entries at once, computes, and writes all that it has assigned. With `otherwise`, it
-    continues there if its value is false."""
+    """The steps of a script: they read all entries at once, compute, and write all assigned entries. They continue at
+    `following`, or at `otherwise` if that is not `None` and the value of the script is false."""
     steps: list[Step] = [Ask(script.reads)] if script.reads else []
     for condition in script.conditions:
         steps.append(Decide(condition, (segment, len(steps) + 1), EXCEPTION))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The values of expressions in the programs of nodes: known during translation, or expressions of the automaton."""
+"""Evaluates expressions in the programs of nodes. A value is known during the translation, or it is an expression of
+the automaton."""
 
 from __future__ import annotations
 
@@ -18,12 +19,13 @@ from roaml.lower.program import NOWHERE
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
 
 RESULT = "*result"
-"""The known variable with the status that the program has returned."""
+"""The name of the known variable that contains the status which the program has returned."""
 
 
 @dataclass(frozen=True, eq=False)
 class ProgramValues:
-    """The values of expressions of the program of a node; `declared` are the variables of the automaton."""
+    """Evaluates the expressions of the program of a node. `declared` contains the names of the variables of the
+    automaton."""
 
     code: NodeCode
     declared: Collection[str]
@@ -34,7 +36,7 @@ class ProgramValues:
         return value
 
     def value(self, expression: ast.expr, fixed: Mapping[str, Known]) -> Value:
-        """The value of an expression of a program: known, or an expression of the automaton."""
+        """The value of an expression of the program: a known value, or an expression of the automaton."""
         match expression:
             case ast.Constant(value=bool() | int() | float() | str() as constant):
                 return constant
@@ -106,13 +108,13 @@ class ProgramValues:
         raise AssertionError(function)
 
     def matches(self, case: int) -> Value:
-        """Whether the variable of a switch equals a case."""
+        """The condition that the variable of a switch equals the case with the index `case`."""
         return compared(self.name("variable", {}), ast.Eq, self.name(f"case_{case + 1}", {}))
 
     def element(self, position: Value) -> Value:
-        """The element of a queue at a position."""
+        """The element of the queue at `position`, which begins at 0."""
         if not self.code.elements:
-            return 0  # never read: an empty queue has no element
+            return 0  # this value is never read, because the queue is empty
         result = expr(self.code.elements[-1])
         for index in reversed(range(len(self.code.elements) - 1)):
             test = equal(expr(position), integer(index))
@@ -121,7 +123,7 @@ class ProgramValues:
 
 
 def ticks_of(milliseconds: Fraction, rate: Fraction) -> int:
-    """The number of ticks of the tree that a duration takes, rounded up (docs/spec/nodes.md#durations)."""
+    """The number of ticks of the tree in a duration, rounded up (docs/spec/nodes.md#durations). `rate` is in Hz."""
     return math.ceil(milliseconds * rate / 1000)
 
 

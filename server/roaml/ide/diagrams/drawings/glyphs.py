@@ -50,7 +50,7 @@ _KINDS: Mapping[DiagramNodeKind, _Strokes] = {
     DiagramNodeKind.SUBTREE: _SUBTREE,
 }
 _CONTROLS = (("Sequence", _SEQUENCE), ("Fallback", _FALLBACK), ("Parallel", _PARALLEL))
-"""The symbols of control nodes by a part of their name, as in publications on behavior trees."""
+"""Parts of names of control nodes, with the symbols that publications on behavior trees use for these nodes."""
 
 
 def badge(node: DiagramNode, x: float, y: float) -> tuple[Shape, Glyph] | None:
