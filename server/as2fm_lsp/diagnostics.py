@@ -98,7 +98,7 @@ class Diagnostics:
         await self._prepare()
 
     async def _prepare(self) -> None:
-        """While idle: compute what the next request is likely to need, and collect garbage."""
+        """Compute, while the user is idle, data that the next request is likely to need, and collect garbage."""
         moment = self.session.moment()
         for path in await self._giving_way(moment.files):
             analysis = moment.snapshot(path).analysis

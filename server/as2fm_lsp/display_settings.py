@@ -26,7 +26,7 @@ class DisplaySettings:
 
 
 def display_settings(settings: object) -> DisplaySettings:
-    """The display settings.
+    """The valid display settings among the client's settings, with the defaults for all others.
 
     Args:
         settings: the client's settings, as received.

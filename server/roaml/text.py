@@ -52,7 +52,7 @@ class Location(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Zero-based line and column, the column in code points."""
+    """A zero-based line and a zero-based column, which counts code points."""
 
     line: int
     column: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of values never excludes one that is possible, and excludes what conditions rule out."""
+"""The knowledge about values never excludes a possible value, and excludes values that conditions rule out."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_nothing_that_is_possible_is_excluded(seed: int) -> None:
     ],
 )
 def test_contraries(first: str, second: str) -> None:
-    """Of two contraries one holds, and not both: known of nothing else."""
+    """Exactly one of two contrary conditions holds, also if nothing else is known."""
     one, other = tree(first), tree(second)
     assert FACTS.assume(NOTHING, one)
     assert not [both for known in FACTS.assume(NOTHING, one) for both in FACTS.assume(known, other)]

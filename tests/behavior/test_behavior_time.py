@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin that waits for time stops the clock, and the fix of answer-needs-time starts it again: seen in traces."""
+"""A plugin that waits for time stops the clock, and the fix of answer-needs-time starts it again: tested with
+traces."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ def probability(folder: Path) -> float:
 
 
 def test_the_fix_starts_the_clock(tmp_path: Path) -> None:
-    """Before, it depends on chance: the timer of the oven may fire in the very instant of the tick, or not."""
+    """Before the fix, the result depends on chance: the timer of the oven may or may not tick at the time of the
+    tick."""
     write(tmp_path)
     assert 0 < probability(tmp_path) < 0.9
     snapshot = workspace_of(tmp_path).snapshot()
@@ -52,7 +54,8 @@ def test_the_fix_starts_the_clock(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("rate", ["1", "10"])
 def test_the_server_is_looked_at_again_when_it_changes(rate: str, tmp_path: Path) -> None:
-    """Another file decides: the finding goes when that answers at once, and stays when only its timer changes."""
+    """The finding depends on another file: it disappears when the server answers at once, and stays when only its timer
+    changes."""
     write(tmp_path)
     snapshot = workspace_of(tmp_path).snapshot()
     assert [d.code for d in found(snapshot)] == [CODE]

@@ -7,13 +7,14 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, requests, scan, storm, translate, trees, verify
+from bench import check, debug, growth, observers, requests, scan, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
     **check.BENCHMARKS,
     **debug.BENCHMARKS,
     **growth.BENCHMARKS,
+    **observers.BENCHMARKS,
     **requests.BENCHMARKS,
     **scan.BENCHMARKS,
     **translate.BENCHMARKS,

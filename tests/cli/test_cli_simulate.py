@@ -28,7 +28,7 @@ def test_the_run_is_the_trace_of_verify(command: Command) -> None:
     (heading,) = [line for line in told.splitlines() if line.startswith("never_placed_empty failed in trace ")]
     trace, steps = heading.split(" trace ")[1].split(" after ")
     done = command("simulate", str(ROBOT), "--property", "never_placed_empty", "--trace", trace)
-    assert done.out.startswith(f"never_placed_empty failed in trace {trace} after {steps.split(',')[0]}")
+    assert done.out.startswith(f"never_placed_empty failed in trace {trace} after {steps.split(';')[0]}")
 
 
 @pytest.mark.parametrize(

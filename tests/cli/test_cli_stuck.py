@@ -188,7 +188,7 @@ def test_it_can_be_expected_not_to_get_stuck(command: Command, tmp_path: Path) -
 def test_explained_to_the_end(command: Command, ward: Path) -> None:
     for options in ((), ("--property", "stuck")):
         story = command("verify", "main.xml", *options, "--explain").out
-        assert re.search(r": trace \d+ gets stuck after \d+ steps, of which", story)
+        assert re.search(r": trace \d+ gets stuck after \d+ steps; \d+ turns matter", story)
         *last, advice, legend = story.rstrip().splitlines()[-6:]
         assert advice.startswith("  help: a tick must be answered")
         assert "bt_1002 is Fetch (tree.xml:5)" in legend

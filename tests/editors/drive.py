@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a model with a mistake in each editor, set up as the notes say, and looks at what the editor shows of it.
-
-Exit code 1 if it is not the mistake, or if the name that was meant is not completed.
-"""
+"""Opens a model with an error in each editor, configured as in docs/editors.md, and checks what the editor shows. The
+exit status is 1 if the finding is missing, or if the correct name is not completed."""
 
 from __future__ import annotations
 
@@ -18,14 +16,14 @@ NOTES = HERE.parents[1] / "docs" / "editors.md"
 sys.path[:0] = [str(HERE.parent), str(HERE.parents[1] / "server")]
 
 SECONDS = 120
-"""How long an editor may take."""
+"""The time limit of an editor."""
 
 MISTAKE = "undeclared-variable"
 MEANT = "count"
 
 
 def setup(section: str, language: str) -> str:
-    """The last piece of configuration in a section of the notes: that for the versions that Debian has."""
+    """The last piece of configuration in a section of docs/editors.md, which is for the versions in Debian."""
     text = NOTES.read_text(encoding="utf-8")
     part = re.split(r"^## ", text.partition(f"\n## {section}\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
     texts: list[str] = re.findall(rf"^```{language}\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
@@ -33,7 +31,7 @@ def setup(section: str, language: str) -> str:
 
 
 def shown(command: list[str], file: Path) -> list[str]:
-    """What a script in an editor prints about a file."""
+    """The output of a script in an editor for a file."""
     environment = {**os.environ, "HOME": str(file.parent), "XDG_CONFIG_HOME": str(file.parent)}
     done = subprocess.run(
         [*command], cwd=file.parent, env=environment, capture_output=True, text=True, timeout=SECONDS, check=False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An expression tree in one line: `a.b[1] + f(-c)` is `(+ a.b[1] f((- c)))`; `_` is nothing usable."""
+"""An expression tree in one line: `a.b[1] + f(-c)` is `(+ a.b[1] f((- c)))`; `_` is an unusable part."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of expressions and what does not fit in them (docs/spec/expressions.md#operators)."""
+"""Types of expressions, and type errors in them (docs/spec/expressions.md#operators)."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ TYPES = [
     ("Math.pow(2, 3)", "float"),
     ("Math.log(2)", "float"),
     ("Math.log(8, 2)", "float"),
-    # What is not known causes no further problem.
+    # An unknown type causes no further findings.
     ("unknown", "unknown"),
     ("unknown.x[2].y + 1", "unknown"),
     ("unknown && b", "bool"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the expression language accepts, as which tree, and what it says about everything else
+"""The parser of expressions: accepted texts with their trees, and findings about all other texts
 (docs/spec/expressions.md#grammar)."""
 
 from __future__ import annotations
@@ -490,12 +490,13 @@ SIMPLE += ["0", "12", "012", "0.5", "2.0", "10.250", "0.1234567890123456789", "1
 
 @pytest.mark.parametrize("text", SIMPLE)
 def test_simple_ones_are_read_like_all_others(text: str) -> None:
-    """White space behind an expression changes nothing but that it is not read the quick way."""
+    """With white space behind it, an expression is parsed in the general way instead of the fast one, with the same
+    result."""
     assert parse(Decoded(text, 5)) == parse(Decoded(f"{text} ", 5))
 
 
 def test_reserved_words_by_their_use() -> None:
-    """Each reserved word is of one kind; those that only other expressions have are reported."""
+    """Each reserved word has one use. Words of other kinds of expressions are reported."""
     kinds = (LITERALS, OPERATORS, PREFIXES, STATEMENTS, {"this"})
     assert sorted(word for kind in kinds for word in kind) == sorted(RESERVED | CONTEXTUAL)
     for word in (RESERVED | CONTEXTUAL) - LITERALS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What holds for any expression: precedence as in an independent parser, places inside the text, no exception."""
+"""Invariants of all expressions: precedence as in an independent parser, spans inside the text, no exceptions."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_any_text(text: str, base: int) -> None:
 
 
 def assert_nested(expr: Expr) -> None:
-    """Subexpressions lie inside, in order and apart; no tree is too deep."""
+    """Check that subexpressions are inside their parents, in order and disjoint, and that no tree is too deep."""
     level, depth = [expr], 0
     while level:
         depth += 1
@@ -155,7 +155,7 @@ def assert_nested(expr: Expr) -> None:
 
 @given(TEXTS)
 def test_fixes_can_be_applied(text: str) -> None:
-    """The preferred fix of an only mistake removes it."""
+    """The preferred fix of a single error removes it."""
     source = Decoded(text, 0)
     findings = parse(source)[1]
     for finding in findings:
@@ -188,7 +188,7 @@ def test_walk_meets_everything_once(text: str) -> None:
 
 @given(operations())
 def test_formatted_and_read_again(tokens: list[str]) -> None:
-    """The normal form of an expression means the same, and is its own normal form."""
+    """The normal form of an expression has the same meaning, and is its own normal form."""
     tree, _ = parse(Decoded(" ".join(tokens), 0))
     text = format_expr(tree)
     again, problems = parse(Decoded(text, 0))

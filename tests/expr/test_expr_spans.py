@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Places of expressions in the file, references of the XML around them accounted for; and fixes there."""
+"""Spans of expressions in the file, which take XML references before them into account; and fixes at these spans."""
 
 from __future__ import annotations
 

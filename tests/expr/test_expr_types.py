@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types as values: reading, printing, fitting, joining, taking apart."""
+"""Types as values: parsing, printing, fitting, joining, and access to parts."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The neutral value of each type is one of its values, and is written as what it is."""
+"""The neutral value of each type is a value of this type, and is written in its form."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules about answers say: who waits for what, where the first answer was, and what to do."""
+"""Messages of the rules about answers: which node waits for which, where the first answer was, and what to do."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FOLDER = Path(__file__).parents[1] / "rules" / "cases" / "one_report"
 
 
 def said(folder: Path, file: str, title: str, code: str) -> list[tuple[str, list[tuple[int, str]]]]:
-    """The messages of a code for one of the cases in `FOLDER`, with the offset and text of what is related."""
+    """The messages of a rule for one of the cases in `FOLDER`, with the offset and text of the related places."""
     case = next(case for case in read_cases(FOLDER / f"{file}.txt") if case.title == title)
     diagnostics, _ = check_text(folder, case.text)
     return [
@@ -36,7 +36,7 @@ def test_both_answers_in_one_body_are_named(tmp_path: Path) -> None:
 def test_the_first_answer_of_an_earlier_step_is_named(tmp_path: Path) -> None:
     title = "answered at once and again when the response comes"
     [(message, related)] = said(tmp_path, "paths_tick", title, "repeated-answer")
-    assert "it was already answered by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
+    assert "the tick was already answered by `<bt_return_status>` in the `<bt_tick>` of the state `a`" in message
     assert [text for _, text in related] == ["the first answer", "the second answer"]
     assert related[0][0] < related[1][0]
 
@@ -61,7 +61,7 @@ def test_the_variable_with_the_new_goal_is_named(tmp_path: Path) -> None:
 
 
 def test_one_mistake_with_an_id_gives_one_advice(tmp_path: Path) -> None:
-    """The variable holds nothing on one path, and the id of a rejected goal on another."""
+    """The variable has no value on one path, and on another one the id of a rejected goal."""
     [(message, _)] = said(tmp_path, "paths_goal", "ended by a variable of rejected goals only", "wrong-goal-id")
     assert "was rejected; store the id of the accepted goal in another variable" in message
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that no case of a rule can show, because cases are UTF-8 without a byte order mark."""
+"""Files that a case of a rule cannot contain, because cases are UTF-8 without a byte order mark."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixes are chosen by facts, never by the text of a message; facts survive their way through a client."""
+"""Fixes are selected by facts, never by the text of a message. Facts are unchanged after they are sent through a
+client."""
 
 from __future__ import annotations
 
@@ -38,7 +39,7 @@ CASES = [
 
 
 def reworded(message: str) -> str:
-    """Different messages stay different; no word of them stays."""
+    """Messages in which every word is replaced. Different messages stay different."""
     return message.encode("utf-8").hex()
 
 
@@ -62,7 +63,7 @@ def shown(folder: Path) -> list[tuple[object, ...]]:
 
 
 def test_messages_are_reworded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The test above would prove nothing otherwise."""
+    """Without the rewording, the test above would prove nothing."""
     [case] = examples("input-count", "Bad")[:1]
     write_files(tmp_path, case.text)
     messages = {d.message for d in found(workspace_of(tmp_path).snapshot())}

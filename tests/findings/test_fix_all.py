@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several fixes made at once (`roaml.project.fixing`)."""
+"""Several fixes that are applied at once (`roaml.project.fixing`)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fixes of planted mistakes remove their diagnostics; a preferred one adds no error."""
+"""The fixes of planted errors remove their diagnostics; a preferred one adds no error."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SPELLING = ["01_misspelled_exec_tag", "02_misspelled_decl_tag"]
 
 @pytest.mark.parametrize("id_", SPELLING)
 def test_misspelled_elements_are_restored(id_: str, tmp_path: Path) -> None:
-    """Byte for byte as in the system without the mistake."""
+    """The file is then equal to the file without the error, byte by byte."""
     mistake = next(m for m in MISTAKES if m.id == id_)
     folder = tmp_path / "system"
     shutil.copytree(mistake.folder, folder)

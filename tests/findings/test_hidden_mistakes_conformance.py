@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes in different files of the largest conformance model: together they are reported as each is alone."""
+"""Errors in different files of the largest conformance model are reported together as each alone."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MISTAKES = [
 
 
 def report(numbers: range) -> set[tuple[str, str, str]]:
-    """File, rule and message of each error and warning with these mistakes."""
+    """File, rule and message of each error and warning in the system with these errors."""
     texts: dict[str, str] = {}
     for file, pattern, new in (MISTAKES[number] for number in numbers):
         path = str(FOLDER / file)

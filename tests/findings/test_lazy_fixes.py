@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The edits of fixes are computed when a fix is made, not when files are checked."""
+"""The edits of a fix are computed when the fix is applied, not when files are checked."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_check_computes_no_edits(case: Case, tmp_path: Path) -> None:
 
 
 def test_a_fix_computes_its_edits(tmp_path: Path) -> None:
-    """The test above would prove nothing otherwise."""
+    """Without this, the test above would prove nothing."""
     called = set()
     for number, case in enumerate(CASES):
         folder = tmp_path / str(number)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file with very many mistakes: the first ones of each kind are reported, with the number of the others."""
+"""A file with very many errors: the first ones of each kind are reported, with the number of the others."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes planted in a sound tree, its subtree in another file, and its models: each is found where it is, and nothing
-follows from it. The mistakes were written by their kinds, before it was known which of them are found."""
+"""Errors planted in a correct tree, its subtree in another file, and its models: each is reported at its place, without
+consequential findings. The errors were chosen by their kinds, before it was known which of them are found."""
 
 from __future__ import annotations
 

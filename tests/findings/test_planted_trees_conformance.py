@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes planted in trees of Nav2 and BehaviorTree.CPP: each is found where it is, and nothing follows from it."""
+"""Errors planted in trees of Nav2 and BehaviorTree.CPP: each is reported at its place, without consequential
+findings."""
 
 from __future__ import annotations
 

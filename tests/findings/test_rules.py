@@ -33,7 +33,7 @@ def test_document_begins_with_the_summary(rule: Rule) -> None:
 
 
 def test_cases_are_collected_without_the_library() -> None:
-    """So that the tests of one rule start at once. The library is imported when the first test runs."""
+    """The tests of one rule start at once, because the library is imported only when the first test runs."""
     folder = Path(__file__).parents[1] / "rules"
     command = [sys.executable, "-c", SCRIPT, str(folder)]
     output = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder.parents[1]).stdout

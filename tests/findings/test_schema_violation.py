@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""schema-violation, of which no file is known: the tables of the grammars explain all that the schemas forbid."""
+"""The rule schema-violation, for which no file is known: the tables of the grammars explain every violation of the
+schemas."""
 
 from __future__ import annotations
 

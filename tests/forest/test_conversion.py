@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of version 3 are converted as a whole, and nothing is left to say (docs/spec/lone-trees.md#format)."""
+"""Files of version 3 are converted completely, and the result has no findings (docs/spec/lone-trees.md#format)."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ ASYNCHRONOUS = "<AsyncSequence><Grasp/></AsyncSequence>"
 
 
 def codes(folder: Path, tree: str, settings: str) -> list[str]:
-    """The codes of what is reported about a tree with a configuration beside it."""
+    """The codes of the findings in a tree with a configuration beside it."""
     (folder / "models").mkdir()
     (folder / "models" / "nodes.xml").write_text(MODELS)
     (folder / "as2fm.toml").write_text(settings)

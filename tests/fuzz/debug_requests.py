@@ -12,6 +12,7 @@ STOPPING = ("goToStep", "choose", "restartFrame", "publish", "setVariable")
 OTHERS = (
     *("initialize", "launch", "configurationDone", "threads", "stackTrace", "scopes", "variables", "evaluate", "pause"),
     *("setBreakpoints", "setFunctionBreakpoints", "setExceptionBreakpoints", "setDataBreakpoints", "choices", "cancel"),
+    *("timeline", "exportTimeline", "pictures"),
     *("dataBreakpointInfo", "breakpointLocations", "loadedSources", "exceptionInfo", "saveSession", "restart"),
     *("source", "attach", "nothing", "modules", "events", "completions"),
 )

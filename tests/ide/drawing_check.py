@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong in a drawing, found by its geometry."""
+"""Geometric checks of a drawing."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from roaml.figures.geometry import Box, Point
 from roaml.ide.diagrams import EdgeKind, Picture
 
 SOLID = ("card", "label-card", "junction", "dot")
-"""The shapes that nothing may overlap."""
+"""The shapes that must not be overlapped."""
 MIN_SIZE = 11.0
 _NEAR = 0.05
 _APART = 3.0
-"""Parallel lines nearer than this look like one."""
+"""The distance below which two parallel lines look like one."""
 
 
 def problems(picture: Picture, drawing: Drawing) -> list[str]:
-    """Sentences; empty if the drawing is right."""
+    """Descriptions of the errors; empty if the drawing is correct."""
     return [*_areas(drawing), *_texts(drawing), *_lines(drawing), *_completeness(picture, drawing)]
 
 

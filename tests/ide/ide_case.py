@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of editor features share: files in memory, and places marked in them."""
+"""Helpers of the tests of editor features: files in memory, and marked places in them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def path_of(name: str) -> str:
 
 
 def analysis_of(texts: Mapping[str, str]) -> Analysis:
-    """What is known of some files: name -> text."""
+    """The analysis of some files: name -> text."""
     workspace = Workspace((), Settings())
     for name, text in texts.items():
         workspace.open(path_of(name), text)
@@ -31,7 +31,7 @@ def analysis_of(texts: Mapping[str, str]) -> Analysis:
 
 
 def one_file(text: str) -> tuple[Analysis, str]:
-    """What is known of one file, and its path."""
+    """The analysis of one file, and its path."""
     name = guess_name(text)
     return analysis_of({name: text}), path_of(name)
 

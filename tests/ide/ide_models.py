@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models that tests of the editor's features are about, written as one string (`fixture.split_files`)."""
+"""Models for tests of the editor's features, written as one string (`fixture.split_files`)."""
 
 from __future__ import annotations
 

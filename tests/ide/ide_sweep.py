@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renames each thing of a system to a fresh name and holds the system against what it was.
+"""Renames each symbol of a system to a new name, and compares the system with the original.
 
-The findings are the same but for the name, the translation is the same but for the name, and renaming back restores
-the text.
+The findings and the translation must be the same except for the name, and renaming back must restore the text.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ FRESH = "zqfresh"
 
 @dataclass(frozen=True)
 class Case:
-    """A thing of a system, and a place at which it can be renamed."""
+    """A symbol of a system, and a place at which it can be renamed."""
 
     thing: SymbolGroup
     path: str
@@ -41,10 +40,10 @@ class Case:
 
 
 class System:
-    """A system as it is on the disk.
+    """A system on the disk.
 
     Args:
-        main: path of the system file.
+        main: the path of the system file.
         ros_paths: folders with ROS packages.
     """
 
@@ -64,7 +63,7 @@ class System:
         return api.check([self.main], self.ros_paths, Settings(), texts)
 
     def cases(self) -> Iterator[Case]:
-        """Each thing that can be renamed, once, at the first of its places."""
+        """Each symbol that can be renamed, once, at its first place."""
         analysis, done = self.snapshot.analysis, set()
         for path in self.files:
             for system in analysis.systems_of(path):
@@ -77,7 +76,7 @@ class System:
                         yield Case(group, path, occurrence.span.start)
 
     def failures(self, case: Case) -> Iterator[str]:
-        """What a rename, and renaming back, do not keep."""
+        """The invariants that a rename, and renaming back, violate."""
         renaming = rename(self.snapshot.analysis, case.path, case.offset, FRESH)
         if not isinstance(renaming, Renaming):
             yield f"refused: {renaming.reason}"
@@ -136,13 +135,13 @@ def _differences(before: list[tuple[str, ...]], after: list[tuple[str, ...]]) ->
 
 
 def _same(before: object, after: str | None, old: str) -> bool:
-    """Whether a translation is the same as one in canonical form, but for a name and what is ordered by names."""
+    """Whether a translation is equal to one in canonical form, except for a name and the order of names."""
     return after is not None and _canonical(after.replace(FRESH, old)) == before
 
 
 def _canonical(jani: str) -> object:
-    """Actions that are called alike in several automata are listed once; a rename may tell them apart. Comments contain
-    names as the user writes them."""
+    """The canonical form of a translation. Actions with the same name in several automata are listed once, because a
+    rename may separate them. Comments are removed, because they contain names as the user writes them."""
     model = json.loads(jani)
     for property_ in model["properties"]:
         property_.pop("comment", None)
@@ -151,7 +150,7 @@ def _canonical(jani: str) -> object:
 
 
 def _unordered(value: object) -> object:
-    """A value of JSON, the lists in it sorted."""
+    """A JSON value with its lists sorted."""
     if isinstance(value, dict):
         return {key: _unordered(each) for key, each in value.items()}
     if isinstance(value, list):
@@ -160,6 +159,6 @@ def _unordered(value: object) -> object:
 
 
 def _moved(offset: int, edits: tuple[TextEdit, ...]) -> int:
-    """Where an offset is after the edits before it."""
+    """The position of an offset after the edits before it."""
     before = (edit for edit in edits if edit.span.start < offset)
     return offset + sum(len(edit.new_text) - (edit.span.end - edit.span.start) for edit in before)

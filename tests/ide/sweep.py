@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Renames each thing of the examples, the conformance models and further systems; exit code 1 if anything is lost.
+"""Renames each symbol of the examples, the conformance models and further systems. The exit status is 1 if an invariant
+is violated.
 
-python tests/ide/sweep.py [MAIN.xml ...]
+    python tests/ide/sweep.py [MAIN.xml ...]
 """
 
 from __future__ import annotations

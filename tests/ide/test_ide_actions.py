@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Code actions: the caret `‸` in a text, the title of an action, and what the files hold when it is done.
-
-Whatever is done, no error comes that was not there.
-"""
+"""Code actions: the caret `‸` in a text, the title of an action, and the files after it. No action adds an error."""
 
 from __future__ import annotations
 
@@ -40,7 +37,7 @@ def offered(written: str, kind: str = "") -> list[CodeAction]:
 
 
 def done(written: str, title: str) -> dict[str, str]:
-    """The files that an action changes, as they are afterwards."""
+    """The files that an action changes, with their new texts."""
     snapshot, path, place = opened(written)
     chosen = [action for action in actions(snapshot, path, place, lambda _: True) if action.title == title]
     assert len(chosen) == 1, [action.title for action in actions(snapshot, path, place, lambda _: True)]
@@ -55,7 +52,7 @@ def done(written: str, title: str) -> dict[str, str]:
 
 
 def new_warnings(snapshot: Snapshot, texts: dict[str, str]) -> set[str]:
-    """The codes of what is found, of any severity but hints, and was not before."""
+    """The codes of new findings of any severity except hints."""
     before, after = (
         Counter(d.code for d in found(each) if d.severity >= Severity.INFORMATION)
         for each in (snapshot, snapshot.with_texts(texts))
@@ -222,7 +219,7 @@ SYSTEM = (
 
 
 def test_a_new_plugin() -> None:
-    """It has the ports that the node sets, is in the folder of the other plugins, and is listed."""
+    """The plugin has the ports that the node sets, is in the folder of the other plugins, and is listed."""
     snapshot, path, place = opened(SYSTEM)
     title = "Create the plugin `GoHome` in `go_home.ascxml`"
     kinds = [action.kind for action in actions(snapshot, path, place, lambda _: True) if action.title == title]
@@ -332,7 +329,7 @@ def test_all_of_a_rule(line_end: str) -> None:
 
 
 def test_all_safe_fixes() -> None:
-    """What is a guess is left alone."""
+    """Fixes that guess are not applied."""
     text = LOGS.replace('event="e"', 'event="e" tpye="external"')
     after = done(text, "Apply all safe fixes in this file")
     assert after == {"machine.ascxml": WITHOUT_LOGS.replace('event="e"', 'event="e" tpye="external"')}
@@ -382,7 +379,7 @@ def test_a_port_is_removed_everywhere() -> None:
 
 
 def test_half_typed() -> None:
-    """Every prefix of a system's files, with the caret at its end, is offered something or nothing."""
+    """Code actions work for every prefix of a system's files, with the caret at its end."""
     for text in (PLUGIN, CLIENT, split_files(OLDER)["main.xml"], split_files(SYSTEM)["tree.xml"], LOGS):
         clean = text.replace("‸", "")
         for end in range(0, len(clean), 5):

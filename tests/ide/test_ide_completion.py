@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is offered at a caret. A case is a text with `‸` in it, put into a system in place of a mark, and what is found.
+"""Completions at a caret. A case is a text with `‸`, which replaces a mark in a system, and the expected items.
 
-Below the text stand expected items: `LABEL`, `LABEL : DETAIL`, `LABEL => INSERTED` (up to `…`). They come in this
-order, others may stand between; `no LABEL` must not come at all, `nothing` means that nothing is offered, `only` that
-no other is.
+Expected items are below the text: `LABEL`, `LABEL : DETAIL`, `LABEL => INSERTED` (up to `…`). They occur in this order,
+with others in between. `no LABEL` must not occur, `nothing` means that there are no completions, and `only` that there
+are no others.
 """
 
 from __future__ import annotations

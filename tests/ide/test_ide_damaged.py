@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every question about documents that are being typed: no exception, and no place outside of the texts."""
+"""Every request about documents that are being typed: no exception, and no place outside of the texts."""
 
 from __future__ import annotations
 

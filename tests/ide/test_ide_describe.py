@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a thing, as Markdown: whole texts, as a reader sees them."""
+"""Descriptions of symbols in Markdown: whole texts, as a user sees them."""
 
 from __future__ import annotations
 

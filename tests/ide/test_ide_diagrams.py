@@ -122,7 +122,7 @@ def test_tree(tmp_path: Path) -> None:
 
 
 def test_tree_alone(tmp_path: Path) -> None:
-    """What no system names is drawn as far as it is known."""
+    """A tree that no system lists is drawn as far as it is known."""
     tree = """\
 <root BTCPP_format="4"><BehaviorTree ID="T"><Inverter><Fallback>
   <Condition ID="Full" level="{level}"/><Fill to="{level}"/><Loop><Wait/></Loop>
@@ -134,7 +134,7 @@ def test_tree_alone(tmp_path: Path) -> None:
         "control | Fallback",
         "condition | Full | level = {level}",
         "action | Fill | to = {level}",
-        "control | Loop",
+        "decorator | Loop",
         "condition | Wait",
         "variable | level",
         "Inverter -> Fallback | child",
@@ -145,6 +145,28 @@ def test_tree_alone(tmp_path: Path) -> None:
         "level -> Full | reads | level",
         "level -> Fill | reads | to",
     ]
+
+
+def test_kinds_of_nodes_in_a_tree_alone(tmp_path: Path) -> None:
+    """Libraries and models declare them; an unknown node with one child is a decorator."""
+    tree = """<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>
+        <RateController hz="1.0"><ComputePathToPose goal="{goal}" path="{path}"/></RateController>
+        <RecoveryNode number_of_retries="2"><IsStuck/><Wait wait_duration="1"/></RecoveryNode>
+        <Inverter><Seen/></Inverter><Mine><Yours/></Mine><Both><Yours/><Yours/></Both>
+        </Sequence></BehaviorTree><TreeNodesModel><Condition ID="Seen"/></TreeNodesModel></root>"""
+    picture = tree_picture(load(tmp_path, {"tree.xml": tree}), str(tmp_path / "tree.xml"))
+    assert picture is not None
+    kinds = {node.label: node.kind.value for node in picture.nodes}
+    assert kinds == kinds | {
+        "RateController": "decorator",
+        "RecoveryNode": "control",
+        "IsStuck": "condition",
+        "Inverter": "decorator",
+        "Seen": "condition",
+        "Mine": "decorator",
+        "Both": "control",
+        "Yours": "action",
+    }
 
 
 def test_ros(tmp_path: Path) -> None:
@@ -186,7 +208,7 @@ def test_ros(tmp_path: Path) -> None:
 
 
 def test_half_typed(tmp_path: Path) -> None:
-    """Whatever is left of the files: no exception, and all that is drawn hangs together."""
+    """Any prefix of the files causes no exception, and all parts of a drawing are connected."""
     files = split_files(CORNERS)
     chance = random.Random(5)
     for name, text in files.items():
@@ -208,7 +230,7 @@ def _is_sound(analysis: Analysis, picture: Picture) -> bool:
 
 @pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind)])
 def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind]) -> None:
-    """Who draws knows the same words."""
+    """The extension and the library use the same words."""
     match = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
     assert match is not None
     assert re.findall(r'"([^"]+)"', match[1]) == [kind.value for kind in kinds]

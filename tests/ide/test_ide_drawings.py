@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings of our examples: geometry without flaws, and ten golden pictures.
+"""Drawings of our examples: geometry without errors, and ten golden pictures.
 
-`AS2FM_GOLDEN=write` writes the golden pictures again; look at each before you commit it.
+`AS2FM_GOLDEN=write` writes the golden pictures again; look at each of them before you commit it.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ def test_a_choice_is_a_junction_with_probabilities(tmp_path: Path) -> None:
 
 
 def test_typing_keeps_the_arrangement(tmp_path: Path) -> None:
-    """A longer condition moves states by less than it is long, and exchanges none."""
+    """A longer condition moves states by less than its additional length, and does not rearrange them."""
     before = machine(tmp_path)[1].nodes
     after = machine(tmp_path, MACHINE.replace("x &gt; 1", "x &gt; 1 &amp;&amp; y &lt; 2"))[1].nodes
     for a, b in [(a, b) for a in before for b in before]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drawings of all conformance models have no flaw that geometry can find."""
+"""The drawings of all conformance models have no geometric errors."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What holds of formatting for all models of the corpus, however their white space is damaged."""
+"""Invariants of formatting for all models of the corpus with any damage to their white space."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def json_gaps(text: str) -> Iterator[tuple[int, int, int]]:
 
 
 def xml_gaps(text: str) -> Iterator[tuple[int, int, int]]:
-    """Start, end and least length of white space that means nothing."""
+    """Start, end and minimum length of white space without meaning."""
     document = parse(text)
     if document.root is None or any(f.code == "xml-syntax" for f in document.findings):
         return
@@ -115,7 +115,7 @@ def xml_gaps(text: str) -> Iterator[tuple[int, int, int]]:
 
 
 def content(path: str, text: str) -> object:
-    """All that is written but white space between tokens."""
+    """The text without white space between tokens."""
     if path.endswith((".jani", ".json")):
         try:
             return json.loads(text, object_pairs_hook=lambda pairs: pairs)

@@ -185,7 +185,7 @@ def test_every_operator_and_key_of_properties_is_called_something() -> None:
 
 
 def test_every_place_of_some_systems() -> None:
-    """No place gives an exception or a range outside of the file, and many places say something."""
+    """No place causes an exception or a range outside of the file, and many places have a hover text."""
     told = 0
     for model in systems()[-3:]:
         analysis = api.check([model.main], model.ros_paths, Settings(), model.texts).snapshot.analysis
@@ -199,7 +199,7 @@ def test_every_place_of_some_systems() -> None:
 
 
 def test_half_typed(tmp_path: Path) -> None:
-    """Any beginning of a file, and any file with a piece missing, can be asked about at any place."""
+    """Any prefix of a file, and any file with a part removed, can be requested at any place."""
     choose = random.Random(7)
     for name, text in MODELS["corners"].items():
         for _ in range(6):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is remembered of names while somebody types is what would be found anew."""
+"""Cached results about names while a user types are equal to newly computed ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WORDS = (
     "x",
     "n",
 )
-"""What is written in place of each other: types, events, parameters, topics, which other files see."""
+"""Texts that replace each other: types, events, parameters and topics, on which other files depend."""
 
 
 PASSED_ON = (
@@ -58,7 +58,7 @@ PASSED_ON = (
 </ascxml>
 """
 )
-"""What `x` in the second machine is a member of, the first one says."""
+"""The first machine determines the struct to which the member `x` in the second machine belongs."""
 
 
 def found(snapshot: Snapshot) -> dict[tuple[str, str | None], object]:

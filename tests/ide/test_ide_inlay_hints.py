@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hints between the characters, lenses above the lines, signatures beside the caret: as one string each."""
+"""Inlay hints, lenses and signatures, each as one string."""
 
 from __future__ import annotations
 
@@ -246,7 +246,7 @@ def test_holders_of_messages(tmp_path: Path) -> None:
 
 
 def test_damaged_documents() -> None:
-    """Any beginning, and any text with a piece missing: no failure, and no place outside of the text."""
+    """Any prefix, and any text with a part removed: no failure, and no place outside of the text."""
     choose = random.Random(11)
     for files in MODELS.values():
         for name, text in files.items():

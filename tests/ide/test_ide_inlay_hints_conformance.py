@@ -56,7 +56,7 @@ def test_places(main: Path) -> None:
 
 @pytest.mark.parametrize("main", conformance.systems(), ids=conformance.label)
 def test_every_variable_event_and_handle_is_known(main: Path) -> None:
-    """In sound models, nothing is said to be unknown, undefined or of nobody's."""
+    """In correct models, no symbol is described as unknown, undefined or unused."""
     result = api.check([str(main)], (str(conformance.INTERFACES),), Settings())
     for path in result.files:
         text = result.source(path).text

@@ -46,7 +46,7 @@ def snapshot_of(**texts: str) -> Snapshot:
 
 
 def offered(text: str, mark: str = "‸") -> dict[str, str]:
-    """The labels that are offered at a mark, with their details."""
+    """The labels of the completions at a mark, with their details."""
     before, _, after = text.partition(mark)
     snapshot = snapshot_of(tree=before + after)
     completions = complete(snapshot, path_of("tree.xml"), len(before))

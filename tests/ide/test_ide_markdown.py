@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What editors that show HTML would make of our Markdown, whatever files hold: no tag, no picture, no link."""
+"""Our Markdown in editors that show HTML: it creates no tag, picture or link, whatever the files contain."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ EVIL = '<img src="x" onerror="alert(1)"> <!-- --> <a@b.c> ![p](x.png) [l](x) [r]
 
 
 def live(text: str) -> list[str]:
-    """The tags, pictures and links that a reader of Markdown finds."""
+    """The tags, pictures and links that a Markdown parser finds."""
     found = []
     for token in COMMONMARK.parse(text):
         for each in (token, *(token.children or ())):
@@ -66,7 +66,7 @@ anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
 @example("`<i>``<i>`", "[x](y)`<i>`", "")
 @example("[x]`(y)<i>`", "", "")
 def test_pieces(first: str, second: str, third: str) -> None:
-    """However they are put together."""
+    """In any combination of the pieces."""
     made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))
     assert live(made) == []
     assert live(paragraphs(prose(first), code(second), prose(third))) == []
@@ -94,7 +94,7 @@ def test_prose(written: str, markdown: str | None, read: str) -> None:
 
 
 def hostile(text: str, suffix: str, pattern: str) -> str:
-    """A model whose names end with a suffix, and whose comments hold it."""
+    """A model whose names end with a suffix, and whose comments contain it."""
     if text.lstrip().startswith("<"):
         text = re.sub(
             rf'\b({pattern})="([^"]+)"', lambda m: f'{m[1]}="{m[2]}{escape(suffix, {chr(34): "&quot;"})}"', text
@@ -105,7 +105,7 @@ def hostile(text: str, suffix: str, pattern: str) -> str:
 
 
 def shown(texts: dict[str, str]) -> Iterator[str]:
-    """All descriptions of the contents of files, as Markdown."""
+    """All descriptions of the content of files, as Markdown."""
     workspace = Workspace((), Settings())
     for path, text in texts.items():
         workspace.open(path_of(path), text)
@@ -147,7 +147,7 @@ def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: s
 
 
 def test_analysis_of_hostile_models_is_one() -> None:
-    """The suffix is in the descriptions, so that the test above is not empty."""
+    """The suffix is in the descriptions, so the test above is not empty."""
     texts = {path: hostile(text, "<img>", "id|target") for path, text in split_files(ROBOT).items()}
     assert analysis_of(texts)
     assert any("<img>" in text or "&lt;img>" in text for text in shown(texts))

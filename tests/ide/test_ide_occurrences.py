@@ -391,7 +391,7 @@ def test_variables_are_those_of_the_translation(tmp_path: Path) -> None:
 
 
 def test_trees_of_a_project_are_not_executed(tmp_path: Path) -> None:
-    """A project lists subtrees; a tree there that nobody uses does not make it unclear which tree is executed."""
+    """A project lists subtrees. An unused tree in it does not make the executed tree ambiguous."""
     analysis = system_of_trees(
         tmp_path,
         """-- tree.xml --
@@ -415,7 +415,7 @@ def test_trees_of_a_project_are_not_executed(tmp_path: Path) -> None:
 
 
 def test_damaged_documents(tmp_path: Path) -> None:
-    """Each beginning of each file: no exception, and no place outside of the text."""
+    """Each prefix of each file: no exception, and no place outside of the text."""
     _, cases = load_marked(tmp_path, SYSTEM)
     for name, case in cases.items():
         for end in range(0, len(case.text), 37):

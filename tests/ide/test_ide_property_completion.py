@@ -131,7 +131,7 @@ def test_the_skeleton_of_a_property_is_complete(folder: Path, pattern: str) -> N
 
 
 def test_patterns_are_offered_as_sentences_in_each_scope(folder: Path) -> None:
-    """What is inserted is what the sentence says, and needs only its conditions."""
+    """The inserted text has the meaning of the sentence, and only the conditions are missing."""
     for typed in ("<guarantees>|", "<guarantees>when|"):
         completions, text, _ = offered(folder, "<guarantees>", typed)
         sentences = {item.label: item for item in completions.items if "…" in item.label}

@@ -84,7 +84,7 @@ def test_typing_jani(tmp_path: Path) -> None:
 
 
 def type_file(folder: Path, name: str, typed: str) -> set[str]:
-    """Type a file of the system and ask for everything; the codes of the findings in the whole file."""
+    """Type a file of the system and use every feature; return the codes of the findings in the whole file."""
     path, main = str(folder / name), str(folder / "main.xml")
     workspace = Workspace((str(folder),), Settings())
     workspace.open(main, (folder / "main.xml").read_text(encoding="utf-8"))
@@ -102,7 +102,7 @@ def type_file(folder: Path, name: str, typed: str) -> set[str]:
 
 
 def ask(snapshot: Snapshot, main: str, path: str, end: int) -> None:
-    """Use every feature of the editor where the last character was typed."""
+    """Use every feature of the editor at the last typed character."""
     analysis, whole = snapshot.analysis, Span(0, end)
     for offset in {end, max(0, end - 1)}:
         hover(analysis, path, offset)

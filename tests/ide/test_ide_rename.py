@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rename: what is edited, what is refused, and that nothing but the name changes."""
+"""Rename: the edits, the refusals, and the invariant that only the name changes."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_prepared(tmp_path: Path) -> None:
 
 
 def test_a_file_of_two_systems(tmp_path: Path) -> None:
-    """An event that two systems have, tied together by a file that both list."""
+    """Two systems share a file with an event, so both are changed."""
     machine = """<ascxml name="{0}" version="1.0" initial="s">
 <state id="s"><onentry><send event="{1}"/></onentry><transition event="{2}" target="s"/></state></ascxml>"""
     files = {

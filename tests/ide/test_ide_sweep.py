@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every feature of syntax, asked at many places of damaged models: no failure, and no place outside of the text."""
+"""Every feature that depends only on syntax, used at many places of damaged models: no failure, and no place outside of
+the text."""
 
 from __future__ import annotations
 
@@ -54,7 +55,7 @@ def test_damaged_models(first: int) -> None:
 
 @pytest.mark.parametrize("first", range(0, 60, 10))
 def test_actions_on_damaged_models(first: int) -> None:
-    """What they change is text that is there, and no two of their edits change the same."""
+    """The edits are within the text and do not overlap."""
     for seed in range(first, first + 10):
         case = make(seed)
         result = api.check([case.main], case.model.ros_paths, Settings(), case.texts)
@@ -70,7 +71,7 @@ def test_actions_on_damaged_models(first: int) -> None:
 
 @pytest.mark.parametrize("seed", range(100, 110))
 def test_safe_fixes_of_damaged_models(seed: int) -> None:
-    """They bring no error, and once is enough."""
+    """The fixes add no error, and applying them once is enough."""
     case = make(seed)
     result = api.check([case.main], case.model.ros_paths, Settings(), case.texts)
     fixed = {path: data.decode("utf-8") for path, data in api.fix(result).items()}

@@ -123,7 +123,7 @@ def shown(symbols: tuple[DocumentSymbol, ...], indent: str) -> Iterator[str]:
 
 
 def check_spans(symbols: tuple[DocumentSymbol, ...], start: int, end: int) -> None:
-    """Each symbol lies in the one around it, and its name in itself."""
+    """Each symbol is inside its parent, and its name is inside the symbol."""
     for symbol in symbols:
         assert start <= symbol.span.start <= symbol.name_span.start <= symbol.name_span.end <= symbol.span.end <= end
         assert symbol.name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hints and lenses of files that several systems share: said once where the systems agree, else for each of them."""
+"""Hints and lenses of files that several systems share: one for all systems if they agree, otherwise one for each."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The interface definitions of the conformance models are read without a word."""
+"""The interface definitions of the conformance models have no findings."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What definition files mean, and what is said about those with mistakes."""
+"""The meaning of definition files, and the findings in files with errors."""
 
 from __future__ import annotations
 
@@ -486,7 +486,7 @@ def test_mistakes(case: str) -> None:
 
 
 def _expected(lines: list[str], text: str) -> Iterator[tuple[Span, str]]:
-    """The findings that the markers among `lines` announce; a `|` below the first column means the end of the text."""
+    """The findings that the marks among `lines` state. A `|` below the first column means the end of the text."""
     index, line_start = LineIndex(text), 0
     row = 0
     for line in lines:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names -> definitions, or why not."""
+"""Names -> definitions, or the reason why there are none."""
 
 from __future__ import annotations
 

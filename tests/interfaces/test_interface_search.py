@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where definition files are found, in all layouts in which they are met."""
+"""The search for definition files, in all common layouts of workspaces."""
 
 from __future__ import annotations
 

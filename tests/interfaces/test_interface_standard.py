@@ -32,7 +32,7 @@ def shipped() -> Iterator[tuple[str, Kind, str]]:
 
 
 def check(file: Path) -> Definition:
-    """Reads a file that must have no mistake and whose nested types must all be found."""
+    """Read a file that must have no errors, and whose nested types must all exist."""
     package, kind, name = file.parts[-3], file.parts[-2], file.stem
     definition, findings = parse(read(str(file)).text, package, name, kind)  # type: ignore[arg-type]
     assert not findings
@@ -144,7 +144,7 @@ def test_messages_are_those_of_humble_and_later_additions() -> None:
 
 
 def test_defaults() -> None:
-    """rosbags does not know them."""
+    """Defaults, which rosbags does not provide."""
     defaults = {
         f"{package}/{name}.{field.name}": field.default
         for package, kind, name in shipped()

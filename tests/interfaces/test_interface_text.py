@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Any text is answered, and quickly."""
+"""Any text has a result, in a short time."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A package that is there several times: which files there are, and whether they say the same."""
+"""A package that exists several times: its files, and whether they agree."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from roaml.json_syntax import parse
 
 
 def expression(text: str) -> Expression:
-    """The expression that `text`, JSON with `'` for `"`, describes; it must have no mistakes."""
+    """The expression for `text`, which is JSON with `'` for `"` and must have no errors."""
     value, findings = parse(text.replace("'", '"'))
     notes = Notes()
     result = FormulaReader("test.jani", notes).expression(value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Unknown names, and types in words."""
+"""Unknown names, and the names of types in messages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from roaml.json_syntax import parse
 
 
 def test_many_unknown_names() -> None:
-    """Suggestions must not cost a look at all names for each unknown one: nobody would wait for this test."""
+    """Suggestions must not compare each unknown name with all names. If they do, this test takes very long."""
     count = 2000
     places = [{"name": f"location_number_{i}"} for i in range(count)]
     edges = [{"location": f"locaton_number_{i}", "destinations": []} for i in range(count)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Property lists: what is in them, and what they are written as."""
+"""Property lists: reading and writing."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def test_identifiers_in_a_half_typed_file() -> None:
 @settings(suppress_health_check=[HealthCheck.too_slow])
 @given(FORMULAS)
 def test_walking(formula: Formula) -> None:
-    """Every node is visited once, before what is in it."""
+    """Every node is visited once, before its children."""
     nodes = list(walk(formula))
     assert nodes[0] is formula
     assert len(nodes) == 1 + sum(len(children(node)) for node in nodes)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading models: every mistake is reported at its position, and the reader continues.
+"""Reading models: every error is reported at its position, and the reader continues.
 
-In the examples, ⟦ ⟧ enclose what a finding is about, `'` stands for `"`, and each example is put into a small sound
-model at the place that its first word names.
+In the examples, ⟦ ⟧ enclose the place of a finding, `'` stands for `"`, and each example is inserted into a small
+correct model at the place that its first word names.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def model_with(place: str, text: str) -> str:
 
 
 def marked(text: str) -> tuple[str, list[Span]]:
-    """The text without its marks, and what they enclosed."""
+    """The text without its marks, and the marked texts."""
     spans = []
     while "⟦" in text:
         start, end = text.index("⟦"), text.index("⟧")
@@ -442,7 +442,7 @@ UNKNOWN_MEMBERS = [
 
 
 def everything() -> dict[str, Any]:
-    """A model with something at each level."""
+    """A model with every kind of part."""
     bounded = {"kind": "bounded", "base": "int", "lower-bound": 0}
     goal = {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 1}}}
     way = {"location": "l", "assignments": [{"ref": "n", "value": 1}]}
@@ -550,7 +550,7 @@ def test_other_versions() -> None:
 
 
 def test_deep_expressions() -> None:
-    """As deep as JSON may be nested, and no deeper."""
+    """Expressions may be nested as deeply as JSON, and no deeper."""
     depth = MAX_DEPTH - 20
     text = model_with("guard", "{'op': '¬', 'exp': " * depth + "true" + "}" * depth)
     _, findings = read(text)
@@ -582,7 +582,7 @@ SCRAPS = st.sampled_from(
 @settings(suppress_health_check=[HealthCheck.too_slow])
 @given(MODELS, st.data())
 def test_damaged_models(model: object, data: st.DataObject) -> None:
-    """Whatever is cut out of a model or put into it: no exception, and all places in the text."""
+    """Any removed or inserted part of a model: no exception, and all places are in the text."""
     assert isinstance(model, Model)
     text = "".join(write(model))
     for _ in range(data.draw(st.integers(1, 4))):

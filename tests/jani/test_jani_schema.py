@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON Schema of property files says the same as the reader."""
+"""The JSON Schema of property files agrees with the reader."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def places(value: Any) -> Iterator[tuple[Any, Any]]:
 @settings(suppress_health_check=[HealthCheck.too_slow])
 @given(FORMULAS, st.data())
 def test_schema_and_reader_agree(formula: Formula, data: st.DataObject) -> None:
-    """On a random file, and on the same with one thing removed, renamed or replaced."""
+    """On a random file, and on the same file with one part removed, renamed or replaced."""
     document = {"properties": json.loads(write_properties([Property("p", formula)]))}
     damaged = copy.deepcopy(document)
     container, key = data.draw(st.sampled_from(list(places(damaged))))

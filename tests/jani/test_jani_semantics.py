@@ -210,7 +210,7 @@ LOGIC = [BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES]
 
 
 def in_python(node: Expression) -> str:
-    """Python source with the same meaning, for ints and bools."""
+    """Python source with the same meaning, for integers and booleans."""
     match node:
         case Name(identifier):
             return identifier
@@ -312,7 +312,7 @@ def blames_types(node: Expression) -> bool:
 
 
 def has_value_of(node: Expression, type_: Type) -> bool:
-    """Whether `node` has a value of `type_`, or none for a reason that types do not exclude."""
+    """Whether `node` has a value of `type_`, or fails for a reason that types do not exclude."""
     try:
         return is_of(evaluate(node, SCOPE_STATE), type_)
     except EvaluationError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tolerant JSON parser: what it reads, what it says, and that no text at all makes it fail."""
+"""The tolerant JSON parser: its results, its messages, and that it accepts any text."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from roaml.text import Span, apply_edits
 
 
 def plain(value: JsonValue) -> Any:
-    """What `json.loads` would give."""
+    """The result of `json.loads`."""
     match value:
         case JsonObject():
             return {member.key: plain(member.value) for member in value.members if member.value is not None}
@@ -432,7 +432,7 @@ def test_nulls_in_lists_and_elsewhere() -> None:
     ids=lambda text: text[:4],
 )
 def test_long_mistakes(text: str) -> None:
-    """If one of them took quadratic time, nobody would wait for this test."""
+    """If an error took quadratic time, this test would take very long."""
     _, findings = parse(text)
     assert findings
 
@@ -455,7 +455,8 @@ def refuse(text: str) -> Any:
 @example("'")
 @example('{"a" [' + "1 " * 200)
 def test_any_text(text: str) -> None:
-    """Never raises, keeps all spans in the text, and finds fault with exactly what is not JSON."""
+    """The parser never raises, keeps all spans in the text, and reports findings exactly for texts that are not
+    JSON."""
     value, findings = parse(text)
     places = [*spans(value), *(finding.span for finding in findings)]
     places += [edit.span for finding in findings for fix in finding.fixes for edit in fix.edits]

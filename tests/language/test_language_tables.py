@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tables of the languages say what an independent reader, xmlschema, finds in the same schemas."""
+"""The tables of the languages are equal to the content of the schemas that an independent reader, xmlschema, finds."""
 
 from __future__ import annotations
 
@@ -155,7 +155,8 @@ def test_everything_is_documented(grammar: Grammar) -> None:
 
 VALUE_TYPES = {"", "bool", "int", "any", "msg", "srv", "action"}
 ELSEWHERE = {SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION, SymbolKind.FIELD, SymbolKind.PLUGIN}
-"""Symbols that no attribute of a language defines: names in the ROS graph, fields of its types, machines as plugins."""
+"""Kinds of symbols that no attribute of a language defines: names in the ROS graph, fields of its types, machines as
+plugins."""
 
 
 def test_roles_are_those_that_tools_know() -> None:
@@ -183,7 +184,7 @@ PLAIN = {
         *(f"{port}@{name}" for port in ("input_port", "output_port", "inout_port") for name in PORT_MODEL),
     },
 }
-"""Attributes in which a tool has nothing to look up. What is new here is either plain too or lacks its role."""
+"""Attributes with values that denote no symbol. A new attribute belongs to this list, or needs a role."""
 
 
 @pytest.mark.parametrize("grammar", [g for g in GRAMMARS if g is not PLAIN_SCXML], ids=lambda grammar: grammar.schema)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where documents do not follow their grammar: every kind of violation, at its place."""
+"""Violations of the grammar: every kind, at its place."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def test_no_violations(grammar: Grammar, text: str) -> None:
 
 
 def test_violations_of_the_schema_alone_are_reported() -> None:
-    """The tables know nothing of the order of elements; libxml2 does, and xmlschema says what is wrong."""
+    """The tables do not contain the order of elements. libxml2 detects the violation, and xmlschema explains it."""
     document = parse(STATE.format("<onentry><if cond='a'><else/><elseif cond='b'/></if></onentry>"))
     (violation,) = validate(document, HL_SCXML)
     assert isinstance(violation, SchemaViolation)
@@ -223,8 +223,7 @@ VALUES = st.sampled_from(NUMBERS + WORDS)
 
 @given(st.sampled_from(ATTRIBUTES), VALUES)
 def test_tables_and_schema_agree_on_values(case: tuple[Grammar, str, AttributeType], value: str) -> None:
-    """What the tables accept libxml2 accepts, and the other way round. But a model has no use for the numbers NaN and
-    INF that XML Schema knows."""
+    """The tables and libxml2 accept the same values, except NaN and INF, which XML Schema allows and models do not."""
     grammar, name, attribute = case
     assume(attribute.simple.base != "double" or value not in ("NaN", "INF"))
     grammar.validator.validate(etree.Element(name, {attribute.name: value}))
@@ -235,7 +234,7 @@ def test_tables_and_schema_agree_on_values(case: tuple[Grammar, str, AttributeTy
 
 @st.composite
 def documents(draw: st.DrawFn) -> tuple[Grammar, str]:
-    """A document of elements and attributes of one language, rightly placed or not."""
+    """Documents of elements and attributes of one language, at correct or wrong places."""
     grammar = draw(st.sampled_from(GRAMMARS))
     return grammar, element(draw, grammar, draw(st.sampled_from(grammar.roots)), 0)
 

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The closed vocabularies of `roaml.roles` are those of the schemas."""
+"""The enumerations of `roaml.roles` are those of the schemas."""
 
 from __future__ import annotations
 
 from lxml import etree
 
+from roaml.language import SYSTEM
 from roaml.language.resources import schema_path
+from roaml.model.system_file import SystemSection
 from roaml.roles import ELSEWHERE, Direction, NodeKind, ProtocolPart, RoleValue, SymbolKind, ValueRole
 
 SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd", "properties.xsd")
@@ -40,3 +42,8 @@ def test_ports_nodes_and_values() -> None:
     assert written("port@direction") == values(*Direction) - values(Direction.INOUT)
     assert written("node@kind") == values(*NodeKind)
     assert written("value@is") == values(*ValueRole)
+
+
+def test_sections_of_system_files() -> None:
+    sections = {element.name for element in SYSTEM.elements.values() if "input" in element.children}
+    assert sections == {section.value for section in SystemSection}

@@ -25,7 +25,7 @@ MODELS = [path for path in MODELS if path.name != "package.xml"]
 
 
 def is_valid(schema: Path, text: bytes) -> bool:
-    """What `xmllint --schema` says, or where that is not installed, the library that it is made of."""
+    """The result of `xmllint --schema` or, if it is not installed, of libxml2."""
     if shutil.which("xmllint"):
         command = ["xmllint", "--noout", "--nonet", "--schema", str(schema), "-"]
         return subprocess.run(command, input=text, capture_output=True, check=False).returncode == 0

@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcRequestCancelled
 
 import clock
 from as2fm_lsp.cli.main import run
-from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES
+from as2fm_lsp.handlers.results import COUNTEREXAMPLE, PROPERTIES, TRACE_STATE
 from as2fm_lsp.handlers.results import VERIFY as COMMAND
 from stuck_models import hospital
 
@@ -200,6 +200,7 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert found["expected"] == "≥ 0.95"
     assert found["heading"].startswith(f"{PLACED} failed in trace {found['trace']} after ")
     steps = found["steps"]
+    assert f"; {len(steps)} turns matter" in found["heading"]
     numbers = [step["step"] for step in steps]
     assert numbers == sorted(numbers)
     arm = (robot / "arm.ascxml").as_uri()
@@ -211,6 +212,28 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert "/still" in nodes
     assert {each["kind"] for step in steps for each in step["highlights"]} == {"machine", "tree"}
     assert all(step["time"].endswith(" s") for step in steps if step["who"])
+
+
+async def test_the_whole_state_at_a_step_of_a_counterexample(robot: Path) -> None:
+    main = robot / "main_with_bug.xml"
+    async with connect(robot) as client:
+        await verify(client, main, [PLACED], {**QUICK, "expectations": {PLACED: ">= 0.95"}})
+        found = await why(client, main, PLACED)
+        drop = next(step for step in found["steps"] if "holding: true → false" in step["details"])
+        params = {"textDocument": {"uri": main.as_uri()}, "property": PLACED, "trace": found["trace"]}
+        steps = {"step": drop["lastStep"], "earlier": drop["step"] - 1}
+        groups = {group["name"]: group for group in await ask(client, TRACE_STATE, {**params, **steps})}
+        same = {"step": drop["step"], "earlier": drop["step"]}
+        unchanged = await ask(client, TRACE_STATE, {**params, **same})
+        beyond = await ask(client, TRACE_STATE, {**params, "step": 1 << 40, "earlier": 0})
+    arm = groups["Arm"]
+    assert (arm["value"], arm["hasChanged"], arm["before"]) == ("moving", True, None)
+    holding = next(row for row in arm["rows"] if row["name"] == "holding")
+    assert (holding["value"], holding["before"], holding["hasChanged"]) == ("false", "true", True)
+    assert not groups["PickUp (bt_1003)"]["hasChanged"]
+    assert {"Tree", "Messages", "Time"} <= groups.keys()
+    assert not any(group["hasChanged"] for group in unchanged)
+    assert beyond
 
 
 async def test_tree_nodes_are_lit(tmp_path: Path) -> None:

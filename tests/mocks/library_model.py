@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""BehaviorTree.CPP 4.10 and Nav2 a second time, as classes that call each other.
+"""A second implementation of BehaviorTree.CPP 4.10 and Nav2, as classes that call each other.
 
-Written from the facts about the libraries alone, without the programs in `roaml.lower.programs`. Leaves take their
-outcomes from lists, so that a run can be repeated with what chance has decided elsewhere.
+It is written from facts about the libraries, independently of the programs in `roaml.lower.programs`. Leaves take their
+outcomes from lists, so a run can be repeated with the random outcomes of another run.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ class LibraryError(Exception):
 
 
 class OutOfOutcomesError(Exception):
-    """The run goes on where the recorded one has ended."""
+    """The run continues after the end of the recorded one."""
 
 
 class World:
-    """What all nodes of a tree share.
+    """The state that all nodes of a tree share.
 
     Attributes:
         calls: leaf and answer for each call of a leaf, and ("halt", leaf).
-        outcomes: leaf -> what chance decides for it, in order.
+        outcomes: leaf -> its random outcomes, in order.
         writes: entry -> how often it was written.
         happens: whether events of the world that Nav2's nodes ask about always occur, or never.
     """

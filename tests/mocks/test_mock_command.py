@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify TREE.xml --mock …`: what it answers, and what it rejects."""
+"""`as2fm-lsp verify TREE.xml --mock …`: its results, and input that it rejects."""
 
 from __future__ import annotations
 

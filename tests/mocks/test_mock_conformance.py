@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every tree of Nav2 verifies with mocks from one command."""
+"""Every tree of Nav2 can be verified with mocks by one command."""
 
 from __future__ import annotations
 

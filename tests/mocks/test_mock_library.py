@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Translated trees behave like the libraries, tick by exact tick: `library_model` says each node a second time."""
+"""Translated trees behave like the libraries in each tick. `library_model` is a second implementation of each node."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_random_trees_do_what_the_libraries_do(drawn: Drawn, seed: int, happens:
 
 @pytest.mark.parametrize("name", sorted(NODES))
 def test_each_node_does_what_the_library_does(name: str) -> None:
-    """With children whose answers are random."""
+    """Each node with children whose answers are random."""
     count = 1 if name in DECORATED else COUNTS.get(name, (3, 3))[1]
     leaves = [Drawn(f"Act{number % 4}") for number in range(count)]
     for number in range(max(2, *map(len, NODES[name].values()), 2)):
@@ -45,7 +45,7 @@ def test_every_node_with_children_has_a_program() -> None:
 
 
 def test_an_entry_that_is_only_observed() -> None:
-    """Nothing reads the value of the entry; that it was written is seen."""
+    """The value of the entry is never read, but a node depends on whether it was written."""
     write = Drawn("SetBlackboard", (("value", "{x}"), ("output_key", "y")))
     asked = Drawn("WasEntryUpdated", (("entry", "{y}"),))
     tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, write, Drawn("Check"))),))

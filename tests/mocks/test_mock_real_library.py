@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""BehaviorTree.CPP itself judges: the translation and the library (4.8, by `behaviortreepy`) call the same leaves in
-the same order, and their roots answer the same, for random trees without clocks.
+"""Comparison with BehaviorTree.CPP itself: the translation and the library (4.8, by `behaviortreepy`) call the same
+leaves in the same order, and their roots return the same status, for random trees without clocks.
 
-There are wheels of `behaviortreepy` for some platforms only. Without it, this file says so and has no test.
+There are wheels of `behaviortreepy` for some platforms only. Without it, this file reports this and has no test.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ TREES = trees(Kinds(without(CONTROLS, NEWER), without(DECORATORS, NEWER), LEAVES
 
 
 class Host:
-    """A program that runs a tree with the library. Leaves take what chance has decided from lists."""
+    """A program that runs a tree with the library. Leaves take their random outcomes from lists."""
 
     def __init__(self, library: Any, text: str, outcomes: dict[str, list[str]]) -> None:
         self.library, self.outcomes = library, outcomes

@@ -37,7 +37,7 @@ def test_a_plugin_behind_conditions() -> None:
 @settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
 @given(trees(ANY))
 def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
-    """Automata of equal shape are built once; each node still gets what its own automaton answers."""
+    """Automata with the same structure are built once. Each node still gets the answers of its own automaton."""
     tree = Drawn("Sequence", (("_onHalted", "k := k"),), (drawn, drawn))
     analysis = api.check([f"{FOLDER}/main.xml"], texts=files(tree, TICKS)).snapshot.analysis
     library = analysis.library_tree(f"{FOLDER}/main.xml")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of translated trees, as what an observer of the leaves and of the root sees."""
+"""Runs of translated trees, as observations of the leaves and of the root."""
 
 from __future__ import annotations
 
@@ -28,11 +28,13 @@ _EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")
 
 @dataclass
 class Observed:
-    """Attributes:
-    answers: of the root, for each tick.
-    calls: leaf and answer for each call of a leaf of the program, and (leaf, "halt").
-    outcomes: leaf -> what chance has decided.
-    is_stuck: whether the last tick has no answer.
+    """The observations of a run.
+
+    Attributes:
+        answers: the answers of the root, one for each tick.
+        calls: leaf and answer for each call of a leaf of the program, and (leaf, "halt").
+        outcomes: leaf -> its random outcomes.
+        is_stuck: whether the last tick has no answer.
     """
 
     answers: list[str]

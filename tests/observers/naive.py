@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a property says about a whole trace, evaluated as the tables of docs/spec/xml-properties.md put it: slowly, over
-the whole sequence of letters, and without a look at `roaml.observers.program`."""
+"""The verdict of a property on a whole trace, as the tables of docs/spec/xml-properties.md define it. It is evaluated
+slowly, over the whole sequence of letters, and independently of `roaml.observers.program`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ class Letter:
 
 @dataclass(frozen=True)
 class Stretch:
-    """`judged`: whether anything is asked of it; `closed`: whether it ends before the trace does."""
+    """A stretch of a trace. `judged` is whether the property is evaluated in it; `closed` whether it ends before the
+    trace does."""
 
     letters: tuple[Letter, ...]
     closed: bool
@@ -47,7 +48,7 @@ BROKEN, KEPT = "broken", "kept"
 
 @dataclass(frozen=True)
 class Owed:
-    """Something is still to come, until the deadline."""
+    """An event that is still required, until the deadline."""
 
     deadline: int | None
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Traces with their verdicts, for every pattern in every scope, with and without time, and every kind of end.
 
-A line is a property, a trace (`drawn` says how to read it) and the verdict. All of them are read a second time by the
-naive evaluation.
+A line contains a property, a trace (see `drawn`) and the verdict. The naive evaluation checks each of them as well.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Observers in the translation: the verdicts of traces against the naive evaluation of the events in these traces.
+"""Observers in the translation: the verdicts of traces are compared with the naive evaluation of their events.
 
-The events are read off the steps of the trace: no observer and no variable of one is looked at.
+The events are read from the steps of the trace, without any observer or its variables.
 """
 
 from __future__ import annotations
@@ -247,7 +247,7 @@ def events(checker, trace: int) -> tuple[list[tuple[int, str, dict]], End]:  # t
 
 
 def letters(rows, written: dict[str, str]) -> Iterator[naive.Letter]:  # type: ignore[no-untyped-def]
-    """What the property sees: the start, the events of its ports, and the steps of the clock."""
+    """The letters of the property: the start, the events of its ports, and the steps of the clock."""
     used = {name for text in written.values() for name in CONDITIONS[text][0].split()}
     heard = {event for event, names in PORT_OF.items() if used & set(names)}
 
@@ -309,7 +309,7 @@ def test_each_pattern_in_each_scope(pattern: Pattern, scope: ScopeKind) -> None:
 
 
 def test_the_traces_distinguish_properties() -> None:
-    """The cases above have verdicts of all kinds, so a wrong one would show."""
+    """The cases above have verdicts of all kinds, so a wrong verdict would be detected."""
     property_ = PatternProperty(Pattern.RESPONSE, ScopeKind.GLOBALLY, Window(0, 2))
     written = {LEFT: "measured", RIGHT: "alarm"}
     checker, _ = target(as_xml(property_, written), 2000)

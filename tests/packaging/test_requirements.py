@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the VS Code extension installs beside the server: its dependencies, each pinned with its hashes."""
+"""The packages that the VS Code extension installs in addition to the server: its dependencies, each pinned with its
+hashes."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ def test_all_are_pinned_with_hashes() -> None:
 
 
 def test_they_are_those_of_the_server() -> None:
-    """`npm run requirements` renews the file when this fails."""
+    """If this test fails, `npm run requirements` renews the file."""
     pinned_requirements = pinned()
     for written in PROJECT["project"]["dependencies"]:
         dependency = Requirement(written)

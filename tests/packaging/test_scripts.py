@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scripts that set a checkout up and run its tests: what they say when something is missing or fails."""
+"""The scripts that set up a checkout and run its tests: their messages when a tool is missing or fails."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def run(path: Path, *arguments: str, environment: Mapping[str, str]) -> subproce
 
 @pytest.fixture
 def tools(tmp_path: Path) -> Path:
-    """A folder for `PATH` with what scripts use, but no Python."""
+    """A folder for `PATH` with the tools that scripts use, but no Python."""
     folder = tmp_path / "bin"
     folder.mkdir()
     for name in TOOLS:
@@ -44,7 +44,7 @@ def tools(tmp_path: Path) -> Path:
 
 
 def fake_python(version: str) -> str:
-    """A Python as far as the script asks."""
+    """A program that behaves like Python for the scripts."""
     major, minor, _ = version.split(".")
     return (
         f'case "$2" in *sys.exit*) exit {int((int(major), int(minor)) < (3, 10))};; *print*) echo {version};; '
@@ -93,7 +93,7 @@ REPORT = """<testsuites><testsuite><testcase classname="tests.cli.test_a" name="
 
 @pytest.fixture
 def tree(tmp_path: Path, tools: Path) -> Path:
-    """A checkout whose tools do nothing."""
+    """A checkout with tools that do nothing."""
     folder = tmp_path / "tree"
     (folder / "tests").mkdir(parents=True)
     for name in ("run", "failed.py"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel is complete: what it carries checks a model without the checkout around."""
+"""The wheel is complete: its content checks a model without the checkout."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def build(tmp_path: Path, c_code: Path) -> Path:
 
 
 def hasty_compiler(path: Path) -> Path:
-    """The compiler of this Python, which takes less time for faster code than it is told to."""
+    """The compiler of this Python with less optimisation, which takes less time."""
     path.write_text(f'#!/bin/sh\nexec {sysconfig.get_config_var("CC")} "$@" -O0\n')
     path.chmod(0o755)
     return path
@@ -84,7 +84,7 @@ IS_COMPILED = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.kerne
 
 
 def verified(installed: Path) -> str:
-    """What is found out about a property, without the time that it took."""
+    """The results of a verification, without their durations."""
     example = installed / "as2fm_lsp/templates/delivery_robot/main.xml"
     options = ("--property", "never_empty", "--method", "fixed", "--max-traces", "2")
     said = run(sys.executable, "-I", "-c", VERIFY, str(installed), "verify", str(example), *options, cwd=installed)
@@ -92,13 +92,13 @@ def verified(installed: Path) -> str:
 
 
 def kernels(installed: Path) -> list[str]:
-    """The files of the modules that are compiled where that is possible."""
+    """The files of the modules that are compiled if possible."""
     patterns = ("smc/kernel.*", *(f"explicit/{module}.*" for module in MODULES))
     return sorted(path.name for pattern in patterns for path in (installed / "roaml").glob(pattern))
 
 
 def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The kernel of the model checker is there as Python, and verifies."""
+    """The wheel contains the kernel as Python, which verifies."""
     monkeypatch.setenv("CC", "false")
     installed = build(tmp_path, c_code)
     assert kernels(installed) == PLAIN
@@ -106,7 +106,7 @@ def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, monkeypatch: pyt
 
 
 def test_wheel_for_every_platform(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It carries the kernel as Python and as C, which can be compiled where it is installed."""
+    """The wheel contains the kernel as Python and as C, which can be compiled after the installation."""
     monkeypatch.setenv("AS2FM_PURE_PYTHON", "1")
     installed = build(tmp_path, c_code)
     assert list(tmp_path.glob("*-py3-none-any.whl"))

@@ -53,7 +53,7 @@ def test_fixes(case: Case, mending: ModuleType, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", sorted(CASES_FOLDER.glob("*/*.txt")), ids=lambda path: path.stem)
 def test_place_of_the_cases(path: Path) -> None:
-    """A file of cases is named after a rule and is in the folder of its group, or is about all rules."""
+    """A file of cases has the name of a rule and is in the folder of its group, or is in `one_report`."""
     group = path.parent.name
     is_of_rule = (RULES_FOLDER / group / f"{path.stem.replace('-', '_')}.md").is_file()
     assert is_of_rule is (group != "one_report")

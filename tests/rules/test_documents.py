@@ -33,7 +33,7 @@ WITHOUT_EXAMPLE = {
     "schema-violation",
 }
 CAUSES = {"not-checked": "unknown-element"}
-"""The mistakes that examples show besides, because a rule only says what follows from them."""
+"""Other findings in examples, of rules that only report consequences of other errors."""
 
 WITH_EXAMPLE = [code for code in documents() if code not in WITHOUT_EXAMPLE]
 

@@ -95,7 +95,7 @@ def test_statements(text: str, count: int) -> None:
         ("a = = 3", "=", "`=` needs the name of an entry"),
         ("1 := 3", ":=", "`:=` needs the name of an entry"),
         ("a + b := 3", ":=", "`:=` needs the name of an entry"),
-        ("a % 2", "%", "not support the remainder"),
+        ("a % 2", "%", "not support remainders"),
         ("a++", "++", "write `+= 1`"),
         ("a === b", "===", "write `==`"),
         ("a << 2", "<<", "not support shifts"),

@@ -67,7 +67,7 @@ def test_choices_that_do_not_matter() -> None:
     )
     assert choices.agreement.startswith("all ")
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.found) == (pytest.approx(0.25), EXPLORATION)
+    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), EXPLORATION)
     assert choices.maximum is not None
     assert choices.maximum.value == pytest.approx(0.25)
 
@@ -87,11 +87,11 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     choices = looked_at(starving(6000))
     assert choices.differ
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.found) == (0, SAMPLING)
+    assert (choices.minimum.value, choices.minimum.method) == (0, SAMPLING)
     assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert choices.minimum.bounds.upper < 0.2
     assert choices.maximum is not None
-    assert (choices.maximum.value, choices.maximum.found) == (1, UNIFORM)
+    assert (choices.maximum.value, choices.maximum.method) == (1, UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:
@@ -119,7 +119,7 @@ def test_described() -> None:
         "sampled scheduler 2, which lets `two` act only where nothing else can act"
     )
     assert described(FAVOUR | 1, names) == "sampled scheduler 1, which lets `one` act wherever it can"
-    some = candidates(2, each=1, memoryless=2, memory=2)
+    some = candidates(2, per_automaton=1, memoryless=2, memory=2)
     assert len(set(some)) == len(some) == 2 + 4 + 2
 
 

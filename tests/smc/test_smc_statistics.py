@@ -15,7 +15,7 @@ import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml.smc.run import FIRST_BATCH, GROWTH, LARGEST_BATCH, PEEKING
+from roaml.smc.run import BATCH_GROWTH, FIRST_BATCH_TRACES, MAX_BATCH_TRACES, STOPPING_ERROR_SHARE
 from roaml.smc.statistics import (
     Bounds,
     Mean,
@@ -137,7 +137,7 @@ def test_coverage_of_intervals(p: float, confidence: float) -> None:
 @cache
 def stop(n: int, k: int, confidence: float, epsilon: float) -> tuple[float, float] | None:
     """The interval if sampling stops here."""
-    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * PEEKING)
+    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
     return bounds if bounds.half_width <= epsilon else None
 
 
@@ -160,7 +160,7 @@ def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
     open_: dict[int, float] = {0: 1.0}
     done, covered = 0, 0.0
     while open_:
-        size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
+        size = max(FIRST_BATCH_TRACES, min(MAX_BATCH_TRACES, int(done * BATCH_GROWTH)))
         done += size
         after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
@@ -180,7 +180,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
     open_: dict[int, float] = {0: 1.0}
     done, covered = 0, 0.0
     while open_:
-        size = min(FIRST_BATCH, most - done)
+        size = min(FIRST_BATCH_TRACES, most - done)
         done += size
         after, open_ = added(open_, size, p), {}
         for k, weight in after.items():
@@ -188,7 +188,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
             if interval is None and done < most:
                 open_[k] = weight
                 continue
-            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * PEEKING)
+            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
             covered += weight if lower <= p <= upper else 0.0
     assert covered >= confidence
 

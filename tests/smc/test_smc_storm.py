@@ -251,6 +251,6 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
     with Pool() as pool:
         state = Search()
         checker.search(checker.asked[0], Options(epsilon=0.02), pool, state)
-    share = {side: tally.successes / tally.traces for side, (_, tally) in state.found.items()}
+    share = {side: tally.successes / tally.traces for side, (_, tally) in state.selected.items()}
     assert share[GREATEST] == pytest.approx(expected.greatest, abs=0.03)
     assert share[LEAST] == pytest.approx(expected.least, abs=0.03)

@@ -9,12 +9,12 @@ import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 const XML_EXTENSION = `
 const vscode = require("vscode");
 exports.activate = () => {
-    const found = vscode.languages.createDiagnosticCollection("xml");
+    const diagnostics = vscode.languages.createDiagnosticCollection("xml");
     const look = (document) => {
         if (document.languageId !== "xml") return;
         const bad = document.getText().includes("<ill");
         const range = new vscode.Range(0, 0, 0, 1);
-        found.set(document.uri, bad ? [new vscode.Diagnostic(range, "XML extension: not well-formed")] : []);
+        diagnostics.set(document.uri, bad ? [new vscode.Diagnostic(range, "XML extension: not well-formed")] : []);
     };
     vscode.workspace.textDocuments.forEach(look);
     vscode.workspace.onDidOpenTextDocument(look);
@@ -64,7 +64,7 @@ export function compatibility(stage: Stage): void {
         await window.page.locator(".markers-panel", { hasText: "No problems" }).waitFor();
         assert.equal(await window.statusItem("AS2FM").count(), 0);
         await window.screenshot("left-alone");
-        // Until something is opened that is ours.
+        // The server is started when a supported file is opened.
         write(path.join(window.folder, "battery.ascxml"), "<ascxml />");
         await window.page.locator(".explorer-folders-view .monaco-list-row", { hasText: "battery.ascxml" }).dblclick();
         await window.running();
@@ -80,7 +80,7 @@ export function compatibility(stage: Stage): void {
             await window.run("View: Focus Problems");
             const rows = window.page.locator(".markers-panel .monaco-list-row");
             await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
-            // What the model lacks is still said, by us alone.
+            // Errors in the model are still reported, only by this extension.
             await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
             await window.screenshot("harmony");
             assert.equal(await rows.filter({ hasText: "xml-syntax" }).count(), 0);
@@ -108,7 +108,7 @@ export function compatibility(stage: Stage): void {
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
         await window.notification("from the Python environment").waitFor();
-        // It is then asked, and names another.
+        // The Python extension now reports its interpreter, which is another one.
         write(path.join(window.folder, ".python"), "");
         fs.rmSync(starts);
         await window.statusItem("AS2FM: 0.1.0").and(window.page.locator('[aria-label*="own environment"]')).waitFor();

@@ -150,7 +150,7 @@ export function editing(stage: Stage): void {
             await window.page.locator('.tab.active[data-resource-name="my_node.ascxml"]').waitFor();
             const text = fs.readFileSync(path.join(window.folder, "nodes/my_node.ascxml"), "utf8");
             assert.match(text, /<ascxml name="MyNode"/);
-            // A file of no system is checked by itself: its outline tells that the server has seen it.
+            // A file that belongs to no system is checked by itself. Its outline shows that the server has read it.
             await window.run("Go to Symbol in Editor");
             await window.page.locator(".quick-input-list", { hasText: "waiting" }).waitFor();
             assert.equal(await window.squiggles.count(), 0);

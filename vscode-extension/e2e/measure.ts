@@ -13,10 +13,10 @@ const TIMES = 7;
 const SHOWS_AT_ONCE = `
 const vscode = require("vscode");
 exports.activate = (context) => {
-    const found = vscode.languages.createDiagnosticCollection("probe");
+    const diagnostics = vscode.languages.createDiagnosticCollection("probe");
     const file = vscode.Uri.joinPath(vscode.workspace.workspaceFolders[0].uri, "main.xml");
-    found.set(file, [new vscode.Diagnostic(new vscode.Range(0, 0, 0, 1), "here")]);
-    context.subscriptions.push(found);
+    diagnostics.set(file, [new vscode.Diagnostic(new vscode.Range(0, 0, 0, 1), "here")]);
+    context.subscriptions.push(diagnostics);
 };
 `;
 

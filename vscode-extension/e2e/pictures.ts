@@ -29,7 +29,7 @@ export function pictures(stage: Stage): void {
             await window.screenshot("machine");
             await window.goBehind("nodes/battery.ascxml", "Math.max(");
             await picture.locator(".edge.here").first().waitFor();
-            // Another machine is drawn as soon as it is looked at, and edits show before they are saved.
+            // Another machine is drawn when its editor becomes active. Edits are shown before they are saved.
             await window.openFile("building.ascxml");
             await picture.locator('.node[data-label="open"]').waitFor();
             assert.equal(await picture.locator(".scene .edge.is-chance").count(), 2);

@@ -29,7 +29,7 @@ export function restricted(stage: Stage): void {
         await window.statusItem("Restricted Mode").waitFor();
         assert.ok(!fs.existsSync(path.join(window.folder, "started")));
         const offered = await window.commands("AS2FM: ");
-        const has = (title: string) => offered.some((each) => each.startsWith(`AS2FM: ${title}`));
+        const has = (title: string) => offered.some((action) => action.startsWith(`AS2FM: ${title}`));
         assert.ok(has("Show State Machine"));
         assert.ok(!has("Translate to JANI"));
         assert.ok(!has("Migrate"));
@@ -59,7 +59,7 @@ export function restricted(stage: Stage): void {
         await window.page.getByRole("button", { name: "Yes, I trust the authors" }).click();
         await window.openFile("battery.ascxml");
         await window.until(() => fs.existsSync(path.join(window.folder, "started")));
-        // It is no language server; that is said, with what to do.
+        // The program is not a language server. A message states this, and what to do.
         await window.notification("did not start").waitFor();
     });
 }

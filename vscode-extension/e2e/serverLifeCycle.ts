@@ -17,7 +17,7 @@ export function serverLifeCycle(stage: Stage): void {
         await window.screenshot("restarted");
         const [after] = servers(stage.workbench.home);
         assert.ok(after !== undefined && after !== before);
-        // It knows the open documents again.
+        // The new server has the open documents.
         await mend(window);
     });
 

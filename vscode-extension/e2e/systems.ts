@@ -31,7 +31,7 @@ export function systems(stage: Stage): void {
             const text = fs.readFileSync(path.join(window.folder, "main.jani"), "utf8");
             assert.ok((JSON.parse(text) as { automata: unknown[] }).automata.length > 5);
             assert.equal(text.trim().split("\n").length, 1);
-            // Laid out and coloured: keys are not what numbers are.
+            // The view is formatted and colored: keys and numbers have different colors.
             const line = window.page.locator(".view-line", { hasText: '"jani-version": 1' });
             await line.waitFor();
             const shades = () => line.locator("span span").count();
@@ -136,7 +136,7 @@ export function systems(stage: Stage): void {
     stage.test("operators of JANI are not marked as ambiguous characters", unusual, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
-        // The Greek letter, which does look like a Latin one, shows that VS Code has looked.
+        // VS Code marks the Greek letter, which looks like a Latin one. So it has checked the text.
         const boxes = window.page.locator(".view-overlays .unicode-highlight, .view-lines .unicode-highlight");
         await boxes.first().waitFor();
         await window.screenshot("unicode");
@@ -159,7 +159,7 @@ export function systems(stage: Stage): void {
             await window.goBehind("nodes/battery.ascxml", "Math.max(level - 1");
             await window.type("5");
             await plain.locator(".view-line", { hasText: "Math.max(level - 150, 0)" }).waitFor();
-            // The other way round: a click in the plain form goes to the source.
+            // In the other direction, a click in the plain form moves to the source.
             await plain.locator(".view-line", { hasText: '<data id="docked"' }).click();
             await window.until(async () => (await window.caretLine(0)).includes('<data id="docked"'));
         },
@@ -171,7 +171,7 @@ export function systems(stage: Stage): void {
         await window.run("AS2FM: Check Workspace");
         await window.page.locator(".xterm-rows", { hasText: "9 files checked: 1 error" }).waitFor();
         await window.screenshot("task");
-        // Editor and task find the same, and it is shown once.
+        // The editor and the task find the same problem, and it is shown once.
         await window.run("View: Focus Problems");
         const rows = window.page.locator(".markers-panel .monaco-list-row", { hasText: "there is no variable" });
         await rows.first().waitFor();

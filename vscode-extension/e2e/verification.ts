@@ -28,7 +28,7 @@ export function verification(stage: Stage): void {
         const [delivered, empty] = [row(window, "all_delivered"), row(window, "never_empty")];
         await delivered.hover();
         await delivered.getByRole("button", { name: "Run Test" }).click();
-        // Nothing is expected of it: it is neither green nor red.
+        // Nothing is expected of the property, so the test is neither green nor red.
         await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
         await delivered.filter({ hasText: /1 \[0\.9\d+, 1\], no expectation set/ }).waitFor();
         await icon(empty, "unset").waitFor();
@@ -36,7 +36,7 @@ export function verification(stage: Stage): void {
         await icon(empty, "failed").waitFor({ timeout: TIMEOUT_MS });
         await empty.filter({ hasText: /0 \[0, 0\.0\d*\]/ }).waitFor();
         await icon(row(window, "main.xml"), "failed").waitFor();
-        // What was expected, and the way to a trace in which it is not so.
+        // The message contains the expectation, and a link to a trace that contradicts it.
         await window.page.locator(".test-output-peek-tree .monaco-list-row", { hasText: "never_empty" }).click();
         await window.page.locator(".composite.panel", { hasText: /\], expected ≥ 0\.9/ }).waitFor();
         const link = window.page.getByRole("link", { name: "Show Counterexample" });
@@ -44,7 +44,7 @@ export function verification(stage: Stage): void {
         await window.screenshot("test-explorer");
         await link.click();
         await window.page.locator(".panel .message", { hasText: "never_empty failed in trace" }).waitFor();
-        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+        await selected(window).waitFor();
     });
 
     stage.test("a counterexample leads to its lines and is highlighted in diagrams", late, async (window) => {
@@ -55,13 +55,27 @@ export function verification(stage: Stage): void {
         await window.openFile("properties.jani");
         await lens(window, "Verify").nth(1).click();
         await lens(window, "Show counterexample").click({ timeout: TIMEOUT_MS });
-        await step(window, "Battery: receives").and(window.page.locator(".selected")).waitFor();
+        // It opens at its end, with what has changed there; the turns lead to it.
+        await window.page.locator(".panel .message", { hasText: /; \d+ turns matter/ }).waitFor();
+        await selected(window).last().waitFor();
+        await window.screenshot("counterexample-end");
+        await state(window, "was").first().waitFor();
+        const end = await selected(window).textContent();
+        await window.page.locator(".panel").getByRole("button", { name: "Previous Step" }).click();
+        await selected(window)
+            .filter({ hasNotText: end ?? "" })
+            .waitFor();
+        await window.page.locator(".panel").getByRole("button", { name: "Next Step" }).click();
+        await selected(window)
+            .filter({ hasText: end ?? "" })
+            .waitFor();
         await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
+        await state(window, "battery").filter({ hasText: "40  ← was 100" }).first().waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
         await window.statusItem("Ln 18, Col 9").waitFor();
         await tree.locator('.node.highlighted[data-label="BatteryAbove"]').waitFor();
         await window.screenshot("counterexample");
-        // What has come of it stands below the step.
+        // The effects of the step are below it.
         await step(window, "battery: 100 → 40").waitFor();
         await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
         await step(window, "ReactiveFallback (bt_1001): answers SUCCESS").first().click();
@@ -72,7 +86,7 @@ export function verification(stage: Stage): void {
         await window.page.locator(".tab", { hasText: "Behavior Tree: " }).locator(".codicon-close").click();
         await button(window, "Show Behavior Tree").click();
         await (await window.picture()).locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
-        // The machine that takes the step is drawn, in the state that it is then in.
+        // The machine that takes the step is drawn, with its state after the step.
         await window.openFile("building.ascxml");
         await button(window, "Show State Machine").click();
         const machine = await window.picture('.node[data-label="open"]');
@@ -112,7 +126,7 @@ export function verification(stage: Stage): void {
         await lens(window, "Verify").nth(1).click();
         await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor({ timeout: TIMEOUT_MS });
         await lens(window, "Show counterexample").waitFor();
-        // By then the test has failed; VS Code would have written its message behind the line.
+        // At this time the test has failed. VS Code would have written its message behind the line.
         await window.page.locator(".testing-run-glyph.codicon-testing-failed-icon").first().waitFor();
         await window.screenshot("failed-property");
         const titles = await window.page.locator(".codelens-decoration a").allTextContents();
@@ -140,7 +154,7 @@ export function verification(stage: Stage): void {
         const delivered = row(window, "all_delivered");
         await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
         await lens(window, "Set expectation").click();
-        // Some scheduler never delivers, so the result meets no expectation that could be suggested.
+        // Under some scheduler the property does not hold, so no expectation is suggested.
         await window.page.locator(".quick-input-title", { hasText: "all_delivered" }).waitFor();
         await window.press("Enter");
         await hint(window, "all_delivered", "✗\\s1\\s\\[.*not\\s≥\\s0\\.95").waitFor();
@@ -148,7 +162,7 @@ export function verification(stage: Stage): void {
         await window.screenshot("expectation-set");
         await window.openFile("as2fm.toml");
         await window.page.locator(".view-line", { hasText: /all_delivered\s=\s">=\s0\.95"/ }).waitFor();
-        // A witness is one click away.
+        // A click shows a witness.
         await window.openFile("properties.jani");
         await lens(window, "Show witness").first().click();
         await window.page.locator(".panel .message", { hasText: "all_delivered passed in trace" }).waitFor();
@@ -201,5 +215,20 @@ function icon(row: Locator, state: "passed" | "failed" | "skipped" | "unset"): L
 
 /** A row of the counterexample. */
 function step(window: Window, text: string | RegExp): Locator {
-    return window.page.locator(".panel .monaco-list-row", { hasText: text });
+    return pane(window, "Counterexample").locator(".monaco-list-row", { hasText: text });
+}
+
+function selected(window: Window): Locator {
+    return pane(window, "Counterexample").locator(".monaco-list-row.selected");
+}
+
+/** A row of the state beside the counterexample. */
+function state(window: Window, text: string | RegExp): Locator {
+    return pane(window, "State").locator(".monaco-list-row", { hasText: text });
+}
+
+function pane(window: Window, name: string): Locator {
+    return window.page.locator(".panel .pane", {
+        has: window.page.locator(`.pane-header[aria-label^="${name}"]`),
+    });
 }

@@ -26,7 +26,7 @@ export function withoutPython(): void {
 
     test("without venv, the message names the package to install", async () => {
         const folder = programs("sh", "cat", "uname", "env");
-        // It answers what it is asked about itself, and nothing else.
+        // The interpreter only reports its own properties.
         const script = ["#!/bin/sh", 'case "$*" in', '*" venv "*) echo "ensurepip is not available" >&2; exit 1 ;;'];
         script.push('*) echo "$0"; echo 3; echo 11 ;;', "esac", "");
         write(path.join(folder, "python3"), script.join("\n"));
@@ -60,8 +60,10 @@ async function install(
 function programs(...names: string[]): string {
     const folder = temporaryFolder("path");
     for (const name of names) {
-        const found = ["/bin", "/usr/bin"].map((each) => path.join(each, name)).find((file) => fs.existsSync(file));
-        if (found !== undefined) fs.symlinkSync(found, path.join(folder, name));
+        const program = ["/bin", "/usr/bin"]
+            .map((directory) => path.join(directory, name))
+            .find((file) => fs.existsSync(file));
+        if (program !== undefined) fs.symlinkSync(program, path.join(folder, name));
     }
     return folder;
 }

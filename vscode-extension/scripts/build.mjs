@@ -32,8 +32,21 @@ await esbuild.build({
     format: "iife",
     target: "es2022",
 });
+await esbuild.build({
+    ...common,
+    entryPoints: ["src/timeline/view/timeline.ts"],
+    outfile: "dist/timeline.js",
+    platform: "browser",
+    format: "iife",
+    target: "es2022",
+});
+fs.copyFileSync(path.join(here, "src/timeline/view/timeline.css"), path.join(dist, "timeline.css"));
 // Pictures have the same style in the editor and in the files that the command line writes.
-const styles = [path.join(root, "server/roaml/figures/figure.css"), path.join(here, "src/pictures/view/view.css")];
+const styles = [
+    path.join(root, "server/roaml/figures/figure.css"),
+    path.join(root, "server/roaml/figures/timeline.css"),
+    path.join(here, "src/pictures/view/view.css"),
+];
 fs.writeFileSync(path.join(dist, "view.css"), styles.map((file) => fs.readFileSync(file, "utf8")).join(""));
 
 // The schemas, with a catalog that maps their names for the XML extension.

@@ -5,6 +5,7 @@ import * as vscode from "vscode";
 import { registerCommands } from "./editor/commands";
 import { ChoicesView } from "./editor/choices";
 import { Counterexamples } from "./editor/counterexamples";
+import { DebugSessions } from "./editor/debugSessions";
 import { Debugging } from "./editor/debugging";
 import { Documents } from "./editor/documents";
 import { JaniView } from "./editor/janiView";
@@ -16,6 +17,8 @@ import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
+import { LitPictures } from "./editor/litPictures";
+import { TimelineView } from "./editor/timeline";
 import { modelsExist } from "./editor/activation";
 import { offerSchemas } from "./editor/xmlExtension";
 
@@ -38,6 +41,7 @@ export function activate(context: vscode.ExtensionContext): void {
     const tasks = new Tasks(server);
     const debugging = new Debugging(server, documents);
     const tests = new PropertyTests(server, debugging, log);
+    const sessions = new DebugSessions();
     const counterexamples = new Counterexamples(server, pictures);
     context.subscriptions.push(
         log,
@@ -49,7 +53,10 @@ export function activate(context: vscode.ExtensionContext): void {
         pictures,
         tests,
         counterexamples,
-        new ChoicesView(log),
+        sessions,
+        new ChoicesView(sessions, log),
+        new TimelineView(context, sessions),
+        new LitPictures(sessions, pictures),
         ...debugging.register(),
         watchErrors(),
     );

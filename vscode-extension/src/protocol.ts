@@ -61,6 +61,37 @@ export interface Migration {
     readonly problem: string;
 }
 
+/** A sentence of which a property is made. `letters` are the names of its events in `text`. */
+export interface PropertySentence {
+    readonly id: string;
+    readonly text: string;
+    readonly letters: readonly string[];
+    readonly needsTime: boolean;
+}
+
+/** What properties of a system can say. `events` are the events that it sends, in words. */
+export interface PropertySentences {
+    readonly sentences: readonly PropertySentence[];
+    readonly events: readonly string[];
+    readonly hasClock: boolean;
+}
+
+/** `sentence` is the id of a sentence, `events` are its events in order, `within` is a number of seconds or empty. */
+export interface NewPropertyParams extends DocumentParams {
+    readonly sentence: string;
+    readonly events: readonly string[];
+    readonly within: string;
+}
+
+/** `uri` is the property file, `name` the name of the property. */
+export interface NewProperty {
+    readonly edit: WorkspaceEdit;
+    readonly uri: string;
+    readonly name: string;
+}
+
+export const propertySentences = new RequestType<DocumentParams, PropertySentences, void>("as2fm/propertySentences");
+export const newPropertyEdit = new RequestType<NewPropertyParams, NewProperty, void>("as2fm/newProperty");
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
 export const pictureFile = new RequestType<PictureFileParams, PictureFile | null, void>("as2fm/pictureFile");
@@ -164,7 +195,9 @@ export interface Highlight {
 }
 
 export interface Step extends Partial<Place> {
+    /** The numbers of the first and last step of the turn. */
     readonly step: number;
+    readonly lastStep: number;
     readonly time: string;
     /** The name of the automaton in messages. */
     readonly who: string;
@@ -195,6 +228,22 @@ export interface CounterexampleParams extends PropertyParams {
     readonly witness?: boolean;
 }
 
+/** With `step` and `earlier`: the numbers of steps after which states are compared. */
+export interface TraceStateParams extends PropertyParams {
+    readonly trace: number;
+    readonly step: number;
+    readonly earlier: number;
+}
+
+/** A value of the state; `before` is null if it is the same as earlier. `hasChanged` includes the rows below. */
+export interface StateRow {
+    readonly name: string;
+    readonly value: string;
+    readonly before: string | null;
+    readonly hasChanged: boolean;
+    readonly rows: readonly StateRow[];
+}
+
 /** The expectations that the known result suggests, the current ones, and the name of the file in which one is set. */
 export interface Expectations {
     readonly suggestions: readonly string[];
@@ -219,3 +268,4 @@ export const setExpectation = new RequestType<SetExpectationParams, ExpectationS
 export const counterexample = new RequestType<CounterexampleParams, Counterexample | null, void>(
     "as2fm/counterexample",
 );
+export const traceState = new RequestType<TraceStateParams, readonly StateRow[] | null, void>("as2fm/traceState");

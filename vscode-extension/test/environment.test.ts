@@ -39,16 +39,16 @@ test("an environment is created, the wheel installed and the mark written last",
     assert.deepEqual(
         on.ran.filter((line) => line.includes("pip")),
         [
-            // Packages by their hashes only, and without code that builds them; the wheel is here.
+            // Packages are installed only by their hashes, and without code that builds them. The wheel is local.
             `${pip} --require-hashes --only-binary :all: -r /requirements.txt`,
             `${pip} --no-index --no-deps /server.whl`,
         ],
     );
-    // The environment of an earlier version is gone.
+    // The environment of the earlier version was removed.
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
 });
 
-/** An environment that has been made, in which the attempt to compile ends like this. */
+/** An environment that has been created, in which the attempt to compile has this result. */
 function made(ended: Partial<Ended>): { on: FakeHost; environment: PrivateEnvironment } {
     const on = new FakeHost({ [INSIDE]: () => ended });
     on.files.set(`${HOME}/ready.json`, '{"version": "0.1.0"}');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Scopes of the grammar: under each line, carets below characters and the last part of the scope that they have. */
+/** Scopes of the grammar: below each line, carets mark characters, followed by the last part of their scope. */
 
 import assert from "node:assert/strict";
 import * as fs from "node:fs";

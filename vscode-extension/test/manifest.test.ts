@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What package.json promises: characters that are not suspicious, pictures that are there, steps that are marked. */
+/** Invariants of package.json: no suspicious characters, existing pictures, and steps that can be completed. */
 
 import assert from "node:assert/strict";
 import * as fs from "node:fs";

@@ -82,7 +82,7 @@ const ROS: Picture = {
     drawings: [],
 };
 
-/** Words that are their own keys. */
+/** Words that are equal to their keys. */
 const WORDS = { byChance: "random", kinds: new Proxy({}, { get: (_, kind) => kind }) } as Words;
 
 test("the caret is in the narrowest part", () => {
@@ -120,7 +120,7 @@ test("fitting, zooming and revealing", () => {
     assert.ok(whole.scale < 0.5 && whole.scale > 0.4);
     assert.equal(fit({ width: 10, height: 10 }, 1000, 500).scale, 1);
     const closer = zoom({ x: 0, y: 0, scale: 1 }, 2, { x: 100, y: 50 });
-    // What was under the pointer stays there: (100, 50) of the drawing.
+    // The point of the drawing under the pointer, (100, 50), stays there.
     assert.deepEqual([(100 - closer.x) * closer.scale, (50 - closer.y) * closer.scale], [100, 50]);
     assert.equal(zoom(closer, 1000, { x: 0, y: 0 }).scale, 4);
     const sight = { x: 0, y: 0, scale: 1 };
@@ -136,7 +136,7 @@ test("a picture is legible at first, and drawn in the direction that suits the w
     ];
     assert.equal(bestDrawing([tall, wide], 400, 1000), 0);
     assert.equal(bestDrawing([tall, wide], 1400, 400), 1);
-    // Neither fits: the one whose width fits, so that it can be read from above to below.
+    // Neither drawing fits. The one whose width fits is used, so that it can be read from top to bottom.
     assert.equal(bestDrawing([tall, wide], 500, 500), 0);
     assert.equal(bestDrawing([tall, wide], 2000, 2000), 0);
     const view = fitLegibly({ width: 3000, height: 400 }, 1000, 800);

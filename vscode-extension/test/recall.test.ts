@@ -7,7 +7,7 @@ import type { Server } from "../src/server/server";
 const SERVER: Server = { origin: "python", command: "/env/bin/python", args: ["-m", "as2fm_lsp"], version: "0.1.0" };
 const WISHES = ["", "", true, "0.1.0-abc"];
 
-/** Keeps what JSON can say, as VS Code does. */
+/** Stores only values that JSON supports, as VS Code does. */
 class Kept implements Store {
     text = "{}";
     updates = 0;

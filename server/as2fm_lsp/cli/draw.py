@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp draw FILE`: a state machine, the behavior tree or the ROS graph as SVG."""
+"""`as2fm-lsp draw FILE`: a state machine, all of a system, the behavior tree or the ROS graph as SVG."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ examples:
   as2fm-lsp draw arm.ascxml                          write Arm.machine.svg
   as2fm-lsp draw main.xml                            the ROS graph of the system
   as2fm-lsp draw main.xml --machine Arm -o arm.svg
+  as2fm-lsp draw main.xml --machines -o machines.svg
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
   as2fm-lsp draw tree.xml --direction down -o - | rsvg-convert -o tree.png
 
@@ -83,6 +84,7 @@ _NOTHING = {
     DiagramKind.MACHINE: "the file contains no state machine",
     DiagramKind.TREE: "there is no behavior tree",
     DiagramKind.ROS: "the file is not a system; name the system file",
+    DiagramKind.SYSTEM: "the file is not a system with state machines; name the system file",
 }
 
 
@@ -94,6 +96,8 @@ def _kind(options: argparse.Namespace, analysis: Analysis, path: str) -> Diagram
         return DiagramKind.TREE
     if options.graph:
         return DiagramKind.ROS
+    if options.machines:
+        return DiagramKind.SYSTEM
     if analysis.machine(path) is not None:
         return DiagramKind.MACHINE
     return DiagramKind.TREE if analysis.kind(path) is FileKind.TREE else DiagramKind.ROS
@@ -120,7 +124,7 @@ def _unknown_machine(name: str, machines: dict[str, str], file: str) -> str:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp draw",
-        description="Draw a state machine, the behavior tree or the ROS graph as SVG, as the editor shows it. "
+        description="Draw state machines, the behavior tree or the ROS graph as SVG, as the editor shows it. "
         "Models with errors are drawn as far as possible.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -130,6 +134,7 @@ def parser() -> ArgumentParser:
     what.add_argument("--machine", metavar="NAME", help="draw this state machine of the system")
     what.add_argument("--tree", action="store_true", help="draw the behavior tree")
     what.add_argument("--graph", action="store_true", help="draw the ROS graph (default for a system)")
+    what.add_argument("--machines", action="store_true", help="draw all state machines of the system")
     result.add_argument(
         "-o", "--output", metavar="FILE", help="the SVG file; - is standard output (default: its title, beside FILE)"
     )

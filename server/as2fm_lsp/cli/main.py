@@ -34,8 +34,8 @@ COMMANDS = {
     "debug": "serve a debugger: the debug adapter",
     "init": "write a small working system",
 }
-"""The implementation of each command. Each is the `run` of a module of `as2fm_lsp.cli`, imported only if it is
-called."""
+"""Each command with its description. It is implemented by the function `run` of the module of the same name in
+`as2fm_lsp.cli`, which is imported only if the command is called."""
 
 EXAMPLES = """\
 examples:

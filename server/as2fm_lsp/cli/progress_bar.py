@@ -55,7 +55,7 @@ class ProgressBar:
     def search(self, search: Search) -> None:
         """Update during a search for schedulers, or traces with one that was found."""
         self._search = search
-        side = search.found.get(search.side)
+        side = search.selected.get(search.side)
         if side is not None:
             self._tally = side.tally
         self._show()
@@ -98,7 +98,7 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
 def search_line(question: Question, search: Search, options: Options) -> str:
     """The line during a search for schedulers: the round and the best share so far; then the estimate."""
     text = f"{question.name}, {search.side} probability"
-    side = search.found.get(search.side)
+    side = search.selected.get(search.side)
     if side is not None and side.tally.traces:
         return line(replace(question, name=text), options, side.tally, 0)
     if search.round == 0:

@@ -26,8 +26,9 @@ from as2fm_lsp.cli.model_arguments import (
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text
 from as2fm_lsp.cli.times import time_of
-from as2fm_lsp.verification.run_files import csv_lines, json_text
+from as2fm_lsp.verification.run_files import csv_lines, json_text, timeline_svg
 from roaml import api
+from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
 from roaml.simulation import RunError, SavedSession, Session
 from roaml.smc.fault import FaultError
@@ -39,6 +40,7 @@ examples:
   as2fm-lsp simulate main.xml --seed 7 --for "10 s"   the first 10 s of another run
   as2fm-lsp simulate main.xml --until /arm/command    until a message is sent on this topic
   as2fm-lsp simulate main.xml --property dropped --trace 4 --html run.html
+  as2fm-lsp simulate main.xml --svg run.svg           a timeline of the run, as a picture
   as2fm-lsp simulate main.xml --interactive           choose on the terminal what happens next, and go back
   as2fm-lsp simulate main.xml --script run.json       repeat a run that --save has written
 
@@ -142,11 +144,13 @@ def _write(options: argparse.Namespace, session: Session, target: VerificationTa
         write_file(options.html, as_html([story], place_of, shown_path(options.main)))
     if options.mermaid is not None:
         write_file(options.mermaid, as_mermaid(story, place_of))
+    if options.svg is not None:
+        write_file(options.svg, timeline_svg(session, shown_path(options.main), options.theme))
     if options.csv is not None:
         write_file(options.csv, csv_lines(session))
     if options.json is not None:
         write_file(options.json, json_text(session, target))
-    if not options.interactive and not any((options.html, options.mermaid, options.csv, options.json)):
+    if not options.interactive and not any((options.html, options.mermaid, options.svg, options.csv, options.json)):
         print_text(as_text(story, place_of) + _summary(session))
         flush()
 
@@ -192,6 +196,8 @@ def parser() -> ArgumentParser:
     add("--csv", metavar="FILE", help="write the state after each step as CSV")
     add("--json", metavar="FILE", help="write the steps as JSON")
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
+    add("--svg", metavar="FILE", help="write the run as a timeline: states, statuses, messages and variables")
+    add("--theme", choices=tuple(THEMES), default="light", help="the colors of the timeline (light)")
     add("--html", metavar="FILE", help="write the run as an HTML page")
     add_model_arguments(result)
     return result

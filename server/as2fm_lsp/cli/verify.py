@@ -209,18 +209,18 @@ class _Verification:
         asked = verifier.sharing()
         if not asked:
             return {}
-        payloads = [verifier.checker.payload(each) for each in asked] if self.state is not None else []
+        payloads = [verifier.checker.payload(property_) for property_ in asked] if self.state is not None else []
         tallies = [Tally() for _ in asked]
         if self.state is not None:
             tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
-        by_name = {each.question.name: payload for each, payload in zip(asked, payloads, strict=False)}
+        by_name = {property_.question.name: payload for property_, payload in zip(asked, payloads, strict=False)}
 
-        def watch(each: CompiledProperty, so_far: Tally) -> None:
+        def watch(property_: CompiledProperty, so_far: Tally) -> None:
             shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
-            if each is shown:
-                bar.together(each.question, so_far, len(asked))
+            if property_ is shown:
+                bar.together(property_.question, so_far, len(asked))
             if self.state is not None:
-                self.state.keep(each.question.name, by_name[each.question.name], so_far)
+                self.state.keep(property_.question.name, by_name[property_.question.name], so_far)
 
         began = time.monotonic()
         bar.begin(asked[0].question, self.limits, tallies[0])
@@ -232,8 +232,8 @@ class _Verification:
             seconds = time.monotonic() - began
             results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
         if self.state is not None:
-            for each, tally in zip(asked, tallies, strict=True):
-                self.state.keep(each.question.name, by_name[each.question.name], tally, now=True)
+            for property_, tally in zip(asked, tallies, strict=True):
+                self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
         self.faults += [result.fault for result in results if result.fault is not None]
         return {result.name: self._with_shown_path(result) for result in results}
 

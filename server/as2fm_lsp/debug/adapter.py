@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.breakpoints import BreakpointRequests
@@ -25,7 +25,12 @@ from as2fm_lsp.debug.state import StateRequests
 from roaml.debugging.debugger import Unit
 from roaml.debugging.evaluate import WatchError
 
+if TYPE_CHECKING:
+    from as2fm_lsp.debug.timeline import TimelineRequests
+
 _ENDING = ("disconnect", "terminate")
+BESIDE_REQUESTS = ("timeline", "exportTimeline", "pictures")
+"""The requests of `as2fm_lsp.debug.timeline`, which is imported on their first use."""
 
 
 class Adapter:
@@ -42,6 +47,7 @@ class Adapter:
         self._session = session = DebugSession(self._connection)
         self._breakpoints = BreakpointRequests(session)
         by_hand = ByHandRequests(session)
+        self._timeline: TimelineRequests | None = None
         self._is_configured = False
         self._has_ended = False
         self._handlers: Mapping[str, Handler] = {
@@ -57,8 +63,19 @@ class Adapter:
             **by_hand.handlers,
             **MovementRequests(session).handlers,
             **ChoiceRequests(session).handlers,
+            **{name: self._beside(name) for name in BESIDE_REQUESTS},
             **self._breakpoints.handlers,
         }
+
+    def _beside(self, name: str) -> Handler:
+        def handle(arguments: Arguments) -> Body:
+            from as2fm_lsp.debug.timeline import TimelineRequests  # noqa: PLC0415 - the first stop comes sooner
+
+            if self._timeline is None:
+                self._timeline = TimelineRequests(self._session)
+            return self._timeline.handlers[name](arguments)
+
+        return handle
 
     def run(self) -> None:
         """Handle requests until the session or the stream ends."""

@@ -62,6 +62,15 @@ class Arguments:
             raise RequestError(f"`{name}` must not be negative")
         return value
 
+    def decimal(self, name: str, default: float) -> float:
+        """A finite number."""
+        value = self._members.get(name)
+        if value is None:
+            return default
+        if not isinstance(value, (int, float)) or isinstance(value, bool) or not abs(value) <= 1e15:
+            raise RequestError(f"`{name}` must be a number")
+        return float(value)
+
     def flag(self, name: str, default: bool = False) -> bool:
         value = self._members.get(name, default)
         if value is None:

@@ -22,7 +22,7 @@ class BreakpointRequests:
     def __init__(self, session: DebugSession) -> None:
         self._session = session
         self._next_breakpoint = 1
-        self._wanted: dict[str, tuple[str, list[tuple[int, Arguments]]]] = {}
+        self._requested: dict[str, tuple[str, list[tuple[int, Arguments]]]] = {}
         self._functions: list[tuple[int, Arguments]] = []
         self._filters: list[tuple[str, str]] = []
         self._data: dict[str, WatchedVariable] = {}
@@ -38,7 +38,7 @@ class BreakpointRequests:
     def set_all(self) -> list[dict[str, Any]]:
         """Set all breakpoints in a model that has been read; returns their descriptions."""
         changed: list[dict[str, Any]] = []
-        for path in self._wanted:
+        for path in self._requested:
             changed += self._set_lines(path)
         changed += self._set_functions()
         self._set_filters()
@@ -46,12 +46,12 @@ class BreakpointRequests:
 
     def _set_breakpoints(self, arguments: Arguments) -> Body:
         path = self._session.client.path(arguments.object("source"))
-        wanted = arguments.objects("breakpoints")
-        if not wanted and arguments.has("lines"):
-            wanted = [Arguments({"line": line}) for line in _lines(arguments)]
-        for each in wanted:
-            each.number("line")
-        self._wanted[os.path.realpath(path)] = path, [(self._number(), each) for each in wanted]
+        requested = arguments.objects("breakpoints")
+        if not requested and arguments.has("lines"):
+            requested = [Arguments({"line": line}) for line in _lines(arguments)]
+        for breakpoint_ in requested:
+            breakpoint_.number("line")
+        self._requested[os.path.realpath(path)] = path, [(self._number(), breakpoint_) for breakpoint_ in requested]
         return {"breakpoints": self._set_lines(os.path.realpath(path))}
 
     def _number(self) -> int:
@@ -60,21 +60,23 @@ class BreakpointRequests:
 
     def _set_lines(self, key: str) -> list[dict[str, Any]]:
         """Set the breakpoints of a file; returns their descriptions."""
-        path, wanted = self._wanted[key]
+        path, requested = self._requested[key]
         debugger = self._session.debugger
         if debugger is None:
             message = "not checked before the launch"
-            return [{"id": number, "verified": False, "message": message} for number, _ in wanted]
-        known = next((each for each in debugger.places.by_path if os.path.realpath(each) == key), path)
+            return [{"id": number, "verified": False, "message": message} for number, _ in requested]
+        known = next(
+            (known_path for known_path in debugger.places.by_path if os.path.realpath(known_path) == key), path
+        )
         bodies, set_ = [], []
-        for number, each in wanted:
+        for number, breakpoint_ in requested:
             body: dict[str, Any] = {"id": number, "verified": False, "source": self._session.client.source(path)}
-            line = debugger.places.next_line(known, each.number("line") + 1 - self._session.client.first_line)
+            line = debugger.places.next_line(known, breakpoint_.number("line") + 1 - self._session.client.first_line)
             try:
                 if line is None:
                     raise WatchError("no line from here on is executed in this system")
                 name = f"{os.path.basename(path)}:{line}"
-                set_.append((line, self._breakpoint(number, name, each)))
+                set_.append((line, self._breakpoint(number, name, breakpoint_)))
                 body |= {"verified": True, "line": line - 1 + self._session.client.first_line}
             except WatchError as error:
                 body["message"] = str(error)
@@ -88,10 +90,10 @@ class BreakpointRequests:
         return breakpoint_of(number, name, condition, hits, given.text("logMessage"))
 
     def _set_function_breakpoints(self, arguments: Arguments) -> Body:
-        wanted = arguments.objects("breakpoints")
-        for each in wanted:
-            each.text("name", None)
-        self._functions = [(self._number(), each) for each in wanted]
+        requested = arguments.objects("breakpoints")
+        for breakpoint_ in requested:
+            breakpoint_.text("name", None)
+        self._functions = [(self._number(), breakpoint_) for breakpoint_ in requested]
         return {"breakpoints": self._set_functions()}
 
     def _set_functions(self) -> list[dict[str, Any]]:
@@ -113,9 +115,11 @@ class BreakpointRequests:
         return bodies
 
     def _set_exception_breakpoints(self, arguments: Arguments) -> Body:
-        wanted = [(name, "") for name in arguments.texts("filters")]
-        wanted += [(each.text("filterId", None), each.text("condition")) for each in arguments.objects("filterOptions")]
-        self._filters = wanted
+        filters = [(name, "") for name in arguments.texts("filters")]
+        filters += [
+            (option.text("filterId", None), option.text("condition")) for option in arguments.objects("filterOptions")
+        ]
+        self._filters = filters
         return {"breakpoints": self._set_filters()}
 
     def _set_filters(self) -> list[dict[str, Any]]:
@@ -123,7 +127,7 @@ class BreakpointRequests:
         set_: dict[ExceptionFilter, Breakpoint] = {}
         for name, condition in self._filters:
             try:
-                filter_ = next((each for each in ExceptionFilter if each.value == name), None)
+                filter_ = next((known for known in ExceptionFilter if known.value == name), None)
                 if filter_ is None:
                     raise WatchError(f"there is no filter `{name}`")
                 set_[filter_] = breakpoint_of(0, name, condition)
@@ -182,7 +186,7 @@ class BreakpointRequests:
         first = arguments.number("line") + offset
         last = arguments.number("endLine", first - offset) + offset
         places = {} if self._session.debugger is None else self._session.debugger.places.by_path
-        lines = next((lines for each, lines in places.items() if os.path.realpath(each) == path), [])
+        lines = next((lines for known_path, lines in places.items() if os.path.realpath(known_path) == path), [])
         chosen = [line - 1 + self._session.client.first_line for line in lines if first <= line <= last]
         return {"breakpoints": [{"line": line} for line in chosen]}
 

@@ -41,7 +41,7 @@ class StateRequests:
     def _stack_trace(self, arguments: Arguments) -> Body:
         debugger = self._session.stopped
         thread = arguments.number("threadId")
-        if all(each.number != thread for each in debugger.threads):
+        if all(known.number != thread for known in debugger.threads):
             raise RequestError(f"there is no thread {thread}")
         frames = debugger.stack(thread)
         first, levels = arguments.natural("startFrame", 0), arguments.natural("levels", 0)

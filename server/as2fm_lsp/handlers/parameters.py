@@ -25,3 +25,15 @@ def string(params: object, name: str, shown: str = "") -> str:
     if not isinstance(value, str):
         raise JsonRpcInvalidParams(f"`{shown or name}` must be a string")
     return value
+
+
+def natural(params: object, name: str) -> int:
+    """A parameter that is a number from 0.
+
+    Raises:
+        JsonRpcInvalidParams: it is missing, or something else.
+    """
+    value = getattr(params, name, None)
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise JsonRpcInvalidParams(f"`{name}` must be a number from 0")
+    return value

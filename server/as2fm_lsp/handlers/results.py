@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The known results of properties: lenses and hints; `as2fm/properties`, the properties with their results;
-`as2fm/counterexample`, why a property fails or holds.
+`as2fm/counterexample`, why a property fails or holds; `as2fm/traceState`, the whole state at one of its steps.
 
 - A result is compared with what is expected now, without new traces.
 - The protocol has no commands that show traces or ask for an expectation. A client that has some names them in its
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -19,11 +20,13 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.display_settings import display_settings
-from as2fm_lsp.handlers.parameters import document_uri, string
+from as2fm_lsp.handlers.parameters import document_uri, natural, string
 from as2fm_lsp.handlers.requested_document import RequestedDocument
 from as2fm_lsp.verification import background
 from as2fm_lsp.verification.known_results import ExpectedNow, KnownResult, expected_now, missed, short
 from as2fm_lsp.verification.report import one_as_text, row
+from roaml.debugging.overview import StateRow, overview
+from roaml.debugging.sources import Sources
 from roaml.ide.describe import markdown
 from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
@@ -32,6 +35,8 @@ from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
+from roaml.simulation.session import Session
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY
 from roaml.text import Location
 from roaml.verification.counterexample import counterexample, unwanted_trace, witness, witness_trace
@@ -42,6 +47,7 @@ from roaml.views.story import StoryLine
 
 PROPERTIES = "as2fm/properties"
 COUNTEREXAMPLE = "as2fm/counterexample"
+TRACE_STATE = "as2fm/traceState"
 VERIFY = "as2fm.verify"
 TITLE = "Verify"
 
@@ -89,6 +95,23 @@ def register(context: Context) -> None:
             "stale": current.is_stale(known),
             "steps": [_step(context, known, path, line) for line in why.lines],
         }
+
+    @context.feature(TRACE_STATE)
+    async def trace_state(params: Any) -> list[Json] | None:
+        """The state after `step` steps of a trace of a known result; what differs from the state after `earlier` steps
+        is marked. `null` if there is no result."""
+        path = session.convert.path(document_uri(params))
+        known = CurrentResults(context, session.moment().snapshot(path), path).get(string(params, "property"))
+        if known is None or known.result.traces is None:
+            return None
+        traces, sources = known.result.traces, Sources(known.result.traces.target, known.analysis)
+        trace = natural(params, "trace")
+        step, earlier = (min(natural(params, name), traces.options.max_steps) for name in ("step", "earlier"))
+        run = Session(traces.checker, traces.asked, traces.options.seed, trace, traces.target.clock)
+        with suppress(FaultError):  # the trace ends where the model fails
+            await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
+        last = len(run.steps)
+        return [_state_row(row) for row in overview(run, sources, min(step, last), min(earlier, last))]
 
 
 class CurrentResults:
@@ -157,7 +180,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
 
 def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
     """The commands that the client offers for a result."""
-    client, unwanted, wanted = context.client, unwanted_trace(result), witness_trace(result)
+    client, unwanted, witness = context.client, unwanted_trace(result), witness_trace(result)
     if client.set_expectation and result.has_no_expectation and result.answer is not None:
         yield types.Command("Set expectation", client.set_expectation, arguments=[uri, name])
     if client.show_counterexample and unwanted is not None:
@@ -166,7 +189,7 @@ def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator
         traces = result.traces
         run = {} if traces is None else {"seed": traces.options.seed, "trace": unwanted.trace}
         yield types.Command("Debug counterexample", client.debug_counterexample, arguments=[uri, name, run])
-    if client.show_witness and wanted is not None:
+    if client.show_witness and witness is not None:
         yield types.Command("Show witness", client.show_witness, arguments=[uri, name])
 
 
@@ -226,6 +249,7 @@ def _step(context: Context, known: KnownResult, system: str, line: StoryLine) ->
     convert = context.session.convert
     return {
         "step": line.step,
+        "lastStep": line.last_step,
         "time": line.time,
         "who": line.who,
         "what": line.what,
@@ -236,6 +260,16 @@ def _step(context: Context, known: KnownResult, system: str, line: StoryLine) ->
             {"kind": highlight.picture, "uri": convert.uri(highlight.path), "node": highlight.node}
             for highlight in nodes
         ],
+    }
+
+
+def _state_row(row: StateRow) -> Json:
+    return {
+        "name": row.name,
+        "value": row.value,
+        "before": row.before,
+        "hasChanged": row.has_changed,
+        "rows": [_state_row(below) for below in row.rows],
     }
 
 

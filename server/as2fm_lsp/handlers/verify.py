@@ -122,7 +122,7 @@ class _VerifyCommand:
         names = list(dict.fromkeys(names or [property_.name for property_ in target.properties]))
         verifier, asked = self.compiled(target, names, system.analysis)
         results: list[Result] = []
-        together = [each for each in asked.values() if verifier is not None and verifier.can_share(each)]
+        together = [property_ for property_ in asked.values() if verifier is not None and verifier.can_share(property_)]
         if verifier is not None and len(together) > 1:
             results += await self.together(verifier, together, system.analysis, texts)
         for property_name in names:
@@ -202,7 +202,9 @@ class _VerifyCommand:
         await self.bar.step(f"{count} properties from the same traces")
 
         def show_estimates(tallies: Sequence[Tally]) -> None:
-            open_ = [(each, tally) for each, tally in zip(asked, tallies, strict=True) if not tally.is_finished]
+            open_ = [
+                (property_, tally) for property_, tally in zip(asked, tallies, strict=True) if not tally.is_finished
+            ]
             done = f"{count - len(open_)} of {count} properties"
             if open_:
                 first, tally = open_[0]
@@ -222,9 +224,9 @@ class _VerifyCommand:
         try:
             await background.answer_together(verifier, asked, checkpoint, show_estimates, keep)
         except WorkersLostError as error:
-            for each in asked:
-                if each.question.name not in self.rows:
-                    self.reject(each.question.name, str(error))
+            for property_ in asked:
+                if property_.question.name not in self.rows:
+                    self.reject(property_.question.name, str(error))
         return results
 
     def publish(self, result: Result, target: VerificationTarget, analysis: Analysis, texts: Texts) -> None:

@@ -96,9 +96,9 @@ async def answer_together(
         await in_thread(work, checkpoint)
     except Interrupted:
         seconds = time.monotonic() - began
-        for each, tally in zip(asked, tallies, strict=True):
+        for property_, tally in zip(asked, tallies, strict=True):
             if tally.is_finished:
-                keep(replace(verifier.interrupted(each, tally, seconds), is_interrupted=False))
+                keep(replace(verifier.interrupted(property_, tally, seconds), is_interrupted=False))
         raise
     for result in results:
         keep(result)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated run as files: CSV in the terms of the user, and JSON with the steps as `trace_files` writes them.
+"""A simulated run as files: CSV in the terms of the user, JSON with the steps as `trace_files` writes them, and a
+timeline as SVG.
 
 CSV has a line for each state, including the first one, and columns for its number, the time in s if the model has a
 clock, the action of the step before it, the state and variables of each machine, the status of each node of the tree,
@@ -12,14 +13,19 @@ import json
 from collections.abc import Iterator
 
 from as2fm_lsp.verification.trace_files import cells_of, csv_line, step_row, suffixes_of
+from roaml.figures.assembly import moved
+from roaml.figures.drawing import Drawing
+from roaml.figures.geometry import Extent
+from roaml.figures.svg import TIMELINE_STYLES, svg_file
 from roaml.simulation import Session, SystemState
 from roaml.smc.record import Plain
+from roaml.timeline import Axis, Timeline, View, draw_names, draw_timeline, position_of
 from roaml.verification.target import VerificationTarget
 
 
-def csv_lines(session: Session) -> Iterator[str]:
-    """The lines for the run up to the position. The session moves from the start to there."""
-    for position in range(session.position + 1):
+def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
+    """The lines for the run from step `first` up to the position. The session moves from the first step to there."""
+    for position in range(first, session.position + 1):
         session.jump(position)
         state = session.state()
         row: list[tuple[str, int | float | str]] = [("step", position)]
@@ -27,7 +33,7 @@ def csv_lines(session: Session) -> Iterator[str]:
             row.append(("time", state.time))
         row.append(("action", session.steps[position - 1].action or "" if position else ""))
         row += _columns(state)
-        if position == 0:
+        if position == first:
             yield csv_line(name for name, _ in row)
         yield csv_line(cell for _, cell in row)
 
@@ -46,6 +52,27 @@ def _columns(state: SystemState) -> Iterator[tuple[str, int | float | str]]:
 def _cells(name: str, value: Plain) -> Iterator[tuple[str, int | float]]:
     for suffix, cell in zip(suffixes_of(value), cells_of(value), strict=True):
         yield name + suffix, cell
+
+
+TIMELINE_WIDTH, NAMES_WIDTH = 1400.0, 200.0
+"""The widths of a timeline and of the names of its rows, in pixels."""
+
+
+def timeline_svg(session: Session, title: str, theme: str) -> str:
+    """The run up to the position as a timeline over the time of the model, or over steps if it has no clock."""
+    timeline = Timeline(session)
+    timeline.follow(session)
+    axis = Axis.TIME if timeline.times else Axis.STEPS
+    end = position_of(timeline, axis, session.position)
+    return stretch_svg(timeline, View(axis, 0.0, end or 1.0, TIMELINE_WIDTH), title, theme)
+
+
+def stretch_svg(timeline: Timeline, view: View, title: str, theme: str) -> str:
+    """A part of a timeline, with the names of its rows."""
+    names, rows = draw_names(timeline, NAMES_WIDTH), draw_timeline(timeline, view)
+    size = Extent(NAMES_WIDTH + rows.size.width, rows.size.height)
+    groups = (*names.groups, *(moved(group, NAMES_WIDTH, 0.0) for group in rows.groups))
+    return svg_file(Drawing(size, groups, {}), title, theme, TIMELINE_STYLES)
 
 
 def json_text(session: Session, target: VerificationTarget) -> str:

@@ -83,7 +83,7 @@ def _row(extreme: Extreme) -> dict[str, Any]:
         "value": _finite(extreme.value),
         "lower": _finite(extreme.bounds.lower),
         "upper": _finite(extreme.bounds.upper),
-        "found": extreme.found,
+        "found": extreme.method,
     }
     if extreme.scheduler:
         row["scheduler"] = extreme.scheduler
@@ -93,9 +93,9 @@ def _row(extreme: Extreme) -> dict[str, Any]:
 
 
 def _reached(extreme: Extreme) -> str:
-    if extreme.found == EXPLORATION:
+    if extreme.method == EXPLORATION:
         return f"{extreme.value:.6g} (exact, from all states)"
-    who = extreme.scheduler if extreme.found == SAMPLING else "uniform choices"
+    who = extreme.scheduler if extreme.method == SAMPLING else "uniform choices"
     return f"{interval_text(extreme)} (by {who})"
 
 

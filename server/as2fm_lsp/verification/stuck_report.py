@@ -53,7 +53,7 @@ def told(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "")
 
 
 def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
-    """The waiting automata, and how to fix it."""
+    """The waiting automata, one line each, and how to fix the system."""
     lines = []
     for wait in stuck.waits:
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"

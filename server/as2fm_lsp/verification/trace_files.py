@@ -55,7 +55,7 @@ def write_traces(
 
 
 def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Iterator[str]:
-    """The lines of a trace."""
+    """The lines of a CSV file with the states of a trace."""
     storages = recorder.shared
     names = [storage.name for storage in storages]
     places = None if clock is None else (names.index(clock[0]), names.index(clock[1]))

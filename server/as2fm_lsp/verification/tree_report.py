@@ -19,7 +19,7 @@ from roaml.verification.tree_outcome import COUNTERS, TreeOutcome
 from roaml.views.turns import Turn, turns
 
 MAX_LEAVES = 10
-FEW = 30
+MIN_NORMAL_TRACES = 30
 """If fewer traces than this have one of the outcomes, the intervals of influences are only approximate."""
 MAX_LINES = 40
 """The maximum number of lines of a story; those in between are folded."""
@@ -67,7 +67,11 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
         yield "  the influence of the leaves is unknown: all traces had the same outcome; make more with --max-traces"
     if outcome.influences:
         rare = min(outcome.success.count, outcome.traces - outcome.success.count)
-        note = f" (only {rare} traces differ from the others: the intervals are approximate)" if rare < FEW else ""
+        note = (
+            f" (only {rare} traces differ from the others: the intervals are approximate)"
+            if rare < MIN_NORMAL_TRACES
+            else ""
+        )
         yield f"  change of the probability of success for each leaf, if that of its mock changes by 1{note}:"
         for influence in outcome.influences[:MAX_LEAVES]:
             node = influence.leaf.node

@@ -53,12 +53,12 @@ def target(
 
     if not path.endswith(".jani"):
         if constants:
-            raise ConstantError("a system has no constants; they are for JANI models")
+            raise ConstantError("a system has no constants; only JANI models have them")
         from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
 
         return as_target(load(path, ros_paths, settings, texts, overrides)).expecting(_expected(settings))
     if overrides != NO_OVERRIDES:
-        raise ConstantError("a JANI model has no parameters to override; they are for systems")
+        raise ConstantError("a JANI model has no parameters to override; only systems have them")
     from roaml.jani.constants import with_constants  # noqa: PLC0415
 
     model, source = read_jani(path)

@@ -151,9 +151,9 @@ class Breakpoints:
 
     def all(self) -> Iterator[Breakpoint]:
         for of_file in self.lines.values():
-            yield from (each for _, each in of_file)
-        yield from (each for _, each in self.names)
-        yield from (each for _, each in self.variables)
+            yield from (breakpoint_ for _, breakpoint_ in of_file)
+        yield from (breakpoint_ for _, breakpoint_ in self.names)
+        yield from (breakpoint_ for _, breakpoint_ in self.variables)
         yield from self.filters.values()
 
 
@@ -218,7 +218,7 @@ class BreakpointPlaces:
 
     def next_line(self, path: str, line: int) -> int | None:
         """The first line from `line` on at which a run can stop."""
-        return next((each for each in self.by_path.get(path, ()) if each >= line), None)
+        return next((candidate for candidate in self.by_path.get(path, ()) if candidate >= line), None)
 
 
 class Matcher:
@@ -262,14 +262,14 @@ class Matcher:
             for part in actors:
                 if self._session.is_machine(part.instance):
                     for line in self._places.of_part(part):
-                        hits += ((each, part.instance) for each in self._statements.get(line, ()))
+                        hits += ((breakpoint_, part.instance) for breakpoint_ in self._statements.get(line, ()))
         event = received_by(step.action or "")
         if self._nodes and (tree := read_tree_event(event)) and tree.kind is TreeEventKind.TICK:
-            hits += ((each, first) for each in self._nodes.get(tree.number, ()))
+            hits += ((breakpoint_, first) for breakpoint_ in self._nodes.get(tree.number, ()))
         if self._events:
-            hits += ((each, first) for each in self._events.get(sent_by(step.action or ""), ()))
+            hits += ((breakpoint_, first) for breakpoint_ in self._events.get(sent_by(step.action or ""), ()))
             if actors:
-                hits += ((each, first) for each in self._events.get(event, ()))
+                hits += ((breakpoint_, first) for breakpoint_ in self._events.get(event, ()))
         chance = self._filters.get(ExceptionFilter.CHANCE)
         if chance is not None:
             hits += ((chance, part.instance) for part in actors if len(part.edge.destinations) > 1)
@@ -288,15 +288,15 @@ class Matcher:
             for part in actors:
                 if self._places.of_part(part) or part.source != part.destination.location:
                     reached = self._states.get((part.instance, part.destination.location), ())
-                    hits += ((each, part.instance) for each in reached)
+                    hits += ((breakpoint_, part.instance) for breakpoint_ in reached)
         for variable, breakpoint_ in self._variables:
             if any(_is_part(change.variable.instance, change.variable.name, variable) for change in step.changes):
                 hits.append((breakpoint_, first))
-        for each in decided:
-            if each.verdict == "failed":
-                hits += ((breakpoint_, first) for breakpoint_ in self._properties.get(each.name, ()))
+        for property_ in decided:
+            if property_.verdict == "failed":
+                hits += ((breakpoint_, first) for breakpoint_ in self._properties.get(property_.name, ()))
             verdict = self._filters.get(
-                ExceptionFilter.VIOLATED if each.verdict == "failed" else ExceptionFilter.SATISFIED
+                ExceptionFilter.VIOLATED if property_.verdict == "failed" else ExceptionFilter.SATISFIED
             )
             if verdict is not None:
                 hits.append((verdict, first))

@@ -161,7 +161,7 @@ class Debugger:
 
     def stack(self, thread: int) -> list[Frame]:
         """The frames of a thread; empty if there is no such thread."""
-        return next((self.stacks.stack(each) for each in self.threads if each.number == thread), [])
+        return next((self.stacks.stack(known) for known in self.threads if known.number == thread), [])
 
     def scope(self, instance: int) -> Scope:
         """The values of names in expressions, as an instance sees them."""
@@ -396,10 +396,10 @@ class Debugger:
         decided = self._verdicts.at(self.session.position)
         match filter_:
             case ExceptionFilter.VIOLATED:
-                names = [each.name for each in decided if each.verdict == "failed"]
+                names = [property_.name for property_ in decided if property_.verdict == "failed"]
                 return f"violated: {', '.join(names)}"
             case ExceptionFilter.SATISFIED:
-                names = [each.name for each in decided if each.verdict == "passed"]
+                names = [property_.name for property_ in decided if property_.verdict == "passed"]
                 return f"satisfied: {', '.join(names)}"
             case ExceptionFilter.FAILURE:
                 step = self.session.steps[self.session.position - 1]

@@ -54,13 +54,13 @@ class Frame:
 
 def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
     """The threads of a system: the tree, then the machines in their order."""
-    found = [DebugThread(TREE_THREAD, "tree", -1)] if sources.nodes else []
+    threads_ = [DebugThread(TREE_THREAD, "tree", -1)] if sources.nodes else []
     number = FIRST_MACHINE_THREAD
     for instance, automaton in enumerate(session.automata_of_model):
         if session.is_machine(instance) and not _is_node(automaton.name, sources):
-            found.append(DebugThread(number, who(automaton.name), instance))
+            threads_.append(DebugThread(number, who(automaton.name), instance))
             number += 1
-    return tuple(found)
+    return tuple(threads_)
 
 
 def _is_node(automaton: str, sources: Sources) -> bool:

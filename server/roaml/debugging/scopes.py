@@ -14,7 +14,7 @@ from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_valu
 from roaml.model.expand import PortConstant
 from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length, is_timer, read_tree_event, received_by
 from roaml.simulation.session import Session
-from roaml.simulation.state import SystemState
+from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
 from roaml.smc.record import Plain, TraceStep
 
@@ -71,16 +71,16 @@ class Values:
 
     def scopes(self, frame: Frame) -> list[ScopeEntries]:
         """The scopes of a frame that are not empty."""
-        found = []
+        own_scopes = []
         if frame.instance >= 0:
-            found.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
+            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
             message = self.message(frame.instance)
             if message:
                 entries = (ScopeEntry(name, value, type_of(value), name) for name, value in message.items())
-                found.append(ScopeEntries("Message", tuple(entries), "arguments"))
+                own_scopes.append(ScopeEntries("Message", tuple(entries), "arguments"))
         if frame.node:
-            found.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
-        return [scope for scope in (*found, *self.shared_scopes()) if scope.entries]
+            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
+        return [scope for scope in (*own_scopes, *self.shared_scopes()) if scope.entries]
 
     def shared_scopes(self) -> Iterator[ScopeEntries]:
         """The scopes that all frames have."""
@@ -91,6 +91,11 @@ class Values:
         yield ScopeEntries("Time", tuple(self._time()), "globals")
         yield ScopeEntries("Properties", tuple(self._properties()), "globals")
 
+    def machines(self) -> Iterator[tuple[MachineState, tuple[ScopeEntry, ...]]]:
+        """The machines and plugins, with their variables."""
+        for machine in self._state.machines:
+            yield machine, tuple(self._own(self._instances[machine.automaton]))
+
     def _own(self, instance: int) -> Iterator[ScopeEntry]:
         stored = self._stored.get(instance, {})
         automaton = self._session.automata_of_model[instance]
@@ -100,7 +105,7 @@ class Values:
             value = typed_value(name, type_, stored)
             if value is not None and _is_stored(name, stored):
                 shown |= {
-                    each for each in stored if each == name or each.startswith((f"{name}{SEPARATOR}", f"{name}."))
+                    part for part in stored if part == name or part.startswith((f"{name}{SEPARATOR}", f"{name}."))
                 }
                 yield ScopeEntry(name, value, str(type_), name, WatchedVariable(instance, name))
         for name, value in untyped_values({n: v for n, v in stored.items() if n not in shown}).items():
@@ -200,9 +205,9 @@ class Values:
         own = known.get
 
         def value(name: str) -> Value | None:
-            found = own(name)
-            if found is not None or name not in shared:
-                return found
+            own_value = own(name)
+            if own_value is not None or name not in shared:
+                return own_value
             plain = shared[name]
             return plain if not isinstance(plain, list) else untyped_values({name: plain}).get(name)
 
@@ -210,7 +215,7 @@ class Values:
 
 
 def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
-    return name in stored or any(each.startswith(f"{name}{SEPARATOR}") for each in stored)
+    return name in stored or any(part.startswith(f"{name}{SEPARATOR}") for part in stored)
 
 
 def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:

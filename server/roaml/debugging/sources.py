@@ -53,7 +53,11 @@ class Sources:
 
     @cached_property
     def property_origins(self) -> Mapping[str, Origin]:
-        return {each.name: each.origin for each in self.target.model.properties if each.origin is not None}
+        return {
+            property_.name: property_.origin
+            for property_ in self.target.model.properties
+            if property_.origin is not None
+        }
 
     def states(self, automaton: Automaton) -> Mapping[str, Origin]:
         """The element of each state of a machine, by the name of the state; empty if the machine has no file."""

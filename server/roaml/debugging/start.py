@@ -68,7 +68,7 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
 def _asked(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
     if name in checker.refused:
         raise checker.refused[name]
-    asked = next((each for each in checker.asked if each.question.name == name), None)
+    asked = next((property_ for property_ in checker.asked if property_.question.name == name), None)
     if asked is not None:
         return asked
     checker_of(sources.target, [name])  # raises an error if there is no such property

@@ -8,7 +8,7 @@ import os
 from struct import calcsize
 from typing import Any
 
-SMALL = 1 << 16
+MAX_HEAP_BYTES = 1 << 16
 """The number of bytes up to which memory is allocated on the heap of Python."""
 
 
@@ -19,7 +19,7 @@ def flat(typecode: str, count: int, old: Any = None) -> Any:
         old: an array of the same type whose numbers are copied to the beginning.
     """
     size = count * calcsize(typecode)
-    if size <= SMALL:
+    if size <= MAX_HEAP_BYTES:
         made = memoryview(bytearray(size))
     else:
         # A private mapping, where the system has one: pages that were never written then occupy no memory.

@@ -55,8 +55,8 @@ def _first(space: Space, verdict: int) -> int | None:
     """The state with the smallest number that decides the goal, or in which a trace ends, with this verdict."""
     labels = bytes(memoryview(space.search.label)[: space.search.expanded])
     is_stuck = space.asked.question.is_stuck
-    wanted = bytes(label for label in range(256) if _verdict(label, is_stuck) == verdict)
-    places = (labels.find(label) for label in wanted)
+    matching = bytes(label for label in range(256) if _verdict(label, is_stuck) == verdict)
+    places = (labels.find(label) for label in matching)
     return min((place for place in places if place >= 0), default=None)
 
 

@@ -8,9 +8,9 @@ from roaml.smc.kernel cimport Kernel
 ctypedef unsigned long long u64
 ctypedef long long i64
 
-cdef u64 MASK, HASH_1, HASH_2, HIGH, MOST
-cdef i64 MOST_NUMBERS, MANY
-cdef int LEARNED, LEARNED_STEPS
+cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
+cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
+cdef int SAMPLED_TRACES, SAMPLED_STEPS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
@@ -92,7 +92,7 @@ cdef class StateSearch:
     cdef void _expand(self, i64 state) except *
     @cython.locals(reason=int, added=int, leaf=int)
     cdef int _end(self) noexcept
-    @cython.locals(count=int, found=int, i=int, slot=int, place=int, group=int, first=int, end=int, edge=int, guard=int)
+    @cython.locals(count=int, edge_count=int, i=int, slot=int, place=int, group=int, first=int, end=int, edge=int, guard=int)
     cdef int _open(self, int vector) noexcept
     @cython.locals(first=int, end=int, total=double, way=int, register=int)
     cdef void _weigh(self, int edge) noexcept
@@ -104,5 +104,5 @@ cdef class StateSearch:
     cdef int _next_edges(self, int count) noexcept
     @cython.locals(is_plain=int, j=int, edge=int, successor=i64, head=i64, reward=double, leads_on=int, chance=double)
     cdef int _choose(self, int vector, int count, i64 state, double weight, double exit_reward) except? -9
-    @cython.locals(j=int, i=int, way=int, k=int, cell=int, found=i64)
+    @cython.locals(j=int, i=int, way=int, k=int, cell=int, successor=i64)
     cdef int _successor(self, int vector, int count, i64 state) except? -9

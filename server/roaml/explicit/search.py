@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from roaml.explicit.tables import Tables
     from roaml.smc.kernel import Kernel
 
-MASK = 0xFFFFFFFFFFFFFFFF
+UINT64_MASK = 0xFFFFFFFFFFFFFFFF
 HASH_1 = 0x9E3779B97F4A7C15
 HASH_2 = 0xBF58476D1CE4E5B9
-HIGH = 0xFFFFFFFF
-MOST = 0x7FFFFFFFFFFFFFFF
-MANY = 4096
+UINT32_MASK = 0xFFFFFFFF
+MAX_INT64 = 0x7FFFFFFFFFFFFFFF
+SPARE_BITS_FROM_STATES = 4096
 """With this number of states or more, cells get more bits than they need, because packing all states again is slow."""
-LEARNED, LEARNED_STEPS = 32, 1000
+SAMPLED_TRACES, SAMPLED_STEPS = 32, 1000
 """The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
-MOST_NUMBERS = 0x7FFFFFF0
+MAX_COUNTED_STATES = 0x7FFFFFF0
 """States and distinct numbers are counted with 31 bits."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
@@ -88,7 +88,7 @@ class StateSearch:
         self.most_steps = steps
         self.lower_bound = lower
         self.remembers = 1 if self.leaves > 1 or steps > 0 else 0
-        self.most_states = min(most_states, MOST_NUMBERS)
+        self.most_states = min(most_states, MAX_COUNTED_STATES)
         self.most_bytes = most_bytes
         self.most_choices = most_choices
         self.depth = 0
@@ -186,7 +186,7 @@ class StateSearch:
         goal = self.expanded + states
         try:
             while self.status == PART and self.expanded < goal:
-                if self.count > MANY and self.has_learned == 0:
+                if self.count > SPARE_BITS_FROM_STATES and self.has_learned == 0:
                     self.has_learned = 1
                     self._learn()
                 self._expand(self.expanded)
@@ -217,12 +217,12 @@ class StateSearch:
 
     def choices_of(self, state: int) -> list[tuple[float, float, list[tuple[float, int]]]]:
         """The choices of a state: weight, expected reward, and destinations with their probabilities."""
-        found = []
+        choices = []
         at = self.start[state]
         while at < self.start[state + 1]:
             size = self.code[at]
             if size >= 0:
-                found.append((1.0, 0.0, [(1.0, size)]))
+                choices.append((1.0, 0.0, [(1.0, size)]))
                 at += 1
                 continue
             weight, reward = self.reals[self.code[at + 1]], self.reals[self.code[at + 2]]
@@ -231,8 +231,8 @@ class StateSearch:
             for _ in range(-size):
                 branches.append((self.reals[self.code[at + 1]], self.code[at]))
                 at += 2
-            found.append((weight, reward, branches))
-        return found
+            choices.append((weight, reward, branches))
+        return choices
 
     def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
         """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
@@ -262,8 +262,8 @@ class StateSearch:
 
     def fault(self) -> tuple[int, int, int, int, float]:
         """The undefined operation that ended the search; see `Kernel.problem`."""
-        found: tuple[int, int, int, int, float] = self.kernel.problem()
-        return found
+        problem: tuple[int, int, int, int, float] = self.kernel.problem()
+        return problem
 
     def visit(self, state: int) -> None:
         """Restore the kernel to the state with a number."""
@@ -299,7 +299,7 @@ class StateSearch:
     def _pack(self, cell: int) -> None:
         """Put the current value of a cell into `following`. If the value does not fit, store the cell in `misfit`."""
         value = self._current(cell)
-        code = (value - self.low[cell]) & MASK
+        code = (value - self.low[cell]) & UINT64_MASK
         if code > self.mask[cell]:
             self.misfit = cell
             self.misfit_value = value
@@ -308,14 +308,14 @@ class StateSearch:
             return
         at = self.word[cell]
         shift = self.shift[cell]
-        self.following[at] = (self.following[at] & (MASK ^ (self.mask[cell] << shift))) | (code << shift)
+        self.following[at] = (self.following[at] & (UINT64_MASK ^ (self.mask[cell] << shift))) | (code << shift)
 
     def _decoded(self, state: int, cell: int) -> int:
         code = (self.keys[state * self.words + self.word[cell]] >> self.shift[cell]) & self.mask[cell]
-        return self._signed((code + self.low[cell]) & MASK)
+        return self._signed((code + self.low[cell]) & UINT64_MASK)
 
     def _signed(self, value: int) -> int:
-        return value - MASK - 1 if value > MOST else value
+        return value - UINT64_MASK - 1 if value > MAX_INT64 else value
 
     def _widen(self) -> None:
         """Give the cell `misfit` enough bits for `misfit_value`, and pack all states again."""
@@ -350,14 +350,14 @@ class StateSearch:
     def _learn(self) -> None:
         """Give all cells enough bits for the values that they have in some random traces."""
         self._keep_layout()
-        for trace in range(LEARNED):
+        for trace in range(SAMPLED_TRACES):
             self.kernel.begin(0, trace)
-            for _ in range(LEARNED_STEPS):
+            for _ in range(SAMPLED_STEPS):
                 if self.kernel.step() != UNKNOWN:
                     break
                 for cell in range(self.variables):
                     value = self._current(cell)
-                    if ((value - self.low[cell]) & MASK) > self.room[cell]:
+                    if ((value - self.low[cell]) & UINT64_MASK) > self.room[cell]:
                         self._fit(cell, value)
         self._repack()
         self.kernel.begin(0, 0)
@@ -388,15 +388,15 @@ class StateSearch:
             value = last - 1
             self.low[cell] = least
         greatest = least + self.room[cell]
-        span = (greatest - value if value < least else value - least) & MASK
+        span = (greatest - value if value < least else value - least) & UINT64_MASK
         bits = 0
         while bits < 62 and span >> bits != 0:
             bits += 1
-        if self.count > MANY:
+        if self.count > SPARE_BITS_FROM_STATES:
             bits += 2
         if bits >= 60 or self.first_real <= cell < self.variables:
             self.bits[cell] = 64
-            self.room[cell] = MASK
+            self.room[cell] = UINT64_MASK
             self.low[cell] = 0
         else:
             self.bits[cell] = bits
@@ -418,7 +418,7 @@ class StateSearch:
             for i in range(self.live_start[self.words]):
                 cell = self.live[i]
                 code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.old_mask[cell]
-                code = (code + self.old_low[cell] - self.low[cell]) & MASK
+                code = (code + self.old_low[cell] - self.low[cell]) & UINT64_MASK
                 self.keys[target + self.word[cell]] |= code << self.shift[cell]
         self._rehash(self.table_mask + 1)
 
@@ -456,9 +456,9 @@ class StateSearch:
         """The hash of the key at an index of `keys`."""
         value = HASH_2
         for i in range(self.words):
-            value = ((value ^ self.keys[at + i]) * HASH_1) & MASK
+            value = ((value ^ self.keys[at + i]) * HASH_1) & UINT64_MASK
             value ^= value >> 32
-        return (value * HASH_2) & MASK
+        return (value * HASH_2) & UINT64_MASK
 
     def _rehash(self, size: int) -> None:
         self.table = flat("Q", size)
@@ -475,9 +475,9 @@ class StateSearch:
         there are too many states."""
         value = HASH_2
         for i in range(self.words):
-            value = ((value ^ self.following[i]) * HASH_1) & MASK
+            value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK
             value ^= value >> 32
-        value = (value * HASH_2) & MASK
+        value = (value * HASH_2) & UINT64_MASK
         tag = value >> 32
         state: int
         at = (value >> 7) & self.table_mask
@@ -486,7 +486,7 @@ class StateSearch:
             if entry == 0:
                 break
             if entry >> 32 == tag:
-                state = (entry & HIGH) - 1
+                state = (entry & UINT32_MASK) - 1
                 first = state * self.words
                 same = 1
                 for i in range(self.words):
@@ -569,7 +569,7 @@ class StateSearch:
             self.now[w] = code
             for i in range(self.live_start[w], self.live_start[w + 1]):
                 cell = self.live[i]
-                value = self._signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & MASK)
+                value = self._signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & UINT64_MASK)
                 if value == self.value[cell]:
                     continue
                 if cell < self.places:
@@ -724,11 +724,11 @@ class StateSearch:
         """Collect the enabled edges of each slot that has an effect, and the probabilities of their ways; return the
         number of these slots."""
         count = 0
-        found = 0
+        edge_count = 0
         for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
             slot = self.kernel.active_slot[i]
             self.slots[count] = slot
-            self.edge_from[count] = found
+            self.edge_from[count] = edge_count
             count += 1
             place = self.kernel.place[self.kernel.slot_instance[slot]]
             group = self.kernel.group_start[place]
@@ -740,11 +740,11 @@ class StateSearch:
                 guard = self.kernel.guard[edge]
                 if end - first > 1 and guard >= 0 and self.kernel._execute(guard) == 0:
                     continue
-                self.edges[found] = edge
-                found += 1
+                self.edges[edge_count] = edge
+                edge_count += 1
                 if self.kernel.way_chance[self.kernel.way_start[edge]] >= 0:
                     self._weigh(edge)
-        self.edge_from[count] = found
+        self.edge_from[count] = edge_count
         return count
 
     def _weigh(self, edge: int) -> None:
@@ -871,7 +871,7 @@ class StateSearch:
                 self.now[i] = self.keys[state * self.words + i]
             for cell in range(self.cells):
                 self._pack(cell)
-        found = self._find(state)
+        successor = self._find(state)
         # Restore the kernel to the state.
         for j in range(count):
             way = self.ways[j]
@@ -884,4 +884,4 @@ class StateSearch:
         for k in range(self.kernel.note_count):
             self.kernel.noted[self.kernel.notes[k]] = 0
         self.kernel.note_count = 0
-        return found
+        return successor

@@ -25,13 +25,13 @@ is false."""
 FALSE, TRUE, UNKNOWN = 0, 1, 2
 STATUS, LASTS, FAILS, HOLDS = 3, 4, 8, 16
 INFINITE = float("inf")
-CLOSE = 1e-8
+RELATIVE_TOLERANCE = 1e-8
 """The relative distance of the bounds at which a component is solved."""
-LEAST_CHANGE = 1e-16
+MIN_TOLERANCE = 1e-16
 ROUNDING = 1e-15
-SWEEPS = 100
+MAX_PROOF_STEPS = 100
 """The number of steps after which the attempt to prove upper bounds is given up."""
-SMALL = 2_500
+MAX_DIRECT_STATES = 2_500
 """The maximum number of states of a component that is solved directly if value iteration is slow; the matrix then
 occupies 50 MB."""
 MAX_WORK = 20_000_000_000
@@ -468,8 +468,8 @@ class Solver:
     def _needs_lasting(self, state: int) -> int:
         """Whether paths are accepted only if the lasting condition holds for ever."""
         label = self.label[state]
-        wanted = LASTS if self.accepts == AS_JUDGED else FAILS
-        return 1 if self.accepts != NOTHING and label & (LASTS | FAILS) == wanted else 0
+        accepting = LASTS if self.accepts == AS_JUDGED else FAILS
+        return 1 if self.accepts != NOTHING and label & (LASTS | FAILS) == accepting else 0
 
     def _accept_ends(self) -> None:
         """Give accepted end components the value 1. An end component is accepted if a scheduler can stay in an accepted
@@ -709,11 +709,11 @@ class Solver:
             if self.fixed[state] == 0:
                 self.low[self.group[state]] = 0.0
                 gap = max(gap, self._gap(state))
-        tolerance = CLOSE / 10
+        tolerance = RELATIVE_TOLERANCE / 10
         change = INFINITE
         is_proven = 0
         limit = MAX_WORK
-        if last - first <= SMALL:
+        if last - first <= MAX_DIRECT_STATES:
             limit = self.work + self.size + self._direct_work(first, last)
         while is_proven == 0:
             while change > tolerance and self.work < limit:
@@ -727,8 +727,8 @@ class Solver:
                 own = self.group[self.order[i]]
                 if own == self.order[i] and self.fixed[own] == 0:
                     value = self.low[own]
-                    self.high[own] = value + CLOSE * (value if value > 0.0 else -value) + gap
-            for _ in range(SWEEPS):
+                    self.high[own] = value + RELATIVE_TOLERANCE * (value if value > 0.0 else -value) + gap
+            for _ in range(MAX_PROOF_STEPS):
                 self._step(first, last, self.high)
                 if self.rises == 0:
                     is_proven = 1
@@ -737,7 +737,7 @@ class Solver:
                     break
             if is_proven != 0:
                 break
-            if tolerance < LEAST_CHANGE or self.work >= MAX_WORK:
+            if tolerance < MIN_TOLERANCE or self.work >= MAX_WORK:
                 break
             tolerance /= 10
         if is_proven != 0 and self.is_signed != 0:
@@ -774,7 +774,7 @@ class Solver:
             return 0
         error = process.solve(MINIMUM if self.mode == MINIMUM else MAXIMUM)
         largest = max((abs(value) for value in process.values), default=0.0)
-        if error > CLOSE * (largest if self.is_reward != 0 else 1.0):
+        if error > RELATIVE_TOLERANCE * (largest if self.is_reward != 0 else 1.0):
             return 0
         for i in range(first, last):
             state = self.order[i]
@@ -887,8 +887,8 @@ class Solver:
             own = self.group[self.order[i]]
             if own == self.order[i] and self.fixed[own] == 0:
                 value = self.low[own]
-                self.low[own] = value - CLOSE * (value if value > 0.0 else -value)
-        for _ in range(SWEEPS):
+                self.low[own] = value - RELATIVE_TOLERANCE * (value if value > 0.0 else -value)
+        for _ in range(MAX_PROOF_STEPS):
             self._step(first, last, self.low)
             if self.falls == 0:
                 return 1

@@ -86,13 +86,13 @@ class _Question:
             if is_negated and mode != MEAN:
                 mode = MAXIMUM if mode == MINIMUM else MINIMUM
             if goal.is_bounded and (goal.lower[0] > 0 or goal.upper[0] >= 0):
-                found = self.closed(self.solver(mode), "bounded", target, goal.lower[0], goal.upper[0])
+                bounds = self.closed(self.solver(mode), "bounded", target, goal.lower[0], goal.upper[0])
             else:
-                found = self.closed(self.solver(mode), "probability", target, 0, NOTHING)
-            return Bounds(1 - found.upper, 1 - found.lower) if is_negated else found
+                bounds = self.closed(self.solver(mode), "probability", target, 0, NOTHING)
+            return Bounds(1 - bounds.upper, 1 - bounds.lower) if is_negated else bounds
         if mode == MINIMUM:
-            found = self.closed(self.solver(MAXIMUM), "probability", FALSE, 0, NEGATED)
-            return Bounds(1 - found.upper, 1 - found.lower)
+            bounds = self.closed(self.solver(MAXIMUM), "probability", FALSE, 0, NEGATED)
+            return Bounds(1 - bounds.upper, 1 - bounds.lower)
         return self.closed(self.solver(mode), "probability", TRUE, 0, AS_JUDGED)
 
     def closed(self, solver_: Any, method: str, *arguments: int) -> Bounds:
@@ -101,4 +101,5 @@ class _Question:
             raise NoValueError("rewards are negative in a part of the model that can be repeated for ever")
         if solver_.has_ended_early:
             self.is_precise = False
-        return Bounds(low, high)
+        # Equal bounds can be in the wrong order after rounding.
+        return Bounds(min(low, high), max(low, high))

@@ -33,6 +33,10 @@ class Tone(enum.Enum):
     ACTION = "action"
     CONDITION = "condition"
     SUBTREE = "subtree"
+    IDLE = "idle"
+    RUNNING = "running"
+    SUCCESS = "success"
+    FAILURE = "failure"
 
 
 class Outline(enum.Enum):
@@ -73,11 +77,12 @@ class TextItem:
 
 @dataclass(frozen=True, slots=True)
 class Polyline:
-    """A polyline with round corners. With `has_arrow`, it has an arrow head at its end."""
+    """A polyline, usually with round corners. With `has_arrow`, it has an arrow head at its end."""
 
     points: tuple[Point, ...]
     has_arrow: bool = False
     role: str = "line"
+    is_round: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +103,7 @@ class Group:
         node: the index of the node that the group shows, if it shows one.
         edges: the indexes of the edges that the group shows.
         hint: the whole text, if the items show only a part of it.
+        step: the number of the step of a run that the group shows.
     """
 
     role: str
@@ -107,6 +113,7 @@ class Group:
     node: int | None = None
     edges: tuple[int, ...] = ()
     hint: str = ""
+    step: int | None = None
 
 
 Leaf: TypeAlias = Shape | TextItem | Polyline | Glyph

@@ -18,7 +18,10 @@ _HEAD = (9.0, 4.5)
 """The length and half the width of an arrow head."""
 
 
-def svg_file(drawing: Drawing, title: str, theme: str = "light") -> str:
+PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css")
+
+
+def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[str, ...] = PICTURE_STYLES) -> str:
     """The text of an SVG file."""
     width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
     area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
@@ -26,7 +29,7 @@ def svg_file(drawing: Drawing, title: str, theme: str = "light") -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(-MARGIN)} {_n(-MARGIN)} {_n(width)} {_n(height)}" '
         f'width="{_n(width)}" height="{_n(height)}" role="img">\n'
         f"<title>{escape(title)}</title>\n"
-        f"<style>\n{style_sheet(theme)}</style>\n"
+        f"<style>\n{style_sheet(theme, styles)}</style>\n"
         f'<rect {area} fill="{THEMES[theme]["background"]}"/>\n'
         f"{svg_scene(drawing)}</svg>\n"
     )
@@ -41,6 +44,7 @@ def _group(group: Group) -> str:
     classes = [group.role, f"tone-{group.tone.value}", *(f"is-{kind}" for kind in group.kind.split())]
     data = f' data-node="{group.node}"' if group.node is not None else ""
     data += f' data-edges="{" ".join(map(str, group.edges))}"' if group.edges else ""
+    data += f' data-step="{group.step}"' if group.step is not None else ""
     hint = f"<title>{escape(group.hint)}</title>" if group.hint else ""
     items = "".join(_group(item) if isinstance(item, Group) else "".join(_item(item)) for item in group.items)
     return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
@@ -55,7 +59,7 @@ def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
             place = f'x="{_n(item.x)}" y="{_n(item.y)}" font-size="{_n(item.size)}"'
             yield f'<text class="{role}" {place}>{escape(item.text, quote=False)}</text>'
         case Polyline():
-            yield f'<path class="{item.role}" d="{path(_shortened(item))}"/>'
+            yield f'<path class="{item.role}" d="{path(_shortened(item), _CORNER if item.is_round else 0.0)}"/>'
             if item.has_arrow:
                 yield f'<polygon class="head" points="{_points(_head(item.points))}"/>'
         case Glyph():
@@ -104,6 +108,8 @@ def _rectangle(box: Box, radius: float, role: str) -> str:
 
 def path(points: Sequence[Point], radius: float = _CORNER) -> str:
     """A polyline with round corners, as the `d` of a path."""
+    if not radius:
+        return "M " + " L ".join(f"{_n(point.x)} {_n(point.y)}" for point in points)
     parts = [f"M {_n(points[0].x)} {_n(points[0].y)}"]
     for before, corner, after in zip(points, points[1:], points[2:], strict=False):
         bend = min(radius, math.dist(before, corner) / 2, math.dist(corner, after) / 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style sheet of pictures in files: `figure.css` with the colors of a theme.
+"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, with the colors of a theme.
 
 Many programs that show SVG do not support CSS variables, so files contain the colors themselves.
 """
@@ -25,6 +25,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#0969da",
         "purple": "#8250df",
         "orange": "#bc4c00",
+        "red": "#cf222e",
         "yellow": "#8a6100",
     },
     "dark": {
@@ -38,6 +39,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#6cb6ff",
         "purple": "#c8a2ff",
         "orange": "#f0a45d",
+        "red": "#ff8b85",
         "yellow": "#e5c454",
     },
     "high-contrast": {
@@ -51,6 +53,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#6fc3df",
         "purple": "#d7afff",
         "orange": "#ffb266",
+        "red": "#ff9b94",
         "yellow": "#ffe066",
     },
     "high-contrast-light": {
@@ -64,6 +67,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "blue": "#0f4a85",
         "purple": "#5b2a9d",
         "orange": "#8a3500",
+        "red": "#a1121d",
         "yellow": "#5f4300",
     },
 }
@@ -71,9 +75,13 @@ THEMES: Mapping[str, Mapping[str, str]] = {
 
 
 @cache
-def style_sheet(theme: str) -> str:
-    """The rules for a file, with the colors of a theme. A rule that uses a tone is written once for every tone."""
-    css = (Path(__file__).parent / "figure.css").read_text(encoding="utf-8")
+def style_sheet(theme: str, names: tuple[str, ...]) -> str:
+    """The rules for a file, with the colors of a theme. A rule that uses a tone is written once for every tone.
+
+    Args:
+        names: the style sheets in this folder.
+    """
+    css = "".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in names)
     css = re.sub(r"/\*.*?\*/", "", css, flags=re.DOTALL)
     values = {f"--figure-{name}": color for name, color in THEMES[theme].items()} | {"--figure-font": _FONT}
     css = re.sub(r"var\((--figure-[\w-]+)\)", lambda match: values[match[1]], css)

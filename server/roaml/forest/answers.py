@@ -142,7 +142,7 @@ class Possible:
             order.append(node)
             stack += node.children
         stopped_nodes = []
-        for node in reversed(order):  # children before their parents
+        for node in reversed(order):  # so that children are visited before their parents
             stopped = self._stopped(node, answers)
             if stopped is not None and stopped[1] not in has_inner:
                 stopped_nodes.append(stopped)

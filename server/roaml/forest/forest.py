@@ -166,7 +166,7 @@ class Forest:
         return len(names) > 1
 
     def node(self, name: str) -> Node | None:
-        """The declaration of the node type with a name; `None` if there is none."""
+        """The declaration of the node type `name`; `None` if there is none."""
         declaration = CPP.nodes.get(name)
         if declaration is not None and not declaration.until and not self.is_newer_than_used(declaration):
             return declaration

@@ -210,7 +210,7 @@ def expression_tokens(source: Decoded) -> Iterator[SemanticToken]:
 
 @lru_cache(maxsize=5000)  # files repeat the same expressions, and most are unchanged after the next keystroke
 def _words(text: str) -> tuple[tuple[int, int, TokenKind], ...]:
-    """The beginnings and ends of the tokens of an expression in its text, and their kinds."""
+    """The tokens of an expression: the offsets in its text at which each begins and ends, and its kind."""
     words: list[tuple[int, int, TokenKind]] = []
     tokens = expr.tokens(text)
     for i, token in enumerate(tokens):

@@ -142,7 +142,8 @@ class _Place(Protocol):
 
 
 class _Share:
-    """A folder whose subfolders are packages with the names of the subfolders; only requested packages are listed."""
+    """A folder whose subfolders are packages. The name of a subfolder is the name of the package. Only requested
+    packages are listed."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -177,7 +178,7 @@ class _Tree:
 
     @property
     def is_cut(self) -> bool:
-        """Whether there are more folders than are searched."""
+        """Whether some folders were not searched because there are more than `MAX_FOLDERS`."""
         return self._listed().is_cut
 
     def files(self, package: str) -> _Files:

@@ -34,7 +34,8 @@ class JsonObject(_Value):
     members: tuple[Member, ...]
 
     def get(self, key: str) -> JsonValue | None:
-        """The value of the last member with `key` (the one that other readers use), if there is any."""
+        """The value of the last member with `key`, which is the one that other JSON parsers use; `None` if there is
+        none."""
         for member in reversed(self.members):
             if member.key == key:
                 return member.value

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tree of a system whose nodes are executed as by BehaviorTree.CPP (docs/spec/nodes.md#library).
+"""Translates the tree of a system whose nodes are executed as BehaviorTree.CPP executes them
+(docs/spec/nodes.md#library).
 
-- Nodes of the libraries become programs. Plugins stay machines and take part by the same events.
-- Conditions of plugins and of `<SubTree>` are evaluated by automata of their own. Such an automaton receives the events
-  of the node, `bt_1003_tick`; the node itself then has another address, `bt_1003_inner_tick`.
+- Nodes of the libraries become programs. Plugins remain machines and exchange the same events.
+- Separate automata evaluate the conditions of plugins and of `<SubTree>` nodes. Such an automaton receives the events
+  of the node, such as `bt_1003_tick`. The node itself then has another address, as in `bt_1003_inner_tick`.
 """
 
 from __future__ import annotations
@@ -54,13 +55,14 @@ _NEVER_TICK_ENDED = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class LibraryTree:
-    """
+    """The translation of a tree.
+
     Attributes:
-        codes: instance -> what determines the automata of its conditions, the outermost first, and of its program; that
-            of a machine is not among them.
-        addresses: instance -> its address in events, if that is not its number.
-        board: the blackboard.
-        refusals: why the tree cannot be translated.
+        codes: number of an instance -> the inputs for its automata: those of its conditions, the outermost first, and
+            that of its program. Machines are not included.
+        addresses: number of an instance -> its address in names of events, if it differs from the number.
+        board: the entries of the blackboard.
+        refusals: the reasons why the tree cannot be translated.
     """
 
     codes: Mapping[int, tuple[NodeCode, ...]]
@@ -72,13 +74,14 @@ class LibraryTree:
         return self.addresses.get(number, str(number))
 
     def automata(self, number: int) -> tuple[Automaton, ...]:
-        """The automata of an instance, in the order of `codes`."""
+        """The automata of the instance `number`, in the order of `codes`."""
         return tuple(node_automaton(code).automaton for code in self.codes[number])
 
 
 @dataclass(frozen=True, eq=False)
 class _FrameNames:
-    """The names in one use of a tree. `initial` collects the entries whose values a `<SubTree>` gives as constants."""
+    """The names in one use of a tree. Entries that a `<SubTree>` sets to constants are added to `initial`, with the
+    texts of the constants."""
 
     frame: Frame
     initial: dict[str, str] = field(repr=False)
@@ -92,13 +95,14 @@ class _FrameNames:
         return variable
 
     def is_initial(self, entry: str) -> bool:
-        """Whether a `<SubTree>` gives the value of an entry as a constant."""
+        """Whether a `<SubTree>` sets an entry to a constant."""
         return entry in self.initial
 
 
 @dataclass(eq=False)
 class _Part:
-    """One automaton of an instance: its conditions, or the node itself; `program` is `None` for a machine."""
+    """One part of an instance, which becomes an automaton: the conditions of a node, or the node itself. `program` is
+    `None` for a machine."""
 
     node: ExecutedNode
     program: NodeProgram | None
@@ -107,10 +111,10 @@ class _Part:
 
 
 class LibraryTreeBuilder:
-    """Translates the tree of a system. The variables of its blackboard are known before the rest is translated.
+    """Translates the tree of a system. The variables of the blackboard are determined first.
 
     Args:
-        system: its `entries` are not used.
+        system: the system; `System.entries` is not used.
         files: the tree files of the system, by path.
     """
 
@@ -120,13 +124,13 @@ class LibraryTreeBuilder:
         self.refusals: list[TreeRefusal] = []
         self.parts = {instance.number: tuple(self.parts_of(instance)) for instance in system.instances}
         nodes = [part for parts in self.parts.values() for part in parts]
-        # Each part has a number of its own in the tree of all parts.
+        # In the tree of all parts, each part has a separate number.
         self.tree_of_parts = ExecutedTree(
             "", tuple(replace(part.node, number=index) for index, part in enumerate(nodes)), self.initial
         )
         used = {index: part.program for index, part in enumerate(nodes)}
         for node in self.tree_of_parts.nodes:
-            list(node.ports())  # finds the constants of subtrees
+            list(node.ports())  # adds the constants of subtrees to `initial`
         self.board = build_board(self.tree_of_parts, {}, used, self.machine_types())
         self.index = {id(part): index for index, part in enumerate(nodes)}
         self.tick_rate = Fraction(str(system.parameters.tick_rate))
@@ -135,7 +139,7 @@ class LibraryTreeBuilder:
     # ------------------------------------------------------------------- parts
 
     def parts_of(self, instance: Instance) -> Iterator[_Part]:
-        """The automata of an instance, the outermost first."""
+        """The parts of an instance, the outermost first; empty if its node cannot be translated."""
         automaton = self.system.by_instance.get(instance.number)
         source = self.source(instance)
         if automaton is None or source is None:
@@ -189,7 +193,7 @@ class LibraryTreeBuilder:
         return node_at(file, instance.source) if file else None
 
     def machine_types(self) -> dict[str, str]:
-        """The variables to which ports of machines are bound, with the names of their types."""
+        """Variable to which a port of a machine is bound -> the name of its type."""
         types: dict[str, str] = {}
         for variable, ports in self.system.blackboard.items():
             if any(bound.automaton.path for bound in ports):
@@ -199,7 +203,7 @@ class LibraryTreeBuilder:
     # ---------------------------------------------------------------- automata
 
     def entries(self) -> Mapping[str, EntryOutline]:
-        """The variables of the blackboard, by name."""
+        """Name of a variable of the blackboard -> its outline."""
 
         def outline(name: str, type_: str) -> EntryOutline:
             ports = self.system.blackboard.get(name, ())
@@ -210,7 +214,7 @@ class LibraryTreeBuilder:
         return {name: outline(name, entry.type_name) for name, entry in self.board.entries.items()} | flags
 
     def tree(self) -> LibraryTree:
-        """The translated tree."""
+        """Translate the tree. Parts that cannot be translated are left out, with a refusal for each."""
         codes: dict[int, tuple[NodeCode, ...]] = {}
         refusals = list(self.refusals)
         children: dict[int, Child] = {}
@@ -240,7 +244,7 @@ class LibraryTreeBuilder:
         return LibraryTree(codes, addresses, self.board, tuple(refusals))
 
     def child(self, code: NodeCode) -> Child:
-        """What the parent of a node has to know of it. Automata of nodes with equal shapes are built only once.
+        """The properties of a node on which its parent depends. Nodes with equal shapes are explored only once.
 
         Raises:
             NodeTooLargeError: the node has too many states.
@@ -258,13 +262,18 @@ class LibraryTreeBuilder:
 
     @cached_property
     def constants_of_machines(self) -> frozenset[str]:
-        """The entries that are constants for ports of machines, because a `<SubTree>` gives their values."""
+        """The entries to which ports of machines are bound and that a `<SubTree>` sets to constants. The machines use
+        them as constants."""
         machines = [parts[-1] for parts in self.parts.values() if parts and parts[-1].program is None]
         bound = ((part, entry) for part in machines for _, entry, _, _ in part.node.ports() if entry is not None)
         return frozenset(entry for part, entry in bound if _names(part).is_initial(entry))
 
     def check(self, part: _Part) -> None:
-        """A constant that a port of a machine has got cannot change."""
+        """Check that a part does not write an entry that a machine uses as a constant.
+
+        Raises:
+            TreeRefusal: the part writes such an entry.
+        """
         for attribute in script_attributes(part.node.node):
             for name, operator in names_in(attribute.value):
                 if operator != "read" and part.node.frame.entry(name) in self.constants_of_machines:
@@ -280,7 +289,9 @@ class LibraryTreeBuilder:
             if not children[number].answers <= STATUSES:
                 below = self.system.by_instance[number].instance
                 name = below.name if below else ""
-                reason = f"the plugin `{instance.plugin}` does not know the status SKIPPED, and `{name}` can be skipped"
+                reason = (
+                    f"`{name}` can be skipped, but its parent, the plugin `{instance.plugin}`, cannot handle SKIPPED"
+                )
                 raise TreeRefusal(part.node.origin, reason)
 
     def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...]) -> NodeCode:
@@ -316,17 +327,18 @@ def _names(part: _Part) -> _FrameNames:
 
 
 def _constant(name: str, origin: Location) -> TreeRefusal:
-    reason = f"`{name}` is a constant that a `<SubTree>` gives to the port of a plugin; nothing can assign it"
+    reason = f"`{name}` is a constant that a `<SubTree>` passes to the port of a plugin, so it cannot be assigned"
     return TreeRefusal(origin, reason)
 
 
 def _address(number: int, level: int) -> str:
-    """The address of a part of an instance: the outermost one has its number."""
+    """The address of a part of the instance `number`. `level` is 0 for the outermost part, whose address is the
+    number."""
     return str(number) if level == 0 else f"{number}_inner" if level == 1 else f"{number}_inner{level}"
 
 
 def _declared(automaton: SystemAutomaton) -> Node:
-    """The declaration of a node: that of its library, or of the ports of its machine."""
+    """The declaration of a node in its library; for a machine, a declaration with its ports."""
     name = automaton.outline.name
     if automaton.path:
         return _of_machine(automaton.outline)

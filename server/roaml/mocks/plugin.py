@@ -32,8 +32,8 @@ def mock_plugin(name: str, mock: Mock, rate: Fraction, ports: Sequence[MockPort]
     """A plugin that answers like a mock.
 
     Args:
-        name: the name of the plugin, the type of the node.
-        rate: ticks of the tree in a second; the plugin counts ticks.
+        name: the name of the plugin, which is the type of the node.
+        rate: the ticks of the tree per second; the plugin counts ticks.
         is_condition: whether it always answers within the tick.
     """
     duration = 0 if is_condition else ticks_of(mock.duration, rate)
@@ -63,7 +63,7 @@ class _Plugin:
         return lines
 
     def states(self) -> list[str]:
-        """An action that has ended gives its old answer until it is halted; a condition is asked again."""
+        """An action that has ended returns the same status until it is halted; a condition is evaluated again."""
         if self.is_condition:
             return self.state("idle", [*self.drawn("idle", "idle"), *_halt("idle")])
         lines = []
@@ -84,7 +84,7 @@ class _Plugin:
         return [f'    <state id="{name}">', *(f"        {line}" for line in body), "    </state>"]
 
     def drawn(self, succeeded: str, failed: str) -> list[str]:
-        """The transition by which chance decides the answer and the outputs."""
+        """The transition with the random answer and the random outputs."""
         outcomes: list[tuple[float, str, list[str]]] = []
         if self.success > 0:
             for share, outputs in self.outputs():

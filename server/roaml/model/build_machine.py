@@ -206,8 +206,8 @@ class _Builder:
         return (Target(None, name_of(element.get("target")), None, self.body(element)),)
 
     def handle(self, element: Element, type_: ElementType) -> Name | None:
-        """The handle that a callback or a sending element refers to, in `name`; without `name`, the interface that it
-        names, as in models in the older dialect."""
+        """The handle that a callback or a sending element refers to; `None` if there is none. It is the value of
+        `name`; if `name` is missing, as in the older dialect, it is the name of the interface."""
         if type_.attributes.get("name") is None or not type_.attributes["name"].refers:
             return None
         named = name_of(element.get("name"))

@@ -129,7 +129,7 @@ class Instance:
 
     Attributes:
         number: 1000 for the root, then increasing in pre-order; the number is a part of event names.
-        automaton: `BT_plugin_<number>_<name>`.
+        automaton: the name of its automaton, `BT_plugin_<number>_<name>`.
         ports: the values that the tree sets, including defaults of `<TreeNodesModel>`.
         children: the numbers of its children.
         condition: whether it is written as `<Condition>`, or declared so in `<TreeNodesModel>`.
@@ -399,13 +399,13 @@ class Frame:
     def _outer_value(self, name: str) -> PortValue | None:
         """The value of a name in the outermost use of a tree that remaps or uses it; `None` if neither this use nor the
         uses from which it takes its names do so."""
-        asked: list[Frame] = []
+        visited: list[Frame] = []
         frame: Frame | None = self
         while frame is not None and name not in frame.remapped and name not in frame.looked_up:
-            asked.append(frame)
+            visited.append(frame)
             frame = frame.outer if frame.autoremap and not name.startswith("_") else None
         value = None if frame is None else frame.remapped.get(name) or frame.looked_up.get(name)
-        for frame in reversed(asked):
+        for frame in reversed(visited):
             if value is None and name in frame.names:
                 value = Reference(f"{frame.prefix}{name}")
             frame.looked_up[name] = value

@@ -15,7 +15,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, slots=True)
 class MissingMembers:
-    """An object literal lacks members."""
+    """An object literal has no value for the members `names` of the struct."""
 
     span: Span
     struct: Struct

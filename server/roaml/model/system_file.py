@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roaml.disk import UnreadableReason
+from roaml.exhaustive import Vocabulary
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.parameters import (
@@ -25,7 +26,18 @@ from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
 
-SECTIONS = ("data_declarations", "behavior_tree", "node_models", "properties")
+
+class SystemSection(Vocabulary):
+    """The sections of a system file that list files, by the names of their elements, in the order of the file."""
+
+    DATA_DECLARATIONS = "data_declarations"
+    BEHAVIOR_TREE = "behavior_tree"
+    NODE_MODELS = "node_models"
+    PROPERTIES = "properties"
+
+
+SECTION_NAMES = tuple(section.value for section in SystemSection)
+
 
 TREE_TYPES = ("bt.cpp-xml",)
 PLUGIN_TYPES = ("bt-plugin-ascxml", "bt-plugin-ros-scxml")
@@ -37,7 +49,7 @@ class SystemInput:
     """An `<input>`: a file of the system. `section` is the name of the enclosing element."""
 
     element: Element
-    section: str
+    section: SystemSection
     type: Name | None
     src: Name | None
 
@@ -83,7 +95,7 @@ def required_kind(entry: SystemInput) -> FileKind | None:
     A misspelled type is read as the most similar one."""
     if entry.type is None:
         return None
-    if entry.type.value == "xml" and entry.section == "properties":
+    if entry.type.value == "xml" and entry.section is SystemSection.PROPERTIES:
         return FileKind.XML_PROPERTIES
     close = (
         close_names(entry.type.value, _REQUIRED_KINDS, 1)
@@ -107,7 +119,7 @@ class SystemFile:
     older: bool
     parameters: Parameters
     inputs: tuple[SystemInput, ...]
-    unread: frozenset[str]
+    unread: frozenset[SystemSection]
 
     def parameter(self, name: str) -> Element | None:
         """The element that sets the parameter `name`; `None` if there is none. If there are several, it is the last one
@@ -141,13 +153,18 @@ def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -
 _INPUT = ("type", "src")
 
 
-def _section(element: Element) -> str:
-    """The name of the section that an element contains; "" if it is not a section. A misspelled name is corrected."""
-    if element.name in SECTIONS or element.prefix:
-        return element.name if element.name in SECTIONS else ""
+def section_named(name: str) -> SystemSection | None:
+    """The section whose element has the name `name`; `None` for other elements."""
+    return SystemSection(name) if name in SECTION_NAMES else None
+
+
+def _section(element: Element) -> SystemSection | None:
+    """The section that an element contains; `None` if it is not a section. A misspelled name is corrected."""
+    if element.name in SECTION_NAMES or element.prefix:
+        return section_named(element.name)
     if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):
-        return ""
-    return next(iter(close_names(element.name, SECTIONS, 1)), "")
+        return None
+    return section_named(next(iter(close_names(element.name, SECTION_NAMES, 1)), ""))
 
 
 def _is_input(element: Element) -> bool:
@@ -157,13 +174,13 @@ def _is_input(element: Element) -> bool:
     return not element.prefix and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None
 
 
-def _unread(root: Element) -> frozenset[str]:
-    sections: set[str] = set()
+def _unread(root: Element) -> frozenset[SystemSection]:
+    sections: set[SystemSection] = set()
     for child in root.elements:
         section = _section(child)
         hidden = [element for part in child.elements if not (section and _is_input(part)) for element in part.walk()]
         if any(element.get("src") for element in (hidden if section else (child, *hidden))):
-            sections |= {section} if section else set(SECTIONS)  # the intended parent may be any section
+            sections |= {section} if section else set(SystemSection)  # the intended parent may be any section
     return frozenset(sections)
 
 

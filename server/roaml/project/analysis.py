@@ -47,7 +47,7 @@ from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_ty
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
 from roaml.model.system import System, sanitise
-from roaml.model.system_file import ListedFile, SystemFile, SystemInput, build_system_file, required_kind
+from roaml.model.system_file import ListedFile, SystemFile, SystemInput, SystemSection, build_system_file, required_kind
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
 from roaml.project.configuration import Configuration, read_configuration
@@ -330,12 +330,12 @@ class Analysis:
             self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
         return self._listed[path]
 
-    def lists_all(self, system: str, section: str) -> bool:
+    def lists_all(self, system: str, section: SystemSection) -> bool:
         """Whether all files that a system lists in the section `section` are known and can be used."""
         file = self.system_file(system)
         if file is None or section in file.unread:
             return False
-        return all(listed.usable for listed in self.listed(system) if listed.input.section == section)
+        return all(listed.usable for listed in self.listed(system) if listed.input.section is section)
 
     def _listed_file(self, base: str, entry: SystemInput) -> ListedFile:
         kind_required = required_kind(entry)
@@ -563,8 +563,8 @@ class Analysis:
         return self._structs[system]
 
     def _resolve_structs(self, system: str) -> Structs:
-        section = "data_declarations"
-        files = [f.path for f in self.listed(system) if f.usable and f.input.section == section]
+        section = SystemSection.DATA_DECLARATIONS
+        files = [f.path for f in self.listed(system) if f.usable and f.input.section is section]
         declared = [declaration.outline for path in files for declaration in self.struct_declarations(path)]
         outlines = tuple(outline for outline in declared if outline is not None)
         complete = self.lists_all(system, section) and None not in declared and all(map(self._is_well_formed, files))
@@ -594,8 +594,8 @@ class Analysis:
 
         def link_with(events: Mapping[str, Struct]) -> Round[System, Struct]:
             outlines = [(f, self.outline(f.path, path, structs, events)) for f in machines]
-            nodes = tuple((f.path, o) for f, o in outlines if f.input.section == "node_models")
-            plugins = tuple((f.path, o) for f, o in outlines if f.input.section == "behavior_tree")
+            nodes = tuple((f.path, o) for f, o in outlines if f.input.section is SystemSection.NODE_MODELS)
+            plugins = tuple((f.path, o) for f, o in outlines if f.input.section is SystemSection.BEHAVIOR_TREE)
             known = (gaps, plugins_known, observed)
             key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
             make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
@@ -671,12 +671,12 @@ class Analysis:
         broken = self._broken(path)
         if broken is not None:
             yield path, PlacedGap(Gap(GapAct.ANYTHING), broken)
-        if "node_models" in file.unread:
+        if SystemSection.NODE_MODELS in file.unread:
             yield path, PlacedGap(Gap(GapAct.ANYTHING), root)
-        if "behavior_tree" in file.unread:
+        if SystemSection.BEHAVIOR_TREE in file.unread:
             yield path, PlacedGap(Gap(GapAct.NODE), root)
         for entry in listed:
-            if entry.input.section == "node_models" and not entry.usable:
+            if entry.input.section is SystemSection.NODE_MODELS and not entry.usable:
                 yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
         yield from ((place, PlacedGap(Gap(GapAct.NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         outlines = self.tree_outlines(path)
@@ -709,7 +709,7 @@ class Analysis:
     def _tree_gaps(self, path: str, file: SystemFile, listed: tuple[ListedFile, ...]) -> Iterator[tuple[str, Span]]:
         """The positions (path and span) of the errors because of which some nodes of the executed tree are unknown."""
         listed_trees = [f for f in listed if f.required_kind is FileKind.TREE]
-        section = file.element.find("behavior_tree")
+        section = file.element.find(SystemSection.BEHAVIOR_TREE.value)
         if not listed_trees:
             if section is not None:
                 yield path, section.name_span
@@ -754,10 +754,10 @@ class Analysis:
     def _knows_plugins(self, path: str, listed: tuple[ListedFile, ...]) -> bool:
         """Whether the names of all plugins of the system are known: no error hides a plugin or its name."""
         file = self.system_file(path)
-        if file is None or "behavior_tree" in file.unread or not self._is_well_formed(path):
+        if file is None or SystemSection.BEHAVIOR_TREE in file.unread or not self._is_well_formed(path):
             return False
         for entry in listed:
-            if entry.input.section == "behavior_tree" and entry.required_kind is not FileKind.TREE:
+            if entry.input.section is SystemSection.BEHAVIOR_TREE and entry.required_kind is not FileKind.TREE:
                 machine = self.machine(entry.path) if entry.required_kind is FileKind.MACHINE and entry.usable else None
                 if machine is None or machine.name is None or not self._is_well_formed(entry.path):
                     return False

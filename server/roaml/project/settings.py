@@ -70,7 +70,7 @@ class Settings:
 
 
 def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ...]:
-    """The folders in `AMENT_PREFIX_PATH`."""
+    """The folders in the variable `AMENT_PREFIX_PATH` of an environment, in which ROS packages are installed."""
     return tuple(part for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
 
 

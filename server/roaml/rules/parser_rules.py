@@ -40,7 +40,9 @@ MISSING_FOLDER = _parser_rule(
 )
 NESTING_TOO_DEEP = _parser_rule("nesting-too-deep", Severity.ERROR, "Elements are nested too deeply to be analysed.")
 TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not valid TOML.")
-UNDEFINED_ENTITY = _parser_rule("undefined-entity", Severity.ERROR, "An entity is not one of the five predefined ones.")
+UNDEFINED_ENTITY = _parser_rule(
+    "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
+)
 XML_SYNTAX = _parser_rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.")
 
 RULES = (

@@ -30,7 +30,7 @@ from roaml.model.ros import InterfaceType, RepeatedType
 from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import System, SystemAutomaton
-from roaml.model.system_file import ListedFile, SystemFile
+from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
 from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
@@ -84,7 +84,7 @@ class MachineContext:
     dialect: Dialect
     system: System | None
     automata: tuple[SystemAutomaton, ...]
-    listed_as: frozenset[str]
+    listed_as: frozenset[SystemSection]
     struct: Callable[[str], Type | None]
     struct_names: tuple[str, ...]
     all_structs: bool

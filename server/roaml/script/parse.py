@@ -58,7 +58,7 @@ _TOKEN = re.compile(
 )
 
 _INSTEAD = {
-    "%": "the script language does not support the remainder",
+    "%": "the script language does not support remainders",
     "++": "write `+= 1`",
     "<<": "the script language does not support shifts",
     ">>": "the script language does not support shifts",

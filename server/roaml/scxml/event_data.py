@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The types of the parameters of events (docs/spec/jani.md#global-variables).
+"""Infers the types of the parameters of events (docs/spec/jani.md#global-variables).
 
-They depend on each other, because a `<send>` may forward what the received event carries. So they are inferred in
-rounds: each round uses the types of the round before, until those of the forwarded parameters no longer change.
+The types depend on each other, because a `<send>` may forward the data of the received event. So they are inferred in
+rounds. Each round uses the types of the previous round, until the types of forwarded parameters no longer change.
 """
 
 from __future__ import annotations
@@ -17,16 +17,18 @@ T = TypeVar("T")
 D = TypeVar("D")
 
 MAX_DIMENSIONS = 100
-"""The maximum number of dimensions of an inferred array. An event that forwards itself in an array has no bound."""
+"""The maximum number of dimensions of an inferred array. An event that forwards its own data in an array would add a
+dimension in each round."""
 
 
 @dataclass(frozen=True, slots=True)
 class Round(Generic[T, D]):
-    """
+    """The result of one round.
+
     Attributes:
-        result: what the round computed.
+        result: the result of the computation, in which the types of the previous round were used.
         data: event -> the types of its data.
-        forwarded: the events whose data the parameters of events depend on.
+        forwarded: the events whose data is forwarded, so that the parameters of other events depend on it.
     """
 
     result: T
@@ -35,10 +37,15 @@ class Round(Generic[T, D]):
 
 
 def infer_in_rounds(infer: Callable[[Mapping[str, D]], Round[T, D]]) -> T:
-    """The result of the last round. The first one knows no data of events."""
+    """The result of the last round.
+
+    Args:
+        infer: computes one round from the known types: event -> the types of its data. In the first round, no types are
+            known.
+    """
     known: Mapping[str, D] = {}
     last = infer(known)
-    # The type of a parameter can change twice: unknown, int, real.
+    # The type of a parameter can change only twice: from unknown to int, and from int to real.
     for _ in range(2 * len(last.forwarded) + 1):
         if all(last.data.get(event) == known.get(event) for event in last.forwarded):
             break
@@ -48,11 +55,11 @@ def infer_in_rounds(infer: Callable[[Mapping[str, D]], Round[T, D]]) -> T:
 
 
 def parameter_types(sent: Iterable[tuple[str, Type]]) -> dict[str, Type]:
-    """The types of the parameters of an event, in the order of their first occurrence. If the types of the values of a
-    parameter do not fit, the first known one is used.
+    """Parameter of an event -> its type, in the order of the first occurrences. If the values of a parameter have
+    incompatible types, the first known type is used.
 
     Args:
-        sent: name and type of each value that is sent.
+        sent: the parameter and the type of each value that is sent.
     """
     types: dict[str, Type] = {}
     for name, type_ in sent:

@@ -77,6 +77,7 @@ class Run:
 
     Attributes:
         start: the variables of the model before the first step.
+        first_locations: the location of each instance before the first step.
         steps: all steps taken, including those after the position.
         decisions: the decision of each of these steps.
         position: the number of steps before the current state.
@@ -112,6 +113,7 @@ class Run:
         self._begin()
         shared = self.legend.layout.shared
         self.start = dict(zip((storage.name for storage in shared), self._reader.values(shared), strict=True))
+        self.first_locations = self.locations()
         for number, decision in enumerate(decisions, 1):
             if self.advance(decision) is None:
                 raise RunError(f"step {number} cannot be taken: the run has ended before it")
@@ -237,7 +239,7 @@ class Run:
             if not is_possible(self.legend, self._reader.variables, decision):
                 raise RunError("the model has no such event or variable, or the value does not fit")
             if decision.event and not self.is_free(decision.event):
-                raise RunError("the last message of this kind has not been received yet")
+                raise RunError("the previous message of this kind has not been received yet")
             return
         for enabled in self.enabled():
             if enabled.vector == decision.vector:

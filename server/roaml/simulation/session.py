@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -202,6 +202,16 @@ class Session:
         """The decision of each of `steps`; `None` where the seed decides."""
         return self._run.decisions
 
+    @property
+    def start(self) -> Mapping[str, Plain]:
+        """The variables of the model before the first step."""
+        return self._run.start
+
+    @property
+    def first_locations(self) -> tuple[str, ...]:
+        """The location of each instance before the first step."""
+        return self._run.first_locations
+
     def locations(self) -> tuple[str, ...]:
         """The name of the current location of each instance."""
         return self._run.locations()
@@ -211,7 +221,7 @@ class Session:
         return self._follower.events.parameters(event)
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
-        """The parts of a step except for those of automata that only hold an event."""
+        """The parts of a step, except those of automata that only buffer an event."""
         return self._follower.events.actors(step)
 
     @property
@@ -223,6 +233,11 @@ class Session:
     def automata_of_model(self) -> Sequence[Automaton]:
         """The automaton of each instance."""
         return self._automata
+
+    @property
+    def resting(self) -> Sequence[frozenset[str]]:
+        """For each instance, the locations in which it waits for an event, or that it never leaves."""
+        return self._resting
 
     def is_resting(self, instance: int, location: str) -> bool:
         """Whether an instance waits for an event in a location, or never leaves it."""

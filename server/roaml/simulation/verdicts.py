@@ -43,7 +43,7 @@ class Verdicts:
     def at(self, position: int) -> list[Decided]:
         """The properties that are decided exactly at a position. The run must have been followed up to it."""
         decided = [follower.decided for follower in self._followers]
-        return [each for each in decided if each is not None and each.position == position]
+        return [property_ for property_ in decided if property_ is not None and property_.position == position]
 
     def discard(self, position: int) -> None:
         """Discard the run after `position`, because other steps follow."""

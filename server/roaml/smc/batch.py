@@ -19,7 +19,7 @@ from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
 if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
 
-SLICE = 200_000
+STEPS_BETWEEN_PULSES = 200_000
 """The number of steps after which Python can handle an interrupt: some hundredths of a second."""
 
 
@@ -128,9 +128,9 @@ def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None 
         verdict = kernel.begin(task.seed, trace, task.scheduler)
         limit = 0
         while verdict == UNKNOWN and kernel.ending() == End.DECIDED and limit < task.max_steps:
-            limit = min(limit + SLICE, task.max_steps)
+            limit = min(limit + STEPS_BETWEEN_PULSES, task.max_steps)
             verdict = kernel.advance(limit)
-            if pulse is not None and (limit > SLICE or not trace & 63):
+            if pulse is not None and (limit > STEPS_BETWEEN_PULSES or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
             problem = TraceProblem(trace, *kernel.problem())

@@ -27,10 +27,10 @@ from roaml.smc.statistics import Bounds
 EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform choices"
 """The method by which an extreme was found."""
 
-_SHARE = 5
+_RESULT_STEPS_PER_PROBE_STEP = 5
 """The effort for the result, divided by the effort for schedulers."""
 _MIN_STEPS, _MAX_STEPS = 50_000, 400_000
-_USUAL_SIZE = 200
+_MAX_CHEAP_REGISTERS = 200
 """The number of registers and automata up to which a step has the normal cost; with more, a step costs more."""
 
 
@@ -42,20 +42,20 @@ class Extreme:
         value: the estimate, or the exact value.
         bounds: an interval that contains a probability which some scheduler achieves: with the confidence of the
             method, or certainly if all states were explored.
-        found: the method: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
+        method: the method: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
         scheduler: a description of the scheduler that achieves the value; empty if all schedulers were considered.
         traces: the number of traces on which the estimate is based.
     """
 
     value: float
     bounds: Bounds
-    found: str
+    method: str
     scheduler: str = ""
     traces: int = 0
 
     @property
     def is_exact(self) -> bool:
-        return self.found == EXPLORATION
+        return self.method == EXPLORATION
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,10 +116,10 @@ def look_at_choices(
     if question.is_reward or not tally.traces:
         return Choices()
     size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
-    most = _MAX_STEPS * _USUAL_SIZE // (_USUAL_SIZE + size)
-    budget = max(_MIN_STEPS, min(most, tally.steps // _SHARE))
+    most = _MAX_STEPS * _MAX_CHEAP_REGISTERS // (_MAX_CHEAP_REGISTERS + size)
+    budget = max(_MIN_STEPS, min(most, tally.steps // _RESULT_STEPS_PER_PROBE_STEP))
     length = tally.steps / tally.traces
-    some = candidates(len(automata), each=1, memoryless=16, memory=16)
+    some = candidates(len(automata), per_automaton=1, memoryless=16, memory=16)
     extremes = probe(payload, question, answer.options, pool, some, budget, length, pulse)
     own_least, own_greatest = _of_answer(answer)
     if extremes is None:

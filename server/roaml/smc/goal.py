@@ -137,7 +137,7 @@ class ObserverOutputs:
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
-        activity = tuple(each for each in (self.asked, self.opened) if each is not None)
+        activity = tuple(expression for expression in (self.asked, self.opened) if expression is not None)
         return (*(expression for _, expression in self.open), *activity)
 
 

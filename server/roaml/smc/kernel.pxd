@@ -7,10 +7,10 @@ cimport cython
 ctypedef unsigned long long u64
 ctypedef long long i64
 
-cdef u64 MASK, GOLDEN, MIX_1, MIX_2
-cdef i64 MOST, LEAST
-cdef double TO_UNIT, HUGE, TINY
-cdef u64 FEW
+cdef u64 UINT64_MASK, GOLDEN, MIX_1, MIX_2
+cdef i64 MAX_INT64, MIN_INT64
+cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
+cdef u64 MAX_DRAWN_COMBINATIONS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
 
@@ -72,10 +72,10 @@ cdef class Kernel:
     cdef double _share(self, int vector, int top) noexcept
     @cython.locals(rest=u64, apart=int, vector=int, total=u64, weight=u64, i=int)
     cdef void _step(self) noexcept
-    @cython.locals(top=int, i=int, total=double, aim=double, found=int, share=double)
+    @cython.locals(top=int, i=int, total=double, aim=double, chosen=int, share=double)
     cdef int _heavy(self) noexcept
     cdef u64 _toss(self) noexcept
-    @cython.locals(bias=int, found=int, found_rank=int, greatest=u64, i=int, vector=int, rank=int, value=u64)
+    @cython.locals(bias=int, chosen=int, chosen_rank=int, greatest=u64, i=int, vector=int, rank=int, value=u64)
     cdef int _scheduled(self) noexcept
     @cython.locals(i=int)
     cdef int _takes_part(self, int vector, int instance) noexcept
@@ -94,7 +94,7 @@ cdef class Kernel:
     cdef int _edge(self, int slot, int pick) noexcept
     @cython.locals(first=int, end=int, unit=double, low=int, high=int, middle=int)
     cdef int _way(self, int edge) noexcept
-    @cython.locals(first=int, end=int, unit=double, total=double, found=int, last=int, way=int, register=int, chance=double)
+    @cython.locals(first=int, end=int, unit=double, total=double, drawn=int, last=int, way=int, register=int, chance=double)
     cdef int _way_computed(self, int edge) noexcept
     @cython.locals(way=int, before=double)
     cdef list _chances(self, int edge)
@@ -121,7 +121,7 @@ cdef class Kernel:
     cdef int _ends(self, int repeats) noexcept
     @cython.locals(i=int)
     cdef int _goes_round(self) noexcept
-    @cython.locals(found=int, i=int, mark=int)
+    @cython.locals(reason=int, i=int, mark=int)
     cdef int _reason(self, int repeats) noexcept
     @cython.locals(status=int, is_open=int, i=int)
     cdef int _combined(self) noexcept

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
     from roaml.smc.program import Goal, Program
 
-MASK = 0xFFFFFFFFFFFFFFFF
+UINT64_MASK = 0xFFFFFFFFFFFFFFFF
 GOLDEN = 0x9E3779B97F4A7C15
 MIX_1 = 0xBF58476D1CE4E5B9
 MIX_2 = 0x94D049BB133111EB
-MOST = 0x7FFFFFFFFFFFFFFF
-LEAST = -MOST - 1
+MAX_INT64 = 0x7FFFFFFFFFFFFFFF
+MIN_INT64 = -MAX_INT64 - 1
 TO_UNIT = 1.0 / 9007199254740992.0
-FEW = 4096
+MAX_DRAWN_COMBINATIONS = 4096
 """The maximum number of combinations that one random number of 32 bits decides between: the relative error of each
 probability is then at most one in a million."""
-HUGE = 2.0**512
-TINY = 2.0**-512
+MASS_UNIT = 2.0**512
+MASS_UNIT_INVERSE = 2.0**-512
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The status of the goal. UNKNOWN: the trace can go on; FAULTY: the model has executed an undefined operation."""
@@ -163,7 +163,7 @@ class Kernel:
         self.tossed = 0
         self.looped = 0
         self.loop_state = 0
-        self.loop_drawn = MASK
+        self.loop_drawn = UINT64_MASK
         self.loop_span = 1
         self.loop_left = 1
         self.mass = 1.0
@@ -193,9 +193,9 @@ class Kernel:
         Returns:
             The status of the goal there: UNKNOWN if one of the questions is undecided.
         """
-        self.key = self._mixed((self._mixed(seed & MASK) + (trace & MASK) * GOLDEN) & MASK)
+        self.key = self._mixed((self._mixed(seed & UINT64_MASK) + (trace & UINT64_MASK) * GOLDEN) & UINT64_MASK)
         self.drawn = 0
-        self.scheduler = scheduler & MASK
+        self.scheduler = scheduler & UINT64_MASK
         self._reset()
         return self._finish(self._look())
 
@@ -260,12 +260,12 @@ class Kernel:
     def open_ways(self, instance: int) -> list[int]:
         """The first way of each edge of `instance` whose guard is true."""
         location = self.place[instance]
-        found = []
+        ways = []
         for group in range(self.group_start[location], self.group_start[location + 1]):
             for edge in range(self.edge_start[group], self.edge_start[group + 1]):
                 if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
-                    found.append(self.way_start[edge])
-        return found
+                    ways.append(self.way_start[edge])
+        return ways
 
     def problem(self) -> tuple[int, int, int, int, float]:
         """The error: its code, the place in the bytecode, and the values that its message shows."""
@@ -332,7 +332,7 @@ class Kernel:
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. Each is described by its number, the number of choices that differ only in slots without
         effect, and, for each slot that has an effect, the probabilities of the ways of each enabled edge."""
-        found = []
+        vectors = []
         for i in range(self.enabled_count):
             vector = self.enabled[i]
             slots = []
@@ -345,8 +345,8 @@ class Kernel:
                 combinations *= self.ready[slot]
                 edges = [self._chances(self._edge(slot, pick)) for pick in range(self.ready[slot])]
                 slots.append(edges)
-            found.append((vector, weight // combinations, slots))
-        return found
+            vectors.append((vector, weight // combinations, slots))
+        return vectors
 
     def go(self, vector: int, picks: list[int], ways: list[int]) -> int:
         """Take a given choice; return the same as `step`.
@@ -404,7 +404,7 @@ class Kernel:
         self.end = DECIDED
         self.vector = -1
         self.looped = 0
-        self.loop_drawn = MASK
+        self.loop_drawn = UINT64_MASK
         self.steps = 0
         self.still = 0
         self.reward = 0.0
@@ -425,13 +425,13 @@ class Kernel:
     def _mixed(self, value: int) -> int:
         """The finalizer of SplitMix64 (Steele, Lea and Flood 2014)."""
         z = value
-        z = ((z ^ (z >> 30)) * MIX_1) & MASK
-        z = ((z ^ (z >> 27)) * MIX_2) & MASK
+        z = ((z ^ (z >> 30)) * MIX_1) & UINT64_MASK
+        z = ((z ^ (z >> 27)) * MIX_2) & UINT64_MASK
         return z ^ (z >> 31)
 
     def _draw(self) -> int:
         self.drawn += 1
-        return self._mixed((self.key + self.drawn * GOLDEN) & MASK)
+        return self._mixed((self.key + self.drawn * GOLDEN) & UINT64_MASK)
 
     # ------------------------------------------------------------ what is enabled
 
@@ -477,7 +477,7 @@ class Kernel:
         return count
 
     def _total(self) -> int:
-        """The number of choices if it is at most FEW, else any number above FEW."""
+        """The number of choices if it is at most MAX_DRAWN_COMBINATIONS, else any greater number."""
         if self.plural == 0:
             return self.enabled_count
         total = 0
@@ -486,33 +486,33 @@ class Kernel:
         return total
 
     def _weight(self, vector: int) -> int:
-        """The number of combinations of edges with which a vector can be taken, at most FEW + 1."""
+        """The number of combinations of edges with which a vector can be taken, at most MAX_DRAWN_COMBINATIONS + 1."""
         weight = 1
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
             count = self.ready[self.all_slot[i]]
             if count > 1:
                 weight *= count
-                if weight > FEW:
-                    return FEW + 1
+                if weight > MAX_DRAWN_COMBINATIONS:
+                    return MAX_DRAWN_COMBINATIONS + 1
         return weight
 
     def _weigh(self, vector: int) -> None:
-        """Compute the number of combinations without a limit, as `mass` times HUGE to the power of `rank`. `mass` is at
-        most HUGE, and at least 1 if `rank` is above 0."""
+        """Compute the number of combinations without a limit, as `mass` times MASS_UNIT to the power of `rank`. `mass`
+        is at most MASS_UNIT, and at least 1 if `rank` is above 0."""
         self.mass = 1.0
         self.rank = 0
         for i in range(self.all_start[vector], self.all_start[vector + 1]):
             self.mass *= self.ready[self.all_slot[i]]
-            if self.mass > HUGE:
-                self.mass *= TINY
+            if self.mass > MASS_UNIT:
+                self.mass *= MASS_UNIT_INVERSE
                 self.rank += 1
 
     def _share(self, vector: int, top: int) -> float:
-        """The weight of a vector in units of HUGE to the power of `top`, the greatest rank."""
+        """The weight of a vector in units of MASS_UNIT to the power of `top`, the greatest rank."""
         self._weigh(vector)
         if self.rank == top:
             return self.mass
-        return self.mass * TINY if self.rank == top - 1 else 0.0
+        return self.mass * MASS_UNIT_INVERSE if self.rank == top - 1 else 0.0
 
     # ------------------------------------------------------------ a step
 
@@ -530,7 +530,7 @@ class Kernel:
                 vector = self.enabled[((self._toss() >> 32) * self.enabled_count) >> 32]
         else:
             total = self._total()
-            if total > FEW:
+            if total > MAX_DRAWN_COMBINATIONS:
                 apart = 1
                 vector = self._heavy()
             else:
@@ -556,22 +556,22 @@ class Kernel:
         for i in range(self.enabled_count):
             total += self._share(self.enabled[i], top)
         aim = (self._toss() >> 11) * TO_UNIT * total
-        found = self.enabled[0]
+        chosen = self.enabled[0]
         for i in range(self.enabled_count):
             share = self._share(self.enabled[i], top)
             if share > 0.0:
-                found = self.enabled[i]
+                chosen = self.enabled[i]
                 if aim < share:
-                    return found
+                    return chosen
                 aim -= share
-        return found
+        return chosen
 
     def _toss(self) -> int:
         """The next number that decides between choices: a random one, or a hash of the scheduler and the state."""
         if self.scheduler == 0:
             return self._draw()
         self.tossed += 1
-        return self._mixed((self.choice + self.tossed * GOLDEN) & MASK)
+        return self._mixed((self.choice + self.tossed * GOLDEN) & UINT64_MASK)
 
     def _scheduled(self) -> int:
         """The vector that the scheduler chooses in this state: among those that it prefers, the one with the greatest
@@ -580,8 +580,8 @@ class Kernel:
         self.tossed = 0
         self._notice(self.choice)
         bias = (self.scheduler >> 57) & 3
-        found = -1
-        found_rank = 0
+        chosen = -1
+        chosen_rank = 0
         greatest = 0
         for i in range(self.enabled_count):
             vector = self.enabled[i]
@@ -590,12 +590,12 @@ class Kernel:
                 rank = self._takes_part(vector, (self.scheduler >> 32) & 0xFFFFFF)
                 if bias == 1:
                     rank = 1 - rank
-            value = self._mixed((self.choice ^ self._mixed(vector + 1)) & MASK)
-            if found < 0 or rank > found_rank or (rank == found_rank and value > greatest):
-                found = vector
-                found_rank = rank
+            value = self._mixed((self.choice ^ self._mixed(vector + 1)) & UINT64_MASK)
+            if chosen < 0 or rank > chosen_rank or (rank == chosen_rank and value > greatest):
+                chosen = vector
+                chosen_rank = rank
                 greatest = value
-        return found
+        return chosen
 
     def _takes_part(self, vector: int, instance: int) -> int:
         """Whether `instance` has a slot in `vector` that has an effect."""
@@ -626,15 +626,15 @@ class Kernel:
         """A hash of the scheduler and of all values that its choice depends on."""
         state = self.scheduler
         if (self.scheduler >> 56) & 1 != 0:
-            state = self._mixed((state + self.vector + 2) & MASK)
+            state = self._mixed((state + self.vector + 2) & UINT64_MASK)
         # Each of hundreds of values needs only one multiplication and no function call, which would be slow in plain
         # Python.
         for i in range(self.instances):
-            state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & MASK
+            state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & UINT64_MASK
         for i in range(self.int_count):
-            state = ((state ^ (state >> 32)) + (self.ints[i] & MASK)) * MIX_1 & MASK
+            state = ((state ^ (state >> 32)) + (self.ints[i] & UINT64_MASK)) * MIX_1 & UINT64_MASK
         for i in range(self.real_count):
-            state = ((state ^ (state >> 32)) + (hash(self.reals[i]) & MASK)) * MIX_1 & MASK
+            state = ((state ^ (state >> 32)) + (hash(self.reals[i]) & UINT64_MASK)) * MIX_1 & UINT64_MASK
         return self._mixed(state)
 
     def _take(self, vector: int, rest: int, apart: int) -> None:
@@ -754,7 +754,7 @@ class Kernel:
         end = self.way_start[edge + 1]
         unit = (self._draw() >> 11) * TO_UNIT
         total = 0.0
-        found = -1
+        drawn = -1
         last = -1
         for way in range(first, end):
             register = self._execute(self.way_chance[way])
@@ -767,37 +767,37 @@ class Kernel:
             total += chance
             if chance > 0.0:
                 last = way
-            if found < 0 and unit < total:
-                found = way
+            if drawn < 0 and unit < total:
+                drawn = way
         if total < 0.999999 or total > 1.000001:
             self._fail(6, self.way_chance[first])
             return -1
-        return last if found < 0 else found
+        return last if drawn < 0 else drawn
 
     def _chances(self, edge: int) -> list[float]:
         """The probability of each way of `edge`."""
-        found = []
+        chances = []
         before = 0.0
         for way in range(self.way_start[edge], self.way_start[edge + 1]):
             if self.way_chance[way] >= 0:
-                found.append(self.reals[self._execute(self.way_chance[way])])
+                chances.append(self.reals[self._execute(self.way_chance[way])])
             else:
-                found.append(self.way_sum[way] - before)
+                chances.append(self.way_sum[way] - before)
                 before = self.way_sum[way]
-        return found
+        return chances
 
     def _execute_phases(self) -> None:
         """Execute the assignments of ways that depend on each other: for each index, first compute all values, then
         assign them."""
-        index = LEAST
+        index = MIN_INT64
         while True:
-            following = MOST
+            following = MAX_INT64
             for i in range(self.parts):
                 way = self.part_way[i]
                 for k in range(self.phase_start[way], self.phase_start[way + 1]):
                     if self.phase_index[k] > index and self.phase_index[k] < following:
                         following = self.phase_index[k]
-            if following == MOST:
+            if following == MAX_INT64:
                 return
             index = following
             for i in range(self.parts):
@@ -994,13 +994,13 @@ class Kernel:
 
     def _reason(self, repeats: int) -> int:
         """Why the state does not change any more: the smallest mark of the current locations."""
-        found = 0
+        reason = 0
         for i in range(self.instances):
             mark = self.location_mark[self.place[i]]
-            if mark != 0 and (found == 0 or mark < found):
-                found = mark
-        if found != 0:
-            return found
+            if mark != 0 and (reason == 0 or mark < reason):
+                reason = mark
+        if reason != 0:
+            return reason
         return DEADLOCK if repeats == 0 else IDLE
 
     def _combined(self) -> int:
@@ -1082,7 +1082,7 @@ class Kernel:
             if real != 0:
                 self.reals[target] = value
             else:
-                if value > MOST or value < LEAST:
+                if value > MAX_INT64 or value < MIN_INT64:
                     self.fault = 1
                     return 0
                 self.ints[target] = value
@@ -1145,7 +1145,7 @@ class Kernel:
                 x = self.ints[a]
                 y = self.ints[b]
                 z = x + y
-                if z > MOST or z < LEAST or (y >= 0) != (z >= x):
+                if z > MAX_INT64 or z < MIN_INT64 or (y >= 0) != (z >= x):
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = z
@@ -1153,7 +1153,7 @@ class Kernel:
                 x = self.ints[a]
                 y = self.ints[b]
                 z = x - y
-                if z > MOST or z < LEAST or (y >= 0) != (z <= x):
+                if z > MAX_INT64 or z < MIN_INT64 or (y >= 0) != (z <= x):
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = z
@@ -1162,12 +1162,12 @@ class Kernel:
                 y = self.ints[b]
                 if x == 0 or y == 0:
                     z = 0
-                elif (x == -1 and y == LEAST) or (y == -1 and x == LEAST):
+                elif (x == -1 and y == MIN_INT64) or (y == -1 and x == MIN_INT64):
                     self._fail(1, pc)
                     return 0
                 else:
                     z = x * y
-                    if z > MOST or z < LEAST or z // y != x:
+                    if z > MAX_INT64 or z < MIN_INT64 or z // y != x:
                         self._fail(1, pc)
                         return 0
                 self.ints[d] = z
@@ -1177,7 +1177,7 @@ class Kernel:
                 self.ints[d] = self.ints[a] if self.ints[a] >= self.ints[b] else self.ints[b]
             elif op == 15:  # ABS
                 x = self.ints[a]
-                if x == LEAST:
+                if x == MIN_INT64:
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = x if x >= 0 else -x
@@ -1187,8 +1187,8 @@ class Kernel:
                 if y == 0:
                     self._fail(2, pc)
                     return 0
-                if y == LEAST:
-                    z = x if x >= 0 else (0 if x == LEAST else x - LEAST)
+                if y == MIN_INT64:
+                    z = x if x >= 0 else (0 if x == MIN_INT64 else x - MIN_INT64)
                 else:
                     y = y if y > 0 else -y
                     z = x - (x // y) * y  # 0 ≤ z < y in Python, -y < z < y in C

@@ -27,24 +27,24 @@ from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import ADAPTIVE, FIXED, SPRT, Answer, Options, Tally, TraceFaultError, answer
 
-SCHEDULERS = 256
+INITIAL_SCHEDULERS = 256
 """The initial number of memoryless schedulers."""
-TRIED = 16
+FIRST_ROUND_TRACES = 16
 """The number of traces for each scheduler in the first round; it doubles in each further round."""
-SURE = 3
+MIN_ROUNDS_IF_CERTAIN = 3
 """The number of rounds after which the search ends if all traces of a scheduler have failed, or all have succeeded."""
-USUAL = 100
+UNIFORM_TRACES = 100
 """The number of traces with uniform choices, to measure their length."""
-PROBED = 6
+MAX_PROBE_TRACES = 6
 """The number of traces for each scheduler with a small budget."""
-LARGE = 1 << 40
+FIRST_SELECTION_TRACE = 1 << 40
 """Traces with this number or a greater one are used to select schedulers."""
 
 # The number of a scheduler consists of its kind, an automaton of the system, and an index. The kernel decodes it.
 MEMORY, STARVE, FAVOUR = 1 << 56, 2 << 56, 4 << 56
-_KINDS = 7 << 56
-_AUTOMATON = 32
-_NUMBERS = (1 << _AUTOMATON) - 1
+_KIND_MASK = 7 << 56
+_AUTOMATON_SHIFT = 32
+_INDEX_MASK = (1 << _AUTOMATON_SHIFT) - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +69,8 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
     Args:
         automata: the names of the elements of the system.
     """
-    kind, number = scheduler & _KINDS, scheduler & _NUMBERS
-    name = automata[(scheduler & ~_KINDS) >> _AUTOMATON]
+    kind, number = scheduler & _KIND_MASK, scheduler & _INDEX_MASK
+    name = automata[(scheduler & ~_KIND_MASK) >> _AUTOMATON_SHIFT]
     does = {
         STARVE: f"lets `{name}` act only where nothing else can act",
         FAVOUR: f"lets `{name}` act wherever it can",
@@ -79,17 +79,19 @@ def described(scheduler: int, automata: Sequence[str]) -> str:
     return f"sampled scheduler {number}, which {does.get(kind, 'decides by the state alone')}"
 
 
-def candidates(automata: int, each: int = 2, memoryless: int = SCHEDULERS, memory: int = SCHEDULERS // 4) -> list[int]:
+def candidates(
+    automata: int, per_automaton: int = 2, memoryless: int = INITIAL_SCHEDULERS, memory: int = INITIAL_SCHEDULERS // 4
+) -> list[int]:
     """The numbers of the schedulers that are tried.
 
     Args:
         automata: the number of automata of the system.
-        each: the number of schedulers of both kinds for each automaton.
+        per_automaton: the number of schedulers of both kinds for per_automaton automaton.
         memoryless, memory: the numbers of schedulers of these kinds.
     """
     biased = [
-        kind | (automaton << _AUTOMATON) | number
-        for number in range(1, each + 1)
+        kind | (automaton << _AUTOMATON_SHIFT) | number
+        for number in range(1, per_automaton + 1)
         for automaton in range(automata)
         for kind in (STARVE, FAVOUR)
     ]
@@ -120,7 +122,7 @@ class Search:
         done: the number of these that have been tried.
         best: the best share of successes in the last round; `None` before the end of the first one.
         tried: the initial number of schedulers.
-        found: the selected scheduler of each side and its traces so far.
+        selected: the selected scheduler of each side and its traces so far.
     """
 
     side: str = LEAST
@@ -130,7 +132,7 @@ class Search:
     done: int = 0
     best: float | None = None
     tried: int = 0
-    found: dict[str, Side] = field(default_factory=dict)
+    selected: dict[str, Side] = field(default_factory=dict)
 
 
 def search(
@@ -154,14 +156,16 @@ def search(
     """
     state.tried = len(schedulers)
     told = watch or (lambda _: None)
-    usual = answer(payload, question, replace(options, method=FIXED, max_traces=USUAL), pool, pulse=pulse).tally
+    usual = answer(
+        payload, question, replace(options, method=FIXED, max_traces=UNIFORM_TRACES), pool, pulse=pulse
+    ).tally
     longest = min(options.max_steps, _longest(usual.steps / usual.traces))
     for side in SIDES:
         state.side, state.round, state.best = side, 0, None
         best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, told, pulse)
-        state.found[side] = Side(best, Tally())
+        state.selected[side] = Side(best, Tally())
         plain = sampling_options(options)
-        tally = state.found[side].tally
+        tally = state.selected[side].tally
         answer(payload, question, plain, pool, tally, lambda _: told(state), pulse, scheduler=best)
 
 
@@ -209,8 +213,8 @@ def probe(
     if traces < 4:
         return None
     chosen = schedulers[:traces]
-    size = max(1, min(PROBED, traces // len(chosen)))
-    tasks = (Task(payload, options.seed, LARGE, size, longest, number) for number in chosen)
+    size = max(1, min(MAX_PROBE_TRACES, traces // len(chosen)))
+    tasks = (Task(payload, options.seed, FIRST_SELECTION_TRACE, size, longest, number) for number in chosen)
     shares: dict[int, float] = {}
     lengths: dict[int, float] = {}
     spent = 0
@@ -249,7 +253,7 @@ def _best(
     """The scheduler with the smallest or greatest share of successes; an abandoned trace is half a success."""
     sign = 1 if state.side == GREATEST else -1
     candidates = dict.fromkeys(schedulers, (0.0, 0))
-    tried, first = TRIED, LARGE
+    tried, first = FIRST_ROUND_TRACES, FIRST_SELECTION_TRACE
     state.rounds = (len(candidates) - 1).bit_length()
     while len(candidates) > 1:
         state.round, state.left, state.done = state.round + 1, len(candidates), 0
@@ -267,7 +271,7 @@ def _best(
         successes, traces = candidates[ranked[0]]
         state.best = successes / traces
         candidates = {number: candidates[number] for number in ranked[: (len(ranked) + 1) // 2]}
-        if state.round >= SURE and state.best == max(sign, 0):
+        if state.round >= MIN_ROUNDS_IF_CERTAIN and state.best == max(sign, 0):
             return ranked[0]  # A more extreme value is impossible.
         first += tried
         tried *= 2

@@ -37,7 +37,7 @@ from roaml.smc.run import (
 )
 from roaml.smc.size import check_size
 
-DEPTH = 15_000
+RECURSION_LIMIT = 15_000
 """Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""
 
 
@@ -75,10 +75,10 @@ class ModelChecker:
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
-        sys.setrecursionlimit(max(depth, DEPTH))
+        sys.setrecursionlimit(max(depth, RECURSION_LIMIT))
         try:
             check_size(model, chosen)
-            read: list[Formula] = [expression for each in outputs.values() for expression in each.expressions]
+            read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
             read += [property_.expression for property_ in (*chosen, *assumptions.values())]
             self._compilation = Compilation(model, read)
             self.asked: tuple[CompiledProperty, ...] = ()
@@ -145,7 +145,7 @@ class ModelChecker:
 
     def payload(self, *asked: CompiledProperty) -> Payload:
         """The data that workers need to answer questions."""
-        goals = [goal for each in asked for goal in (each.goal, each.assumptions) if goal is not None]
+        goals = [goal for question in asked for goal in (question.goal, question.assumptions) if goal is not None]
         return pack(Compiled(self.program, merged(goals)))
 
     def answer(
@@ -183,9 +183,9 @@ class ModelChecker:
             tallies: the states to continue from; they are updated after each batch.
             watch: called for each question after each of its batches.
         """
-        questions = [each.question for each in asked]
+        questions = [property_.question for property_ in asked]
         inquiries = [Inquiry(*parts) for parts in zip(questions, tallies, columns_of(questions), strict=True)]
-        names = {each.question.name: each for each in asked}
+        names = {property_.question.name: property_ for property_ in asked}
         answer_together(
             self.payload(*asked), inquiries, options, pool, lambda i: watch(names[i.question.name], i.tally), pulse
         )

@@ -19,7 +19,7 @@ from roaml.smc.layout import AutomatonInstance, MemoryLayout
 from roaml.smc.names import StorageNames, read_by, variables_in
 from roaml.smc.registers import Operand
 
-_CLOSE = 1e-6
+_PROBABILITY_TOLERANCE = 1e-6
 
 
 @dataclass(slots=True)
@@ -165,7 +165,7 @@ class CompiledNetwork:
                 way.probability = None
         else:
             total = sum(way.probability or 0 for way in ways)
-            if abs(total - 1) > _CLOSE:
+            if abs(total - 1) > _PROBABILITY_TOLERANCE:
                 raise FaultError(f"the probabilities of this edge add up to {total:g}, not to 1", edge.origin)
         is_inert = all(way.destination.location == edge.source and not way.destination.assignments for way in ways)
         return EdgeStep(edge, ways, guard, is_inert)

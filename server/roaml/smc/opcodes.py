@@ -64,7 +64,7 @@ class Op(enum.IntEnum):
     COPY_INDEXED_REAL = 44
     STORE_MANY_REAL = 45
     RANGE_REAL = 46
-    CALL_INT = 47  # I[d] := functions[c](the numbers in the argument list b), a of them
+    CALL_INT = 47  # I[d] := functions[c] of the a numbers in the argument list b
     CALL_REAL = 48
     ARGUMENT = 49  # append I[a] to the arguments of the next call
     ARGUMENT_REAL = 50

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started, because most questions are answered in less time."""
-ATTEMPTS = 5
+MAX_CONSECUTIVE_LOSSES = 5
 """The maximum number of consecutive losses of workers without progress."""
-_TICK = 0.1
+_POLL_INTERVAL_S = 0.1
 
 Pulse: TypeAlias = Callable[[int, int], None]
 
@@ -112,7 +112,7 @@ class Pool:
                     if self.is_own and not isinstance(error, BrokenExecutor):
                         raise
                     lost += 1
-                    if lost > ATTEMPTS:
+                    if lost > MAX_CONSECUTIVE_LOSSES:
                         raise WorkersLostError(f"worker processes end repeatedly: {error}") from error
                     if self.is_own:
                         self._stop()
@@ -151,7 +151,7 @@ class Pool:
             raise BrokenExecutor("a worker has ended")
         while True:
             try:
-                return future.result(timeout=_TICK)
+                return future.result(timeout=_POLL_INTERVAL_S)
             except (FutureTimeoutError, TimeoutError):
                 if future.done():
                     raise

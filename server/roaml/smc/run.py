@@ -23,15 +23,15 @@ from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidenc
 ADAPTIVE, OKAMOTO, SPRT, FIXED = "adaptive", "okamoto", "sprt", "fixed"
 METHODS = (ADAPTIVE, OKAMOTO, SPRT, FIXED)
 
-FIRST_BATCH = 100
-LARGEST_BATCH = 5000
-GROWTH = 0.1
-PEEKING = 0.75
+FIRST_BATCH_TRACES = 100
+MAX_BATCH_TRACES = 5000
+BATCH_GROWTH = 0.1
+STOPPING_ERROR_SHARE = 0.75
 """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this part of
 the allowed error. A test computes that the total error stays within the confidence."""
 MIN_EPSILON = 1e-9
 """The minimum half-width of an interval. A narrower interval needs more traces than can be counted."""
-NO_MORE_FOR_REWARDS = 10_000_000
+MAX_REWARD_TRACES = 10_000_000
 MAX_REJECTED = 100_000
 """The number of traces after which the work ends if the assumptions have rejected all of them."""
 REJECTED = 4
@@ -293,8 +293,8 @@ def answer_together(
     watch: Callable[[Inquiry], None],
     pulse: Pulse | None = None,
 ) -> None:
-    """Answer several questions with the same traces. Each answer is exactly that of `answer`: its own rule stops each
-    question, and what a trace says about a question does not depend on the other questions.
+    """Answer several questions with the same traces. Each answer is exactly that of `answer`, because each question
+    has its own stopping rule, and what a trace says about a question does not depend on the other questions.
 
     Args:
         payload: with the questions of all inquiries.
@@ -382,7 +382,9 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
             rule of the method.
     """
     error = 1 - options.confidence
-    confidence = 1 - error * PEEKING if options.method == ADAPTIVE and not is_anytime else options.confidence
+    confidence = (
+        1 - error * STOPPING_ERROR_SHARE if options.method == ADAPTIVE and not is_anytime else options.confidence
+    )
     if question.is_reward:
         lower, upper = tally.mean.anytime_bounds(confidence) if is_anytime else tally.mean.bounds(confidence)
         if tally.traces - tally.successes:
@@ -409,15 +411,15 @@ def wanted_traces(options: Options) -> int | None:
 def _limit(question: Question, options: Options) -> int | None:
     """The maximum number of traces; `None` if there is no limit. Okamoto's number is not a limit for a question with
     assumptions, because it is not known in advance how many traces they accept."""
-    wanted = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
-    limits = [limit for limit in (options.max_traces, wanted) if limit is not None]
+    required = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
+    limits = [limit for limit in (options.max_traces, required) if limit is not None]
     return min(limits) if limits else None
 
 
 def _batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
     """The first trace and the size of each batch after `done` traces."""
     while limit is None or done < limit:
-        size = max(FIRST_BATCH, min(LARGEST_BATCH, int(done * GROWTH)))
+        size = max(FIRST_BATCH_TRACES, min(MAX_BATCH_TRACES, int(done * BATCH_GROWTH)))
         if limit is not None:
             size = min(size, limit - done)
         yield done, size
@@ -505,7 +507,7 @@ def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
         return tally.accepted is not None
     if question.is_reward and tally.traces - tally.successes - tally.undecided:
         return True
-    if tally.simulated >= NO_MORE_FOR_REWARDS:
+    if tally.simulated >= MAX_REWARD_TRACES:
         return True
     return _is_narrow(tally, question, options) or _is_hopeless(tally, options)
 

@@ -21,11 +21,11 @@ from roaml.smc.statistics import Bounds
 
 MAX_EXPLORED_STATES = 4000
 """The maximum number of explored states."""
-WORK = 400_000
+MAX_WORK = 400_000
 """The maximum number of values, counted over all states and choices."""
-_CLOSE = 1e-6
-_FLOAT = 1e-13
-_SWEEPS = 1_000_000
+_MAX_BOUNDS_DISTANCE = 1e-6
+_MIN_CHANGE = 1e-13
+_MAX_UPDATES = 1_000_000
 """The maximum number of additions for a component. After that, its bounds stay as wide as they are."""
 
 _Choice: TypeAlias = tuple[tuple[float, int], ...]
@@ -53,12 +53,14 @@ class Solution:
         if not self.has_choices:
             return True
         return (
-            self.minimum is not None and self.maximum is not None and self.maximum.upper - self.minimum.lower <= _CLOSE
+            self.minimum is not None
+            and self.maximum is not None
+            and self.maximum.upper - self.minimum.lower <= _MAX_BOUNDS_DISTANCE
         )
 
 
 def solve(
-    compiled: Compiled, limit: int = MAX_EXPLORED_STATES, work: int = WORK, ignored: Registers = NO_REGISTERS
+    compiled: Compiled, limit: int = MAX_EXPLORED_STATES, work: int = MAX_WORK, ignored: Registers = NO_REGISTERS
 ) -> Solution | None:
     """Explore all states.
 
@@ -145,13 +147,13 @@ def _solved(verdicts: list[int], choices: list[tuple[_Choice, ...]], target: int
                 high[state] = best(_mean(choice, high) for choice in choices[state])
             continue
         inner = [state for state in component if choices[state]]
-        for _ in range(_SWEEPS // (1 + sum(len(choice) for state in inner for choice in choices[state]))):
+        for _ in range(_MAX_UPDATES // (1 + sum(len(choice) for state in inner for choice in choices[state]))):
             change = 0.0
             for state in inner:
                 value = best(_mean(choice, low) for choice in choices[state])
                 change = max(change, value - low[state])
                 low[state] = max(low[state], value)
-            if change <= _FLOAT:
+            if change <= _MIN_CHANGE:
                 break
         _enclose(inner, choices, low, high, is_max)
     return Bounds(low[0], high[0])
@@ -163,14 +165,14 @@ def _enclose(
     """Compute upper bounds for the states of a component, from the bounds of the components after it."""
     best = max if is_max else min
     slack = 1e-10
-    while slack < _CLOSE:
+    while slack < _MAX_BOUNDS_DISTANCE:
         for state in states:
             high[state] = min(1.0, low[state] + slack)
         for _ in range(100):
             rises = False
             after = [best(_mean(choice, high) for choice in choices[state]) for state in states]
             for state, value in zip(states, after, strict=True):
-                rises = rises or value > high[state] + _FLOAT
+                rises = rises or value > high[state] + _MIN_CHANGE
             for state, value in zip(states, after, strict=True):
                 high[state] = min(1.0, value)
             if not rises:

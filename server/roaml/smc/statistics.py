@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-_TINY = 1e-300
-_CLOSE = 1e-15
+_MIN_DENOMINATOR = 1e-300
+_MIN_RELATIVE_CHANGE = 1e-15
 _MAX_TERMS = 100_000
-_NARROWEST = 1000
+_NARROWEST_AT_TRACES = 1000
 
 
 class Bounds(NamedTuple):
@@ -42,7 +42,7 @@ def incomplete_beta(x: float, a: float, b: float) -> float:
     log_front = math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
     # Lentz's algorithm, as modified by Thompson and Barnett.
     c, d = 1.0, 1 - (a + b) * x / (a + 1)
-    d = 1 / (d if abs(d) > _TINY else _TINY)
+    d = 1 / (d if abs(d) > _MIN_DENOMINATOR else _MIN_DENOMINATOR)
     result = d
     for m in range(1, _MAX_TERMS):
         even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
@@ -50,12 +50,12 @@ def incomplete_beta(x: float, a: float, b: float) -> float:
         change = 1.0
         for term in (even, odd):
             d = 1 + term * d
-            d = 1 / (d if abs(d) > _TINY else _TINY)
+            d = 1 / (d if abs(d) > _MIN_DENOMINATOR else _MIN_DENOMINATOR)
             c = 1 + term / c
-            c = c if abs(c) > _TINY else _TINY
+            c = c if abs(c) > _MIN_DENOMINATOR else _MIN_DENOMINATOR
             change = c * d
             result *= change
-        if abs(change - 1) < _CLOSE:
+        if abs(change - 1) < _MIN_RELATIVE_CHANGE:
             break
     return math.exp(log_front) * result / a
 
@@ -174,7 +174,7 @@ class Mean(NamedTuple):
 
         The asymptotic confidence sequence by a mixture of normal distributions (Waudby-Smith, Arbour, Sinha, Kennedy
         and Ramdas 2024, "Time-uniform central limit theory and asymptotic confidence sequences"), narrowest after
-        about `_NARROWEST` traces.
+        about `_NARROWEST_AT_TRACES` traces.
         """
         if self.number < 2:
             return Bounds(-math.inf, math.inf)
@@ -182,7 +182,7 @@ class Mean(NamedTuple):
         if deviation == 0:
             return Bounds(self.mean, self.mean)
         error = -2 * math.log1p(-confidence)
-        rho = (error + math.log1p(error)) / _NARROWEST
+        rho = (error + math.log1p(error)) / _NARROWEST_AT_TRACES
         spread = self.number * rho + 1
         half = deviation * math.sqrt(spread / (self.number**2 * rho) * (math.log(spread) + error))
         return Bounds(self.mean - half, self.mean + half)

@@ -85,7 +85,8 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
             first = min(seen, key=lambda example: (example.steps, example.trace))
             _expect(least == first if count <= MAX_KEPT_TRACES else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.simulated, "shortest")
-        _expect(all(each.trace < tally.simulated and each.steps <= options.max_steps for each in seen), "examples")
+        for example in seen:
+            _expect(example.trace < tally.simulated and example.steps <= options.max_steps, "examples")
     _expect(len(numbers) == sum(len(seen) for seen in tally.examples.values()), "examples")
     _expect(total == tally.steps if tally.simulated == len(numbers) else total <= tally.steps, "steps")
 

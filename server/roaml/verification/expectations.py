@@ -64,7 +64,7 @@ class Verdict:
 
     @property
     def text(self) -> str:
-        """A phrase for users."""
+        """A phrase for users that states whether the expectation is met."""
         if self.is_met:
             return "met under uniform choices" if self.is_uniform else "met"
         return f"NOT MET {self.under}".rstrip()

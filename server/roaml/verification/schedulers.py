@@ -60,7 +60,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:
     """A phrase for the extreme that violates an expectation; "" if none does."""
-    if extreme is None or extreme.found == UNIFORM:
+    if extreme is None or extreme.method == UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
         return f"by the {extreme_asked(question)} over all schedulers, which is {extreme.value:.6g}"

@@ -58,7 +58,7 @@ class VerificationTarget:
     def expecting(self, comparisons: Mapping[str, Comparison]) -> VerificationTarget:
         """The same target with further expectations. Comparisons for properties that it does not have are ignored."""
         names = {property_.name for property_ in self.properties}
-        more = [expectation_of(name, each) for name, each in comparisons.items() if name in names]
+        more = [expectation_of(name, comparison) for name, comparison in comparisons.items() if name in names]
         return replace(self, expectations=(*self.expectations, *more)) if more else self
 
     def place(self, origin: Origin | None) -> LineColumn | None:

@@ -125,7 +125,7 @@ def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
 
 
 def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
-    return tuple(under_all_schedulers(judge(each, answer), answer, choices) for each in expectations)
+    return tuple(under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in expectations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +191,7 @@ class Verifier:
     def sharing(self) -> list[CompiledProperty]:
         """The properties that can share traces; empty if there are fewer than two."""
         asked = [self.question(name) for name in self.names if name not in self.checker.refused]
-        sharing = [each for each in asked if self.can_share(each)]
+        sharing = [property_ for property_ in asked if self.can_share(property_)]
         return sharing if len(sharing) > 1 else []
 
     def answer(
@@ -243,19 +243,19 @@ class Verifier:
         Raises:
             NoThresholdError, WorkersLostError: see `answer`.
         """
-        for each in asked:
-            self.check_method(each)
+        for property_ in asked:
+            self.check_method(property_)
         began = time.monotonic()
         seconds: dict[str, float] = {}
 
-        def watch_time(each: CompiledProperty, tally: Tally) -> None:
-            seconds[each.question.name] = time.monotonic() - began
-            watch(each, tally)
+        def watch_time(property_: CompiledProperty, tally: Tally) -> None:
+            seconds[property_.question.name] = time.monotonic() - began
+            watch(property_, tally)
 
         answers = self.checker.answer_together(asked, self.options, pool, tallies, watch_time, pulse)
         return [
-            self._result(each, answer, pool, pulse, seconds.get(each.question.name, 0.0))
-            for each, answer in zip(asked, answers, strict=True)
+            self._result(property_, answer, pool, pulse, seconds.get(property_.question.name, 0.0))
+            for property_, answer in zip(asked, answers, strict=True)
         ]
 
     def _result(
@@ -304,7 +304,7 @@ class Verifier:
     ) -> Result:
         """The minimum and maximum probability under sampled schedulers, as far as the search has progressed."""
         sampled = []
-        for side, (scheduler, tally) in search.found.items():
+        for side, (scheduler, tally) in search.selected.items():
             if tally.traces:
                 answer = summary(asked.question, sampling_options(self.options), tally)
                 words = described(scheduler, self.checker.automata)

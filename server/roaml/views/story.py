@@ -30,7 +30,7 @@ class StoryLine(NamedTuple):
 
     `place` and `origin` are the place of the turn, as a phrase and as a position in the text; `location` is the
     location after the turn. `automaton` is the name of the automaton in the model, and `who` its name for users. Both
-    are "" for folded turns.
+    are "" for folded turns. `step` and `last_step` are the numbers of its first and last step.
     """
 
     step: int
@@ -42,6 +42,7 @@ class StoryLine(NamedTuple):
     automaton: str = ""
     origin: Origin | None = None
     location: str = ""
+    last_step: int = 0
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
@@ -54,16 +55,19 @@ def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     folded = _folded(story, told)
     story_lines = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
     if folded:
-        story_lines.insert(FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", ()))
+        story_lines.insert(
+            FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", (), last_step=told[folded[-1]].last)
+        )
     return story_lines
 
 
 def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     story_lines = []
+    end = len(story.steps)
     for wait in waits_of(story):
         place = "" if wait.origin is None else place_of(wait.origin)
         story_lines.append(
-            StoryLine(len(story.steps), "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location)
+            StoryLine(end, "", wait.who, wait.what, place, (), wait.automaton, wait.origin, wait.location, end)
         )
     return story_lines
 
@@ -84,6 +88,7 @@ def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
         turn.automaton,
         turn.origin,
         turn.destination,
+        turn.last,
     )
 
 
@@ -118,17 +123,22 @@ def heading(story: Story) -> str:
         text += f" ({story.recording.end.text})"
     if story.is_whole:
         return text
-    text += f", of which {len(story.relevant):,} matter"
+    count = len(turns(story))
+    text += f"; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
     return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
 
 
-def as_mermaid(story: Story, place_of: PlaceOf) -> str:
-    """A sequence diagram. An event is an arrow from its sender to its receiver, at the time when it is received."""
-    return "\n".join(_mermaid(story, place_of)) + "\n"
+def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
+    """A sequence diagram. An event is an arrow from its sender to its receiver, at the time when it is received.
+
+    Args:
+        first: turns that end before this step are left out.
+    """
+    return "\n".join(_mermaid(story, place_of, first)) + "\n"
 
 
-def _mermaid(story: Story, place_of: PlaceOf) -> Iterator[str]:
-    told = turns(story)
+def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
+    told = [turn for turn in turns(story) if turn.last >= first]
     folded = _folded(story, told)
     lanes = {turn.instance for turn in told}
     names: dict[str, str] = {}

@@ -38,11 +38,13 @@ class Turn:
     """The steps of one automaton from one event to the next.
 
     Attributes:
+        number: the number of its first step.
         heard: the received event with which the turn begins; `None` if there is none.
         action: the action with which it begins together with other automata, if that is not an event.
         parts: the parts of the automaton in its steps.
         changes: the changes of its own variables, and of variables of the model that do not belong to an event.
         messages: the events that the automaton has sent.
+        last: the number of its last step.
         ends: whether the trace ends with this turn.
     """
 
@@ -55,6 +57,7 @@ class Turn:
     changes: list[VariableChange] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
     matters: bool = False
+    last: int = 0
     ends: bool = False
 
     @property
@@ -198,6 +201,7 @@ class _Reader:
                 self._current[part.instance] = turn
                 self.turns.append(turn)
             turn.parts.append(part)
+            turn.last = step.number
             if part.instance not in self.inner:
                 turn.changes += self._changes(step, part, is_last=part is actors[-1])
             turn.matters |= index in self._relevant

@@ -180,7 +180,7 @@ class _Parser:
         return self.open_element(match, attributes, space.end() if space else position, False, complete=False)
 
     def attribute(self, match: re.Match[str], at: int) -> Attribute:
-        """Read the attribute in the text after `at`."""
+        """Read the attribute that follows the offset `at`, possibly after white space."""
         name, equals = match[1], match[2]
         name_span = Span(*match.span(1))
         self.check_name(name_span)

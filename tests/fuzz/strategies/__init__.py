@@ -19,6 +19,6 @@ def strategies() -> dict[str, Strategy]:
 
 
 def plan(cases: int, chosen: tuple[Strategy, ...]) -> list[tuple[str, int]]:
-    """(strategy, how many cases it gets) by the shares of the strategies; each gets one at least."""
+    """Pairs of a strategy and the number of its cases, by the shares of the strategies. Each gets at least one."""
     total = sum(strategy.share for strategy in chosen)
     return [(strategy.name, max(1, cases * strategy.share // total)) for strategy in chosen]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configurations: settings of every kind in every place, brackets, bytes, pipes and links in place of files.
+"""Configurations: settings of every kind in every place, brackets, bytes, pipes and links instead of files.
 
-Each case is a folder on the disk, since that is where configurations stand.
+Each case is a folder on the disk, because configurations are read from there.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ FILES: dict[str, bytes] = {
 
 @dataclass(frozen=True)
 class Configured:
-    """`special` are paths that are no files, and what they are."""
+    """A configuration. `special` are paths that are not regular files, with their kinds."""
 
     seed: int
     contents: dict[str, bytes]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client sends to the debug adapter: requests in any order, with sensible, senseless and damaged arguments; the
-client may die at any time.
+"""Input of the debug adapter: requests in any order, with sensible, senseless and damaged arguments. The client may die
+at any time.
 
-Each request that can be read is answered once, by a message that fits the schema of the protocol. The adapter ends
-when its client does.
+Each readable request is answered once, by a message that fits the schema of the protocol. The adapter ends when its
+client does.
 """
 
 from __future__ import annotations
@@ -33,15 +33,17 @@ PROGRAMS = tuple(
     for name in ("assembly_robot/main_with_bug.xml", "assembly_robot/main.xml", "delivery_robot/main.xml")
 )
 REQUESTS = 50
-"""Requests of a case."""
+"""The maximum number of requests of a case."""
 
 
 @dataclass
 class Session:
-    """Attributes:
-    data: what the client sends.
-    damage: how it is damaged, in words.
-    survives: the number of messages that the client reads before it dies; `None` if it does not die.
+    """The input of one client.
+
+    Attributes:
+        data: the bytes that the client sends.
+        damage: a description of the damage.
+        survives: the number of messages that the client reads before it dies; `None` if it does not die.
     """
 
     seed: int
@@ -68,7 +70,7 @@ class Session:
 
 
 class _Inbox:
-    """Messages that arrive while a run is moving only now and then, so that it moves."""
+    """An inbox in which messages seldom arrive while a run is moving, so that it can move."""
 
     def __init__(self, random: Random, waiting: list[Message]) -> None:
         self._random = random
@@ -91,7 +93,7 @@ class _Inbox:
 
 
 class _Output(BytesIO):
-    """A stream that nobody reads after some messages."""
+    """A stream that has no reader after some messages."""
 
     def __init__(self, survives: int | None) -> None:
         super().__init__()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a model, each damaged by itself: bytes, pieces, elements, attributes, expressions, JSON."""
+"""Files of a model, each damaged separately: bytes, pieces, elements, attributes, expressions, JSON."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from fuzz.damage import ANY, ways
 from fuzz.strategy import Failure, Strategy
 
 MAX_LENGTH = 300_000
-"""Characters of one file. That greater ones take their time is no failure."""
+"""The maximum number of characters of a file. Larger files may take longer."""
 
 
 @dataclass
 class Damaged:
-    """Attributes:
-    model: what was damaged.
-    texts: all files, damaged or not.
-    main: the file that is checked.
-    damage: how, in words.
+    """A damaged model.
+
+    Attributes:
+        model: the original model.
+        texts: all files, damaged or not.
+        main: the file that is checked.
+        damage: a description of the damage.
     """
 
     seed: int

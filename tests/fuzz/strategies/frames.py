@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client sends to the language server, damaged: bytes, headers, values of JSON, the order of messages.
+"""Damaged input of the language server: bytes, headers, values of JSON, the order of messages.
 
-Whatever came before, a sound request at the end is answered, once; nothing is answered twice, and no answer tells of a
-failure in the server.
+A correct request at the end is answered once, whatever came before. No request is answered twice, and no answer reports
+a failure in the server.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ FOLDER = "file:///nowhere/robot"
 LAST = "the last request"
 INTERNAL_ERROR = -32603
 MAX_TEXT_LENGTH = 5000
-"""Characters of a document: what is looked for is in the protocol."""
+"""The maximum number of characters of a document, because this strategy tests the protocol."""
 
 Json = Any
 Message = dict[str, Json]
@@ -88,11 +88,13 @@ ODD: tuple[Json, ...] = (
 
 @dataclass
 class Frames:
-    """Attributes:
-    model: whose texts are opened.
-    data: what is sent.
-    damage: how, in words.
-    asked: the ids of requests that were sent as they should be.
+    """The input of one client.
+
+    Attributes:
+        model: the model whose texts are opened.
+        data: the bytes that are sent.
+        damage: a description of the damage.
+        asked: the ids of requests that were sent undamaged.
     """
 
     seed: int
@@ -128,7 +130,7 @@ class Frames:
 
 
 def _said(data: bytes) -> bytes:
-    """What a server says to some bytes until they end."""
+    """The output of a server for some bytes."""
     logging.getLogger("pygls").setLevel(logging.CRITICAL)  # as the command does
     server = create()
     server.endpoint.protocol._converter = _converter()
@@ -139,12 +141,12 @@ def _said(data: bytes) -> bytes:
 
 @cache
 def _converter() -> Any:
-    """It takes longer to make than a case to run."""
+    """The converter of the protocol, shared because its creation takes longer than a case."""
     return default_converter()
 
 
 class _Kept(BytesIO):
-    """What was written stays when it is closed."""
+    """A stream whose content can be read after it was closed."""
 
     def close(self) -> None:
         pass
@@ -154,7 +156,7 @@ class _Kept(BytesIO):
 
 
 def _session(random: Random, model: Model) -> Iterator[Message]:
-    """What a client could send, from its first message on."""
+    """The messages of a possible client, from the first one on."""
     yield _initialize(random)
     yield {"method": "initialized", "params": {}}
     texts = {f"{FOLDER}/{path.rpartition('/')[2]}": text[:MAX_TEXT_LENGTH] for path, text in model.texts.items()}
@@ -212,7 +214,7 @@ def _change(random: Random, text: str) -> Json:
 
 
 def _params(random: Random, uri: str, text: str) -> Json:
-    """Of any request about a document; what one of them does not take it passes over."""
+    """Parameters for any request about a document. Superfluous ones are ignored."""
     return {
         "textDocument": {"uri": uri},
         "position": _position(random, text),
@@ -268,7 +270,7 @@ def frame(message: Json) -> bytes:
 
 
 def _odd_value(random: Random, message: Message) -> bytes:
-    """Something in a message is something else."""
+    """Replace a part of a message by another value."""
     places = list(_places(message))
     holder, key = random.choice(places)
     holder[key] = copy.deepcopy(random.choice(ODD))
@@ -290,7 +292,7 @@ def _places(value: Json) -> Iterator[tuple[Json, Any]]:
 
 
 def _odd_bytes(random: Random, message: Message) -> bytes:
-    """The body is not what it was; its length fits."""
+    """Change the body, with a header that fits it."""
     body = bytearray(json.dumps(message).encode())
     for _ in range(random.randrange(1, 4)):
         at = random.randrange(len(body))
@@ -309,7 +311,7 @@ def _odd_header(random: Random, message: Message) -> bytes:
 
 
 def _short(random: Random, message: Message) -> bytes:
-    """The length is too small: what is left of the body is noise."""
+    """Make the announced length too small, so that the rest of the body is noise."""
     body = json.dumps(message).encode()
     return b"Content-Length: %d\r\n\r\n%b\r\n" % (random.randrange(1, len(body)), body)
 
@@ -324,7 +326,7 @@ def _bomb(random: Random, message: Message) -> bytes:
 
 
 def _noise(random: Random, message: Message) -> bytes:
-    """Bytes that are not a message before a message."""
+    """Put bytes that are not a message before a message."""
     noise = [
         b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
         b"\r\n" * 5,
@@ -379,7 +381,7 @@ def make(seed: int) -> Frames:
             parts.append(frame(message))
             if "id" in message:
                 case.asked.append(message["id"])
-    # Behind damage in an id, two requests may have the same one.
+    # After damage of an id, two requests may have the same one.
     case.asked = [] if any("_twice" in each or "_odd" in each for each in case.damage) else case.asked
     parts += (b"\r\n", frame({"jsonrpc": "2.0", "id": LAST, "method": "no/such", "params": {}}))
     case.data = b"".join(parts)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bombs: small inputs with enormous results. Too large ones are refused, the others take linear time.
+"""Bombs: small inputs with enormous results. Too large ones are rejected; the others take linear time.
 
-The limits are a hundredth of the real ones, so that what is just below them takes as long as a case may take.
+The limits are a hundredth of the real ones, so that input just below them takes as long as a case may take.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Grown:
 
 
 def make(seed: int) -> Grown:
-    """Sizes of all orders of magnitude."""
+    """A size of any order of magnitude."""
     random = Random(seed)
     dimension = random.choice(DIMENSIONS)
     # Half of what is tried at all: a check of a text of 300,000 characters may take as long as a case.

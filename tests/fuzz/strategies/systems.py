@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whole systems, changed across their files: what one file says no longer fits what another one says.
+"""Whole systems with changes across their files, so that files no longer fit each other.
 
-A name is changed in some files and not in others; elements, files and trees go from one file or system into another;
-what is listed is listed twice, elsewhere or not at all. Most files stay well-formed, so that most of these cases reach
-the parts of the tool that look at a system as a whole, and many are translated.
+A name is changed in only some files; elements, files and trees are moved to another file or system; inputs are listed
+twice, elsewhere or not at all. Most files stay well-formed, so most cases reach the parts of the tool that analyse a
+whole system, and many are translated.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from roaml.text import Span
 from roaml.xml_syntax import Attribute, Element
 
 MAX_LENGTH = 300_000
-"""Characters of one file. That greater ones take their time is no failure."""
+"""The maximum number of characters of a file. Larger files may take longer."""
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*")
 _NAMING = ("name", "id", "ID", "topic", "service_name", "action_name", "event", "key", "target", "type", "src")
@@ -37,19 +37,21 @@ _CROSSING = (
     "main",
     "M",
 )
-"""Names that the translation makes, or might."""
+"""Names that the translation uses, or similar ones."""
 
 Texts: TypeAlias = dict[str, str]
 Change: TypeAlias = Callable[[Random, Texts, Model], str]
-"""Changes some texts; says what it did."""
+"""A function that changes some texts and returns a description."""
 
 
 @dataclass
 class Changed:
-    """Attributes:
-    model: what was changed.
-    texts: all files, changed or not.
-    changes: how, in words.
+    """A changed system.
+
+    Attributes:
+        model: the original model.
+        texts: all files, changed or not.
+        changes: a description of the changes.
     """
 
     seed: int
@@ -81,7 +83,7 @@ def make(seed: int) -> Changed:
 
 
 def rename_somewhere(random: Random, texts: Texts, other: Model) -> str:
-    """A name becomes another of the system, in some of the files that have it."""
+    """Replace a name by another one of the system, in some of the files that contain it."""
     names = sorted({name for text in texts.values() for name in _names(text)})
     if len(names) < 2:
         return "nothing"
@@ -95,7 +97,7 @@ def rename_somewhere(random: Random, texts: Texts, other: Model) -> str:
 
 
 def swap_attributes(random: Random, texts: Texts, other: Model) -> str:
-    """The values of two attributes of one name change places, from file to file."""
+    """Exchange the values of two attributes with the same name in different files."""
     places = [(path, a) for path in sorted(texts) for a in _attributes(texts[path]) if a.name in _NAMING]
     if len(places) < 2:
         return "nothing"
@@ -112,7 +114,7 @@ def swap_attributes(random: Random, texts: Texts, other: Model) -> str:
 
 
 def move_element(random: Random, texts: Texts, other: Model) -> str:
-    """An element goes, or is copied, from a file into another one, of this system or another."""
+    """Move or copy an element from a file to another one, of this system or of another one."""
     sources = [path for path in sorted(texts) if _elements(texts[path])]
     if not sources:
         return "nothing"
@@ -134,7 +136,7 @@ def move_element(random: Random, texts: Texts, other: Model) -> str:
 
 
 def exchange_files(random: Random, texts: Texts, other: Model) -> str:
-    """Two files of a system have each other's text, or one has that of another system's."""
+    """Exchange the texts of two files of a system, or replace one by a file of another system."""
     path = random.choice(sorted(texts))
     if random.random() < 0.5 and len(texts) > 1:
         second = random.choice([name for name in sorted(texts) if name != path])
@@ -149,7 +151,7 @@ def exchange_files(random: Random, texts: Texts, other: Model) -> str:
 
 
 def add_machine(random: Random, texts: Texts, other: Model) -> str:
-    """A machine of another system is listed, too, or one of this system once more under another name."""
+    """List a machine of another system, or a machine of this system again under another name."""
     mains = [path for path in sorted(texts) if "<roaml" in texts[path] and "</node_models>" in texts[path]]
     machines = [path for path in sorted(other.texts) if path.endswith((".ascxml", ".scxml"))]
     if not mains or not machines:
@@ -163,7 +165,7 @@ def add_machine(random: Random, texts: Texts, other: Model) -> str:
 
 
 def drop_file(random: Random, texts: Texts, other: Model) -> str:
-    """A file is empty, or no system lists it any more."""
+    """Empty a file, or remove it from the system file."""
     path = random.choice(sorted(texts))
     if random.random() < 0.5:
         texts[path] = ""
@@ -175,7 +177,7 @@ def drop_file(random: Random, texts: Texts, other: Model) -> str:
 
 
 def change_number(random: Random, texts: Texts, other: Model) -> str:
-    """A parameter, bound, rate or size is another."""
+    """Change a parameter, bound, rate or size."""
     places = [(path, m) for path in sorted(texts) for m in re.finditer(r'(?<=[\["= ])\d+(?:\.\d+)?', texts[path])]
     if not places:
         return "nothing"
@@ -186,7 +188,7 @@ def change_number(random: Random, texts: Texts, other: Model) -> str:
 
 
 def change_property(random: Random, texts: Texts, other: Model) -> str:
-    """A property asks something else, or about something else."""
+    """Change the question or the variables of a property."""
     files = [path for path in sorted(texts) if path.endswith(".jani")]
     if not files:
         return "nothing"

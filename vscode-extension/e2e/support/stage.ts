@@ -41,8 +41,8 @@ export class Stage {
     }
 
     /**
-     * A test with a window; what it looks like at the end is kept. A workbench on a busy machine may swallow a key: what
-     * fails once is tried once more, in a new window.
+     * A test with a window, whose final picture is saved. On a busy machine, a workbench may lose a key. So a test that
+     * fails is repeated once, in a new window.
      */
     test(name: string, folder: () => string, run: (window: Window) => Promise<void>): void {
         test(name, async () => {

@@ -102,8 +102,8 @@ export class Window {
     async until<T>(get: () => T | Promise<T>): Promise<NonNullable<T>> {
         const end = Date.now() + TIMEOUT_MS;
         for (;;) {
-            const found = await get();
-            if (found) return found;
+            const value = await get();
+            if (value) return value;
             if (Date.now() > end) throw new Error(`still not: ${get.toString()}`);
             await this.page.waitForFunction(
                 () =>

@@ -54,7 +54,7 @@ export class Workbench {
             ];
             execFileSync(process.execPath, [MAIN, ...install, ...folders], { stdio: "pipe", env: environment });
         }
-        for (const each of options.extensions ?? []) addExtension(path.join(home, "extensions"), each);
+        for (const extension of options.extensions ?? []) addExtension(path.join(home, "extensions"), extension);
         const port = await freePort();
         const server = spawn(
             process.execPath,
@@ -80,7 +80,7 @@ export class Workbench {
             reducedMotion: "reduce",
         });
         await context.grantPermissions(["clipboard-read", "clipboard-write"]);
-        // Generous: other work on the machine makes a test slow, not wrong.
+        // The limit is generous, because other work on the machine can make a test slow.
         context.setDefaultTimeout(TIMEOUT_MS);
         const page = await context.newPage();
         await page.goto(`http://127.0.0.1:${this.port}/?folder=${folder}`);
@@ -91,7 +91,7 @@ export class Workbench {
     async stop(): Promise<void> {
         await this.browser.close();
         const ended = new Promise((resolve) => this.server.once("close", resolve));
-        // The server and all that it has started: its process group.
+        // The process group of the server and the processes that it has started.
         if (this.server.pid !== undefined && this.server.exitCode === null) {
             process.kill(-this.server.pid, "SIGTERM");
             const timer = setTimeout(() => process.kill(-(this.server.pid ?? 0), "SIGKILL"), 5000);
@@ -173,7 +173,7 @@ export function temporaryFolder(name: string): string {
     const folder = fs.realpathSync(fs.mkdtempSync(path.join(os.tmpdir(), `as2fm-${name}-`)));
     if (folders.length === 0) {
         process.once("exit", () => {
-            for (const each of folders) fs.rmSync(each, { recursive: true, force: true, maxRetries: 3 });
+            for (const folder of folders) fs.rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
         });
     }
     folders.push(folder);

@@ -2,7 +2,7 @@
 /** The view of the possible next steps while a run is stopped. A click on a step takes it. */
 
 import * as vscode from "vscode";
-import { DEBUG_TYPE } from "./debugging";
+import type { DebugSessions } from "./debugSessions";
 
 const VIEW = "as2fm.choices";
 const CHOOSE = "as2fm.choose";
@@ -59,7 +59,10 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
 
     readonly onDidChangeTreeData = this.changed.event;
 
-    constructor(private readonly log: vscode.LogOutputChannel) {
+    constructor(
+        private readonly sessions: DebugSessions,
+        private readonly log: vscode.LogOutputChannel,
+    ) {
         this.view = vscode.window.createTreeView<Entry>(VIEW, { treeDataProvider: this });
         this.subscriptions = [
             this.changed,
@@ -67,15 +70,9 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
             vscode.commands.registerCommand(CHOOSE, (entry: Entry) => this.choose(entry)),
             vscode.commands.registerCommand("as2fm.goToStep", () => this.goToStep()),
             vscode.commands.registerCommand("as2fm.publish", () => this.publish()),
-            vscode.debug.registerDebugAdapterTrackerFactory(DEBUG_TYPE, {
-                createDebugAdapterTracker: (session) => ({
-                    onDidSendMessage: (message: { event?: string }) => {
-                        if (message.event === "stopped") void this.update(session);
-                    },
-                    onExit: () => {
-                        if (this.session === session) this.show(undefined, [], "");
-                    },
-                }),
+            sessions.onStopped((session) => void this.update(session)),
+            sessions.onEnded((session) => {
+                if (this.session === session) this.show(undefined, [], "");
             }),
         ];
     }
@@ -105,7 +102,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
     }
 
     dispose(): void {
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     private async update(session: vscode.DebugSession): Promise<void> {
@@ -148,19 +145,20 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
 
     private async choose({ choice, outcome }: Entry): Promise<void> {
         const drawn = outcome === undefined ? {} : { outcome: outcome.number };
-        await this.request("choose", { choice: choice.number, ...drawn });
+        await this.sessions.request("choose", { choice: choice.number, ...drawn });
     }
 
     private async goToStep(): Promise<void> {
         const prompt = vscode.l10n.t("Go to the state after this number of steps");
         const isNumber = (text: string) => (/^\d+$/.test(text) ? undefined : vscode.l10n.t("a number of steps"));
         const text = await vscode.window.showInputBox({ prompt, validateInput: isNumber });
-        if (text !== undefined) await this.request("goToStep", { step: Number(text) });
+        if (text !== undefined) await this.sessions.request("goToStep", { step: Number(text) });
     }
 
     /** Let the user choose an event and its fields, and send it by hand. */
     private async publish(): Promise<void> {
-        const answer = (await this.request("events", {})) as { readonly events: readonly Sendable[] } | undefined;
+        const answer = (await this.sessions.request("events", {})) as
+            { readonly events: readonly Sendable[] } | undefined;
         if (!answer) return;
         const items = answer.events.map((sendable) => ({
             label: sendable.text,
@@ -173,19 +171,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         const { event, fields, text } = picked.sendable;
         const prompt = vscode.l10n.t("The fields of {0}; then the run says nothing about the model", text);
         const written = fields === "{}" ? fields : await vscode.window.showInputBox({ prompt, value: fields });
-        if (written !== undefined) await this.request("publish", { event, fields: written });
-    }
-
-    /** The answer to a request; errors are shown. */
-    private async request(command: string, options: object): Promise<unknown> {
-        const session = this.session ?? vscode.debug.activeDebugSession;
-        if (session?.type !== DEBUG_TYPE) return undefined;
-        try {
-            return await session.customRequest(command, options);
-        } catch (error) {
-            void vscode.window.showErrorMessage(error instanceof Error ? error.message : String(error));
-            return undefined;
-        }
+        if (written !== undefined) await this.sessions.request("publish", { event, fields: written });
     }
 }
 

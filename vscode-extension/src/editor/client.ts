@@ -152,7 +152,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
 }
 
 function isXml(uri: vscode.Uri): boolean {
-    const document = vscode.workspace.textDocuments.find((each) => each.uri.toString() === uri.toString());
+    const document = vscode.workspace.textDocuments.find((open) => open.uri.toString() === uri.toString());
     return document ? document.languageId === "xml" : uri.path.endsWith(".xml");
 }
 

@@ -10,6 +10,7 @@ import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
 import type { JaniView } from "./janiView";
 import { chooseExpectation } from "./expectation";
+import { newProperty } from "./newProperty";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
@@ -45,11 +46,13 @@ export function registerCommands(parts: Parts): void {
         showPlainScxml: () => withEditor((editor) => parts.plain.open(editor)),
         showMachine: () => withEditor((editor) => pictures.open("machine", editor.document.uri)),
         showTree: () => withEditor((editor) => showOfSystem(parts, "tree", editor.document)),
+        showMachines: () => withEditor((editor) => showOfSystem(parts, "system", editor.document)),
         showRosGraph: () => withEditor((editor) => showOfSystem(parts, "ros", editor.document)),
         checkWorkspace: trusted(() => checkWorkspace(parts)),
         newSystem: trusted(() => newSystem(server)),
         newNode: trusted(() => newMachine(context, "node")),
         newPlugin: trusted(() => newMachine(context, "plugin")),
+        newProperty: trusted(() => createProperty(parts)),
         migrate: trusted(() => migrateSystem(parts)),
         addToCi: trusted(() => addToCi(context)),
         openSample: trusted(() => openSample(context)),
@@ -68,8 +71,8 @@ export function registerCommands(parts: Parts): void {
         vscode.commands.registerCommand(SHOW_REFERENCES, (uri: string, position: Position, places: Location[]) => {
             const convert = server.client?.protocol2CodeConverter;
             if (!convert) return undefined;
-            const [at, found] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
-            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, found);
+            const [at, locations] = [convert.asPosition(position), places.map((place) => convert.asLocation(place))];
+            return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, locations);
         }),
     );
     context.subscriptions.push(
@@ -132,10 +135,14 @@ async function debugSystem({ documents, debugging }: Parts): Promise<void> {
     if (system) await debugging.start(system, {});
 }
 
-async function showOfSystem(parts: Parts, kind: "tree" | "ros", document: vscode.TextDocument): Promise<void> {
-    const found = await parts.documents.about(document);
+async function showOfSystem(
+    parts: Parts,
+    kind: "tree" | "ros" | "system",
+    document: vscode.TextDocument,
+): Promise<void> {
+    const about = await parts.documents.about(document);
     // A tree that belongs to no system is shown alone.
-    const uri = kind === "tree" && found.systems.length === 0 ? document.uri : await parts.documents.system(document);
+    const uri = kind === "tree" && about.systems.length === 0 ? document.uri : await parts.documents.system(document);
     if (uri) await parts.pictures.open(kind, uri);
 }
 
@@ -146,25 +153,31 @@ async function checkWorkspace({ tasks }: Parts): Promise<void> {
     }
 }
 
+async function createProperty({ server, documents }: Parts): Promise<void> {
+    const system = await documents.system(vscode.window.activeTextEditor?.document);
+    const uri = system && server.client?.code2ProtocolConverter.asUri(system);
+    if (uri !== undefined) await newProperty(server, uri);
+}
+
 async function migrateSystem({ server, documents }: Parts): Promise<void> {
     const system = await documents.system(vscode.window.activeTextEditor?.document);
     if (!system || !server.client) return;
     await vscode.workspace.saveAll();
-    const found = await server.ask(migrate, { textDocument: { uri: system.toString() } });
-    if (!found) return;
-    if (found.problem !== "") {
-        void vscode.window.showErrorMessage(found.problem);
+    const migration = await server.ask(migrate, { textDocument: { uri: system.toString() } });
+    if (!migration) return;
+    if (migration.problem !== "") {
+        void vscode.window.showErrorMessage(migration.problem);
         return;
     }
-    const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(found.edit ?? undefined);
-    if (!edit || found.files.length === 0) {
+    const edit = await server.client.protocol2CodeConverter.asWorkspaceEdit(migration.edit ?? undefined);
+    if (!edit || migration.files.length === 0) {
         void vscode.window.showInformationMessage(vscode.l10n.t("There is nothing to migrate."));
         return;
     }
     const [apply, show] = [vscode.l10n.t("Migrate"), vscode.l10n.t("Show Changes")];
     const question = vscode.l10n.t("Migrate {0} to the current dialect?", vscode.workspace.asRelativePath(system));
     const detail = [
-        ...found.files,
+        ...migration.files,
         "",
         vscode.l10n.t("Comments and layout are kept; Undo reverts the migration."),
     ].join("\n");

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view that shows step by step why a property fails. A step opens its source and is highlighted in pictures. */
+/**
+ * The view that shows step by step why a property fails. A step opens its source, is highlighted in pictures, and its
+ * state is shown beside it.
+ */
 
 import * as vscode from "vscode";
-import { counterexample, type Counterexample, type Step } from "../protocol";
+import { counterexample, traceState, type Counterexample, type Step } from "../protocol";
 import { jump, type PicturePanels } from "./picturePanels";
 import type { LanguageServer } from "./server";
+import { TraceStateView } from "./traceState";
 
 const VIEW = "as2fm.counterexample";
 const SHOW_STEP = "as2fm.showStep";
@@ -21,7 +25,10 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     private readonly changed = new vscode.EventEmitter<undefined>();
     private readonly view: vscode.TreeView<Entry>;
     private readonly subscriptions: { dispose(): unknown }[];
+    private readonly state = new TraceStateView();
     private shown: Counterexample | undefined;
+    private system = "";
+    private current: Step | undefined;
 
     readonly onDidChangeTreeData = this.changed.event;
 
@@ -33,30 +40,47 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         this.subscriptions = [
             this.changed,
             this.view,
+            this.state,
             vscode.commands.registerCommand(SHOW_STEP, (step: Step) => this.showStep(step)),
+            vscode.commands.registerCommand("as2fm.nextStep", () => this.move(1)),
+            vscode.commands.registerCommand("as2fm.previousStep", () => this.move(-1)),
         ];
     }
 
     /** Show the trace that contradicts a property or, as a witness, one that supports it. */
     async show(system: string, property: string, witness = false): Promise<void> {
-        const found = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
-        if (!found) {
+        const trace = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
+        if (!trace) {
             const text = witness
                 ? vscode.l10n.t("There is no trace that speaks for {0}, or it has not been verified.", property)
                 : vscode.l10n.t("There is no trace that contradicts {0}, or it has not been verified.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }
-        this.shown = found;
-        this.view.description = found.property;
-        this.view.message = found.stale
-            ? vscode.l10n.t("{0} The files have changed since then.", `${found.heading}.`)
-            : `${found.heading}.`;
+        this.shown = trace;
+        this.system = system;
+        this.view.description = trace.property;
+        this.view.message = trace.stale
+            ? vscode.l10n.t("{0} The files have changed since then.", `${trace.heading}.`)
+            : `${trace.heading}.`;
         await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
         this.changed.fire(undefined);
         await vscode.commands.executeCommand(`${VIEW}.focus`);
-        const first = found.steps[0];
-        if (first) await this.view.reveal(first, { focus: true, select: true });
+        const last = trace.steps.at(-1);
+        if (!last) return;
+        await this.view.reveal(last, { focus: true, select: true });
+        await this.showStep(last);
+    }
+
+    /** Go some steps on or back, from the selected one. */
+    private async move(by: number): Promise<void> {
+        const steps = this.shown?.steps ?? [];
+        const selected = this.view.selection[0];
+        const from = selected === undefined ? this.current : "of" in selected ? selected.of : selected;
+        const to = from && steps[steps.indexOf(from) + by];
+        if (!to) return;
+        await this.view.reveal(to, { focus: true, select: true });
+        await this.showStep(to);
     }
 
     getTreeItem(entry: Entry): vscode.TreeItem {
@@ -68,7 +92,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         const { Expanded, None } = vscode.TreeItemCollapsibleState;
         const label = entry.who === "" ? entry.what : `${entry.who}: ${entry.what}`;
         const item = new vscode.TreeItem(label, entry.details.length > 0 ? Expanded : None);
-        item.description = [entry.time, entry.place].filter((each) => each !== "").join(" · ");
+        item.description = [entry.time, entry.place].filter((text) => text !== "").join(" · ");
         item.tooltip = [label, item.description, ...entry.details].join("\n");
         if (entry.uri !== undefined) {
             item.iconPath = new vscode.ThemeIcon("debug-stackframe-dot");
@@ -87,12 +111,30 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     }
 
     dispose(): void {
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
-    private async showStep({ uri, range, highlights }: Step): Promise<void> {
-        if (uri === undefined || !range) return;
-        await jump({ uri, range }, false, true);
+    private async showStep(step: Step): Promise<void> {
+        this.current = step;
+        const { uri, range, highlights } = step;
+        if (uri !== undefined && range) await jump({ uri, range }, false, true);
         await this.pictures.highlight(highlights);
+        await this.showState(step);
+    }
+
+    /** The state after the turn of a step, compared with the one before the turn. */
+    private async showState(step: Step): Promise<void> {
+        const { shown } = this;
+        if (!shown) return;
+        const rows = await this.server.ask(traceState, {
+            textDocument: { uri: this.system },
+            property: shown.property,
+            trace: shown.trace,
+            step: step.lastStep,
+            earlier: Math.max(0, step.step - 1),
+        });
+        if (this.current !== step) return;
+        const after = vscode.l10n.t("after step {0}", step.lastStep);
+        this.state.show(rows ?? [], step.time === "" ? after : `${after}, ${step.time}`);
     }
 }

@@ -46,7 +46,7 @@ export class Documents implements vscode.Disposable {
     }
 
     dispose(): void {
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     private async update(): Promise<void> {

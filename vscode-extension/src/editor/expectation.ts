@@ -25,7 +25,7 @@ export async function chooseExpectation(server: LanguageServer, system: string, 
     }
     const uri = client.protocol2CodeConverter.asUri(answer.uri);
     const isEdited = vscode.workspace.textDocuments.some(
-        (each) => each.uri.toString() === uri.toString() && each.isDirty,
+        (document) => document.uri.toString() === uri.toString() && document.isDirty,
     );
     if (!(await vscode.workspace.applyEdit(edit))) return false;
     // The server reads the configuration from the disk, so it is saved. Other changes of the user are not saved.

@@ -37,11 +37,11 @@ export class JaniView implements vscode.TextDocumentContentProvider, vscode.Docu
     }
 
     async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
-        const found = await this.server.ask(janiView, { textDocument: { uri: uri.query } });
-        if (!found) return "";
+        const view = await this.server.ask(janiView, { textDocument: { uri: uri.query } });
+        if (!view) return "";
         const convert = this.server.client?.protocol2CodeConverter;
-        this.outlines.set(uri.toString(), (await convert?.asDocumentSymbols(found.symbols)) ?? []);
-        return found.problem === "" ? found.text : `${found.problem}\n`;
+        this.outlines.set(uri.toString(), (await convert?.asDocumentSymbols(view.symbols)) ?? []);
+        return view.problem === "" ? view.text : `${view.problem}\n`;
     }
 
     async provideDocumentSymbols({ uri }: vscode.TextDocument): Promise<vscode.DocumentSymbol[]> {
@@ -52,13 +52,13 @@ export class JaniView implements vscode.TextDocumentContentProvider, vscode.Docu
 
     dispose(): void {
         this.changes.dispose();
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     /** Update the view of a file that was written again. */
     private refresh(file: vscode.Uri): void {
         const uri = viewOf(file);
-        if (vscode.workspace.textDocuments.some((each) => each.uri.toString() === uri.toString()))
+        if (vscode.workspace.textDocuments.some((document) => document.uri.toString() === uri.toString()))
             this.changes.fire(uri);
     }
 }

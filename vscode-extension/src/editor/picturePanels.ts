@@ -3,7 +3,7 @@
 
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
-import type { FromView, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
+import type { FromView, Lit, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
 import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
@@ -15,6 +15,8 @@ export class PicturePanels implements vscode.Disposable {
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
     private highlights: readonly Highlight[] = [];
+    private lit: readonly LitNode[] = [];
+    private litEdges: Lit["edges"] = [];
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -37,11 +39,12 @@ export class PicturePanels implements vscode.Disposable {
         ];
     }
 
-    async open(kind: PictureKind, uri: vscode.Uri): Promise<void> {
+    async open(kind: PictureKind, uri: vscode.Uri, column = vscode.ViewColumn.Beside): Promise<void> {
         let panel = this.panels.get(kind);
         if (!panel) {
-            panel = new PicturePanel(kind, this.context, this.server, this.log);
-            panel.highlighted = this.highlights.find((each) => each.kind === kind);
+            panel = new PicturePanel(kind, this.context, this.server, this.log, column);
+            panel.light(this.lit, this.litEdges);
+            panel.highlighted = this.highlights.find((highlight) => highlight.kind === kind);
             this.panels.set(kind, panel);
             panel.onDispose(() => this.panels.delete(kind));
         }
@@ -51,12 +54,20 @@ export class PicturePanels implements vscode.Disposable {
     /** Highlight nodes in all open pictures and in those that are opened later. Earlier highlights are removed. */
     async highlight(highlights: readonly Highlight[]): Promise<void> {
         this.highlights = highlights;
-        for (const [kind, panel] of this.panels) await panel.highlight(highlights.find((each) => each.kind === kind));
+        for (const [kind, panel] of this.panels)
+            await panel.highlight(highlights.find((highlight) => highlight.kind === kind));
+    }
+
+    /** Light what a run does in all open pictures and in those that are opened later, instead of what was lit. */
+    light(nodes: readonly LitNode[], edges: Lit["edges"]): void {
+        this.lit = nodes;
+        this.litEdges = edges;
+        for (const panel of this.panels.values()) panel.light(nodes, edges);
     }
 
     dispose(): void {
         clearTimeout(this.timer);
-        for (const each of [...this.subscriptions, ...this.panels.values()]) each.dispose();
+        for (const disposable of [...this.subscriptions, ...this.panels.values()]) disposable.dispose();
     }
 
     private refreshSoon(): void {
@@ -72,6 +83,14 @@ export class PicturePanels implements vscode.Disposable {
     }
 }
 
+/** A node of a picture that a run lights; `path` is the file of the picture. */
+export interface LitNode {
+    readonly kind: PictureKind;
+    readonly path: string;
+    readonly node: string;
+    readonly look: string;
+}
+
 class PicturePanel implements vscode.Disposable {
     private readonly panel: vscode.WebviewPanel;
     private uri: vscode.Uri | undefined;
@@ -79,6 +98,8 @@ class PicturePanel implements vscode.Disposable {
     private here: Part | null = null;
     /** The highlighted nodes of the step that was selected last, in all files. */
     highlighted: Highlight | undefined;
+    private lit: readonly LitNode[] = [];
+    private litEdges: Lit["edges"] = [];
     private shownUri = "";
     private ready = false;
     private asked = 0;
@@ -88,9 +109,10 @@ class PicturePanel implements vscode.Disposable {
         context: vscode.ExtensionContext,
         private readonly server: LanguageServer,
         private readonly log: vscode.LogOutputChannel,
+        viewColumn: vscode.ViewColumn,
     ) {
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
-        const column = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
+        const column = { viewColumn, preserveFocus: true };
         this.panel = vscode.window.createWebviewPanel(`as2fm.${kind}`, titleOf(kind), column, {
             enableScripts: true,
             enableForms: false,
@@ -117,10 +139,10 @@ class PicturePanel implements vscode.Disposable {
         if (!this.uri) return;
         const asked = ++this.asked;
         const uri = this.uri.toString();
-        const found = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
-        if (asked !== this.asked || found === undefined) return;
-        this.picture = found ?? undefined;
-        this.panel.title = found ? `${titleOf(this.kind)}: ${found.title}` : titleOf(this.kind);
+        const picture = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
+        if (asked !== this.asked || picture === undefined) return;
+        this.picture = picture ?? undefined;
+        this.panel.title = picture ? `${titleOf(this.kind)}: ${picture.title}` : titleOf(this.kind);
         this.here = this.partAtCaret(vscode.window.activeTextEditor);
         this.shownUri = this.asServerSays(this.uri);
         this.draw();
@@ -156,6 +178,19 @@ class PicturePanel implements vscode.Disposable {
             : "";
     }
 
+    light(nodes: readonly LitNode[], edges: Lit["edges"]): void {
+        this.lit = nodes.filter(({ kind }) => kind === this.kind);
+        this.litEdges = this.kind === "ros" ? edges : [];
+        this.postLit();
+    }
+
+    /** A picture of a machine shows only what is lit in its file. */
+    private postLit(): void {
+        const nodes = this.lit.filter(({ path }) => this.kind !== "machine" || path === this.uri?.fsPath);
+        const looks = Object.fromEntries(nodes.map(({ node, look }) => [node, look]));
+        this.post({ type: "light", lit: { nodes: looks, edges: this.litEdges } });
+    }
+
     dispose(): void {
         this.panel.dispose();
     }
@@ -173,6 +208,7 @@ class PicturePanel implements vscode.Disposable {
     private draw(): void {
         if (this.picture)
             this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
+        if (this.picture) this.postLit();
         else this.post({ type: "none", reason: nothingOf(this.kind) });
     }
 
@@ -247,6 +283,8 @@ function titleOf(kind: PictureKind): string {
             return vscode.l10n.t("Behavior Tree");
         case "ros":
             return vscode.l10n.t("ROS Graph");
+        case "system":
+            return vscode.l10n.t("State Machines");
     }
 }
 
@@ -257,6 +295,7 @@ function nothingOf(kind: PictureKind): string {
         case "tree":
             return vscode.l10n.t("This file contains no behavior tree.");
         case "ros":
+        case "system":
             return vscode.l10n.t("This file is not part of a system.");
     }
 }
@@ -278,6 +317,7 @@ function words(): Words {
             state: vscode.l10n.t("state"),
             choice: vscode.l10n.t("random choice"),
             thread: vscode.l10n.t("action thread"),
+            machine: vscode.l10n.t("state machine"),
             control: vscode.l10n.t("control"),
             decorator: vscode.l10n.t("decorator"),
             action: vscode.l10n.t("action"),

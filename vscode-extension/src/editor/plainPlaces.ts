@@ -16,7 +16,7 @@ export function lineOf(lines: readonly PlainLine[], uri: string, position: Posit
 
 /** The place in the source from which a line of the plain form comes. A line without one has that of a line above. */
 export function placeOf(lines: readonly PlainLine[], line: number): PlainLine | undefined {
-    return lines.filter((each) => each.line <= line).at(-1);
+    return lines.filter((place) => place.line <= line).at(-1);
 }
 
 function latest(lines: readonly PlainLine[]): PlainLine | undefined {

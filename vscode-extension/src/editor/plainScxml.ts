@@ -44,19 +44,19 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
 
     async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
         const source = sourceOf(uri);
-        const found = await this.server.ask(plainScxml, { textDocument: { uri: source.toString() } });
-        if (!found) return "";
+        const translated = await this.server.ask(plainScxml, { textDocument: { uri: source.toString() } });
+        if (!translated) return "";
         const before = this.shown.get(uri.toString());
         // While the source has errors, keep the last valid text.
-        if (found.problem && before?.text) return before.text;
-        this.shown.set(uri.toString(), found);
-        return found.problem ? `<!-- ${found.problem.replaceAll("--", "- -")} -->\n` : found.text;
+        if (translated.problem && before?.text) return before.text;
+        this.shown.set(uri.toString(), translated);
+        return translated.problem ? `<!-- ${translated.problem.replaceAll("--", "- -")} -->\n` : translated.text;
     }
 
     dispose(): void {
         clearTimeout(this.timer);
         this.changes.dispose();
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     private refreshSoon(): void {
@@ -112,5 +112,5 @@ function sourceOf(preview: vscode.Uri): vscode.Uri {
 }
 
 function editorOf(uri: vscode.Uri): vscode.TextEditor | undefined {
-    return vscode.window.visibleTextEditors.find((each) => each.document.uri.toString() === uri.toString());
+    return vscode.window.visibleTextEditors.find((editor) => editor.document.uri.toString() === uri.toString());
 }

@@ -27,19 +27,19 @@ const ENVIRONMENTS = "ms-python.vscode-python-envs";
 
 export async function activeInterpreters(log: vscode.LogOutputChannel): Promise<string[]> {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri;
-    const found: (string | undefined)[] = [];
+    const paths: (string | undefined)[] = [];
     try {
         const environments = await api<EnvironmentsApi>(ENVIRONMENTS);
-        found.push((await environments?.getEnvironment?.(folder))?.execInfo?.run?.executable);
+        paths.push((await environments?.getEnvironment?.(folder))?.execInfo?.run?.executable);
         const python = (await api<PythonApi>(PYTHON))?.environments;
         if (python) {
             const environment = await python.resolveEnvironment(python.getActiveEnvironmentPath(folder));
-            found.push(environment?.executable.uri?.fsPath);
+            paths.push(environment?.executable.uri?.fsPath);
         }
     } catch (error) {
         log.warn(`An extension for Python cannot be asked for its interpreter: ${String(error)}`);
     }
-    return [...new Set(found.filter((path): path is string => typeof path === "string" && path !== ""))];
+    return [...new Set(paths.filter((path): path is string => typeof path === "string" && path !== ""))];
 }
 
 /** Call a listener when another interpreter becomes the active one. */

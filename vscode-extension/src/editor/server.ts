@@ -128,8 +128,8 @@ export class LanguageServer implements vscode.Disposable {
         const trusted = vscode.workspace.isTrusted;
         const [server, interpreter] = [path("server.path"), path("interpreter")];
         const active = trusted && server === "" && interpreter === "" ? await this.active(hurry) : [];
-        const found = await findServer(thisHost, { server, interpreter, active, trusted }, this.environment);
-        const usable = isFailure(found) && found.kind === "no-server" ? await this.renewed(found) : found;
+        const outcome = await findServer(thisHost, { server, interpreter, active, trusted }, this.environment);
+        const usable = isFailure(outcome) && outcome.kind === "no-server" ? await this.renewed(outcome) : outcome;
         if (!isFailure(usable) && usable.origin === "private") this.compileKernel();
         return usable;
     }
@@ -216,7 +216,7 @@ async function tellRestarted(): Promise<void> {
 /** The wheel in the extension, the packages that it needs, and an id that changes with their content. */
 function findWheel(extension: string): { file: string; requirements: string; id: string } {
     const folder = join(extension, "dist", "wheel");
-    const name = fs.readdirSync(folder).find((each) => each.endsWith(".whl"));
+    const name = fs.readdirSync(folder).find((file) => file.endsWith(".whl"));
     if (name === undefined) throw new Error(`${folder} holds no wheel`);
     const file = join(folder, name);
     const requirements = join(extension, "dist", "requirements.txt");

@@ -56,7 +56,7 @@ export class StatusItem implements vscode.Disposable {
         const titles = actions.map((action) => action.title);
         const show = isError ? vscode.window.showErrorMessage : vscode.window.showInformationMessage;
         void show(long, ...titles).then((title) => {
-            const action = actions.find((each) => each.title === title);
+            const action = actions.find((candidate) => candidate.title === title);
             if (action) return vscode.commands.executeCommand(action.command);
             return undefined;
         });

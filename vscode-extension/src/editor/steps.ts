@@ -14,9 +14,9 @@ export function done(step: Step): void {
 export function watchErrors(): vscode.Disposable {
     let broken = false;
     return vscode.languages.onDidChangeDiagnostics(() => {
-        const found = vscode.languages.getDiagnostics().some(([, diagnostics]) => diagnostics.some(isError));
-        if (broken && !found) done("fixed");
-        broken = found;
+        const hasError = vscode.languages.getDiagnostics().some(([, diagnostics]) => diagnostics.some(isError));
+        if (broken && !hasError) done("fixed");
+        broken = hasError;
     });
 }
 

@@ -99,7 +99,7 @@ export class PropertyTests implements vscode.Disposable {
 
     dispose(): void {
         clearTimeout(this.timer);
-        for (const each of this.subscriptions) each.dispose();
+        for (const subscription of this.subscriptions) subscription.dispose();
     }
 
     // ------------------------------------------------------------------- the tree
@@ -111,13 +111,13 @@ export class PropertyTests implements vscode.Disposable {
 
     /** Update the systems and their properties. */
     async refresh(): Promise<void> {
-        const found = await this.server.ask(properties, null);
-        if (found === undefined) return;
-        const known = new Set(found.map(({ uri }) => uri));
+        const systems = await this.server.ask(properties, null);
+        if (systems === undefined) return;
+        const known = new Set(systems.map(({ uri }) => uri));
         this.controller.items.forEach((item) => {
             if (!known.has(item.id)) this.controller.items.delete(item.id);
         });
-        for (const system of found) this.showSystem(system);
+        for (const system of systems) this.showSystem(system);
     }
 
     private showSystem({ uri, properties: all }: VerifiableSystem): void {
@@ -175,8 +175,8 @@ export class PropertyTests implements vscode.Disposable {
         const items = chosen(this.controller.items, request.include, request.exclude);
         const run = this.controller.createTestRun(request);
         const cancel = new vscode.CancellationTokenSource();
-        const both = [token, run.token].map((each) =>
-            each.onCancellationRequested(() => {
+        const both = [token, run.token].map((source) =>
+            source.onCancellationRequested(() => {
                 cancel.cancel();
             }),
         );
@@ -193,7 +193,7 @@ export class PropertyTests implements vscode.Disposable {
             }
         } finally {
             run.end();
-            for (const each of [...both, cancel]) each.dispose();
+            for (const disposable of [...both, cancel]) disposable.dispose();
         }
     }
 
@@ -237,7 +237,7 @@ export class PropertyTests implements vscode.Disposable {
                     this.show(run, item, { system, property: result.property }, result, answer.stuck);
             }
             for (const item of open.values()) {
-                const wrong = answer?.errors.map((each) => this.wrong(each)) ?? [];
+                const wrong = answer?.errors.map((error) => this.wrong(error)) ?? [];
                 if (wrong.length > 0) run.errored(item, wrong);
                 else run.skipped(item);
             }

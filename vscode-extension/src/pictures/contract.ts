@@ -5,7 +5,7 @@
  * Positions are those of LSP: lines and UTF-16 columns from 0.
  */
 
-export type PictureKind = "machine" | "tree" | "ros";
+export type PictureKind = "machine" | "tree" | "ros" | "system";
 
 export interface Position {
     readonly line: number;
@@ -21,6 +21,7 @@ export const NODE_KINDS = [
     "state",
     "choice",
     "thread",
+    "machine",
     "control",
     "decorator",
     "action",
@@ -131,12 +132,20 @@ export interface Words {
     readonly byChance: string;
 }
 
+/** How nodes are lit, by their ids, and the lit edges with the ids of their ends. */
+export interface Lit {
+    readonly nodes: Readonly<Record<string, string>>;
+    readonly edges: readonly { readonly from: string; readonly to: string }[];
+}
+
 export type ToView =
     | { readonly type: "words"; readonly words: Words }
     | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly highlighted: string }
     | { readonly type: "here"; readonly here: Part | null }
     /** Highlight the node with an id; "" removes the highlight. */
     | { readonly type: "highlight"; readonly node: string }
+    /** Light what a run does, instead of what was lit before. */
+    | { readonly type: "light"; readonly lit: Lit }
     /** Convert the text of an SVG file to PNG. */
     | { readonly type: "rasterize"; readonly svg: string }
     | { readonly type: "none"; readonly reason: string };

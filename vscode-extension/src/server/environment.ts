@@ -54,8 +54,8 @@ export class PrivateEnvironment {
     /** The server of an earlier version of the extension, which shows that the user has agreed to its installation. */
     async older(): Promise<Server | undefined> {
         for (const name of await this.host.list(this.folder)) {
-            const found = name === this.id ? undefined : await this.serverIn(name);
-            if (found !== undefined) return found;
+            const other = name === this.id ? undefined : await this.serverIn(name);
+            if (other !== undefined) return other;
         }
         return undefined;
     }
@@ -149,9 +149,9 @@ export class PrivateEnvironment {
 
 function versionIn(mark: string): string | undefined {
     try {
-        const found: unknown = JSON.parse(mark);
-        if (typeof found !== "object" || found === null || !("version" in found)) return undefined;
-        return typeof found.version === "string" ? found.version : undefined;
+        const content: unknown = JSON.parse(mark);
+        if (typeof content !== "object" || content === null || !("version" in content)) return undefined;
+        return typeof content.version === "string" ? content.version : undefined;
     } catch {
         return undefined;
     }

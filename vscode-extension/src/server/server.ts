@@ -34,5 +34,5 @@ export function isServer(value: unknown): value is Server {
     if (typeof value !== "object" || value === null) return false;
     const { origin, command, args, version } = value as Partial<Record<keyof Server, unknown>>;
     const texts = [origin, command, version, ...(Array.isArray(args) ? (args as unknown[]) : [undefined])];
-    return texts.every((each) => typeof each === "string");
+    return texts.every((text) => typeof text === "string");
 }

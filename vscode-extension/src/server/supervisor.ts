@@ -82,8 +82,8 @@ export class Supervisor {
         if (this.current.kind === "running") {
             const [request, { server }] = [this.request, this.current];
             // If the search fails, `start` repeats it and reports the reason.
-            const found = await this.ports.find(false).catch(() => undefined);
-            if (request !== this.request || isDeepStrictEqual(found, server)) return;
+            const current = await this.ports.find(false).catch(() => undefined);
+            if (request !== this.request || isDeepStrictEqual(current, server)) return;
         }
         await this.start();
     }
@@ -115,13 +115,13 @@ export class Supervisor {
 
     private async use(request: number, get: () => Promise<Server | Failure>): Promise<void> {
         try {
-            const found = await get();
+            const server = await get();
             if (request !== this.request) return;
-            if (isFailure(found)) this.set(request, { kind: "failed", failure: found });
+            if (isFailure(server)) this.set(request, { kind: "failed", failure: server });
             else {
-                const error = await this.launch(request, found);
+                const error = await this.launch(request, server);
                 if (error !== undefined) {
-                    this.set(request, { kind: "failed", failure: { kind: "start", server: found, detail: error } });
+                    this.set(request, { kind: "failed", failure: { kind: "start", server, detail: error } });
                 }
             }
         } catch (error) {

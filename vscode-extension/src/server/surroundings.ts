@@ -21,7 +21,7 @@ export function safeVariables(environment: NodeJS.ProcessEnv): Record<string, st
     if (named !== undefined) {
         safe["PYTHONPATH"] = named
             .split(path.delimiter)
-            .filter((each) => path.isAbsolute(each))
+            .filter((folder) => path.isAbsolute(folder))
             .join(path.delimiter);
     }
     return safe;

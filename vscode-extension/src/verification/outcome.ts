@@ -49,9 +49,14 @@ export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome
     const isWrong = known?.example && known.level === "error";
     if (verified.verdict === NO_EXPECTATION && !isWrong) return { kind: "unjudged", short, ...warning, ...stuck };
     if (missed.length === 0 && !isWrong) {
-        const onlyUniform = (verified.expectations ?? []).filter((each) => each.under_uniform_choices_only);
+        const onlyUniform = (verified.expectations ?? []).filter(
+            (expectation) => expectation.under_uniform_choices_only,
+        );
         const uniform = onlyUniform.map(({ expected }) => expected);
-        const unanimous = Math.max(0, ...(verified.expectations ?? []).map((each) => each.unanimous ?? 0));
+        const unanimous = Math.max(
+            0,
+            ...(verified.expectations ?? []).map((expectation) => expectation.unanimous ?? 0),
+        );
         return { kind: "passed", short, milliseconds, uniform, unanimous, ...warning, ...stuck };
     }
     const hasCounterexample = verified.counterexample ?? false;

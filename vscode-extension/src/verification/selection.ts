@@ -15,13 +15,13 @@ export function chosen<T extends Test<T>>(
     exclude: readonly T[] | undefined,
 ): T[] {
     const left = new Set(exclude?.map(({ id }) => id));
-    const found = new Map<string, T>();
+    const selected = new Map<string, T>();
     const visit = (test: T) => {
         if (left.has(test.id)) return;
         const children = [...test.children];
-        if (children.length === 0 && test.parent) found.set(test.id, test);
+        if (children.length === 0 && test.parent) selected.set(test.id, test);
         for (const [, child] of children) visit(child);
     };
-    for (const test of include ?? [...all].map(([, each]) => each)) visit(test);
-    return [...found.values()];
+    for (const test of include ?? [...all].map(([, leaf]) => leaf)) visit(test);
+    return [...selected.values()];
 }

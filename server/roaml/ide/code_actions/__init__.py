@@ -53,8 +53,8 @@ def _made(path: str, fix: Fix) -> WorkspaceEdit:
 
 def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
     """An action that fixes all findings of a rule in the file, if more than one of them has a preferred fix."""
-    mendable = [diagnostic for diagnostic in diagnostics if diagnostic.code == code and preferred_fix(diagnostic)]
-    if len(mendable) > 1:
+    fixable = [diagnostic for diagnostic in diagnostics if diagnostic.code == code and preferred_fix(diagnostic)]
+    if len(fixable) > 1:
 
         def choose(diagnostic: Diagnostic) -> Fix | None:
             return preferred_fix(diagnostic) if diagnostic.code == code else None
@@ -63,7 +63,7 @@ def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic]
             f"Fix all `{code}` in this file",
             QUICK_FIX,
             lambda: _all(snapshot, path, choose, careful=False),
-            mendable[0],
+            fixable[0],
         )
 
 

@@ -10,6 +10,7 @@ from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.ide.code_actions.inputs import add_input
 from roaml.model.system import System
+from roaml.model.system_file import SystemSection
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.paths import folder_of, name_of
@@ -39,7 +40,9 @@ def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[s
 def free_path(analysis: Analysis, system: str, name: str) -> str:
     """A path for a new plugin in the folder of the other plugins of the system, or in that of the system file."""
     plugins = [
-        f.path for f in analysis.listed(system) if f.input.section == "behavior_tree" and f.path.endswith("cxml")
+        f.path
+        for f in analysis.listed(system)
+        if f.input.section is SystemSection.BEHAVIOR_TREE and f.path.endswith("cxml")
     ]
     folder = folder_of(plugins[0] if plugins else system)
     return new_file.free_path(analysis, folder, new_file.file_name(name))
@@ -50,7 +53,7 @@ def _create(analysis: Analysis, systems: tuple[str, ...], node: TreeNode, target
     linked = analysis.system(systems[0])
     ports = [(*port_of(linked, setting),) for setting in node.ports]
     text = new_file.plugin(node.plugin.value, ports, child=bool(node.children))
-    edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", target) for s in systems}
+    edits = {s: add_input(analysis, s, SystemSection.BEHAVIOR_TREE, "bt-plugin-ascxml", target) for s in systems}
     return WorkspaceEdit({s: changes for s, changes in edits.items() if changes}, {target: text})
 
 

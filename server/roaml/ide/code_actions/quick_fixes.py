@@ -24,7 +24,7 @@ from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT
-from roaml.model.system_file import ListedFile
+from roaml.model.system_file import ListedFile, SystemSection
 from roaml.model.tree import TreeNode, nodes
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
@@ -46,7 +46,7 @@ _Edits = dict[str, tuple[TextEdit, ...]]
 
 
 def repairs(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """The fixes of a diagnostic, in addition to those of its rule."""
+    """The quick fixes of a diagnostic that its rule does not offer itself."""
     repair = FIXES_ACROSS_FILES.get(diagnostic.code)
     if repair is not None:
         yield from repair(snapshot, diagnostic)
@@ -144,7 +144,7 @@ def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Code
             (
                 f
                 for f in analysis.listed(system)
-                if f.input.section == "node_models" and f.usable and _is_machine(analysis, f.path, name)
+                if f.input.section is SystemSection.NODE_MODELS and f.usable and _is_machine(analysis, f.path, name)
             ),
             None,
         )
@@ -166,7 +166,7 @@ def _is_machine(analysis: Analysis, path: str, name: str) -> bool:
 
 
 def _list(analysis: Analysis, systems: Iterable[str], path: str) -> WorkspaceEdit:
-    edits = {s: add_input(analysis, s, "behavior_tree", "bt-plugin-ascxml", path) for s in systems}
+    edits = {s: add_input(analysis, s, SystemSection.BEHAVIOR_TREE, "bt-plugin-ascxml", path) for s in systems}
     return WorkspaceEdit({system: edit for system, edit in edits.items() if edit})
 
 
@@ -177,7 +177,7 @@ def _element_in_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[Cod
         if not analysis.tree_paths(system):
             continue  # the system would have plugins but no tree
         for listed in analysis.listed(system):
-            if listed.path == diagnostic.path and listed.input.section == "node_models":
+            if listed.path == diagnostic.path and listed.input.section is SystemSection.NODE_MODELS:
                 yield _move(analysis, diagnostic, system, listed)
                 return
 
@@ -186,7 +186,7 @@ def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: Liste
     title = f"List `{name_of(listed.path)}` as a plugin in `{name_of(system)}`"
 
     def make() -> WorkspaceEdit:
-        edits = move_input(analysis, system, listed, "behavior_tree", "bt-plugin-ascxml")
+        edits = move_input(analysis, system, listed, SystemSection.BEHAVIOR_TREE, "bt-plugin-ascxml")
         return WorkspaceEdit({system: edits}) if edits else WorkspaceEdit()
 
     return _action(diagnostic, title, make, preferred=True)
@@ -194,18 +194,22 @@ def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: Liste
 
 def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     if diagnostic.facts == InputCount(FileKind.TREE):
-        yield from _list_file(snapshot, diagnostic, "behavior_tree", "bt.cpp-xml", FileKind.TREE)
+        yield from _list_file(snapshot, diagnostic, SystemSection.BEHAVIOR_TREE, "bt.cpp-xml", FileKind.TREE)
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Actions that list a property file from the folder in a system without properties."""
     facts = diagnostic.facts
-    if isinstance(facts, MissingChild) and facts.parent in SYSTEM.roots and facts.name == "properties":
-        yield from _list_file(snapshot, diagnostic, "properties", "jani", FileKind.PROPERTIES)
+    if (
+        isinstance(facts, MissingChild)
+        and facts.parent in SYSTEM.roots
+        and facts.name == SystemSection.PROPERTIES.value
+    ):
+        yield from _list_file(snapshot, diagnostic, SystemSection.PROPERTIES, "jani", FileKind.PROPERTIES)
 
 
 def _list_file(
-    snapshot: Snapshot, diagnostic: Diagnostic, section: str, type_: str, kind: FileKind
+    snapshot: Snapshot, diagnostic: Diagnostic, section: SystemSection, type_: str, kind: FileKind
 ) -> Iterator[CodeAction]:
     """Actions that list a file from the folder of the system file, or from a folder below it."""
     analysis, system = snapshot.analysis, diagnostic.path
@@ -254,7 +258,7 @@ def _feeds_others(analysis: Analysis, path: str, key: str) -> bool:
 
 
 def _settings(analysis: Analysis, machine: Machine, path: str, key: str) -> _Edits:
-    """The edits that remove all settings of a port of a plugin."""
+    """The edits that remove a port of a plugin from all nodes of trees that set it."""
     name = machine.name.value if machine.name else ""
     edits: _Edits = {}
     for tree_path in _trees(analysis, path):
@@ -371,14 +375,14 @@ def _name(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
 
 
 def _move_expectations(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Move the expectations of the property file to the configuration."""
+    """An action that moves the expectations of the property file to the configuration."""
     analysis, path = snapshot.analysis, diagnostic.path
     expectations = movable_expectations(analysis, path)
     for system in analysis.memberships.get(path, ())[:1] if expectations else ():
         file = snapshot.configuration_of(system)
-        what = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
+        subject = "the expectation" if len(expectations) == 1 else f"{len(expectations)} expectations"
         make = partial(moved, analysis, path, expectations, file)
-        yield _action(diagnostic, f"Move {what} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
+        yield _action(diagnostic, f"Move {subject} to `{name_of(file)}`", make, creates=analysis.source(file) is None)
 
 
 # -------------------------------------------------------------------- helpers

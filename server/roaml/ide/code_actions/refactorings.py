@@ -24,7 +24,7 @@ _RESULTS = tuple(name for name, type_ in HL_SCXML.elements.items() if type_.rece
 
 
 def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """The refactorings at a place."""
+    """The refactorings that are possible at a place."""
     analysis = snapshot.analysis
     machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
     if machine is not None:

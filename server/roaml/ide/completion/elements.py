@@ -18,6 +18,7 @@ from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
 from roaml.language import BEHAVIOR_TREE, XML_PROPERTIES, AttributeType, ElementType, Grammar
+from roaml.model.system_file import SystemSection
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
 from roaml.roles import NodeKind, SymbolKind, ValueRole
@@ -70,7 +71,7 @@ def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool
     allows."""
     if name.startswith("bt_"):
         sections = request.sections
-        return "node_models" not in sections or "behavior_tree" in sections
+        return SystemSection.NODE_MODELS not in sections or SystemSection.BEHAVIOR_TREE in sections
     if any(parent.element.name == "ros_action_thread" for parent in parents):
         return name not in (*OUTSIDE_THREADS, *UNUSUAL_IN_THREADS)
     return name not in INSIDE_THREADS

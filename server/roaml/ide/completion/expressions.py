@@ -146,7 +146,7 @@ def in_expression(
         if name not in STATUSES
     ]
     items += [
-        CompletionItem(name, ItemKind.VALUE, detail="answer of the child", rank=Rank.LIKELY)
+        CompletionItem(name, ItemKind.VALUE, detail="status of the child", rank=Rank.LIKELY)
         for name in events
         if name in STATUSES
     ]
@@ -160,7 +160,7 @@ def in_expression(
 
 
 def initial_values(type_: Type) -> Iterator[CompletionItem]:
-    """Typical values of a type."""
+    """Items for typical initial values of a type."""
     if type_ == UNKNOWN:
         return
     if type_ == BOOL:

@@ -88,7 +88,8 @@ _STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\
 
 
 def plain(snippet: str) -> str:
-    """The text of a snippet for editors without snippets: the first choice, the default, or nothing."""
+    """The text of a snippet for editors without snippets. Each placeholder is replaced by its first choice, by its
+    default, or by nothing."""
     return _STOP.sub(lambda stop: stop[1] or _unescaped(stop[2] or stop[3] or ""), snippet)
 
 

@@ -22,7 +22,7 @@ _SHOWN = 3
 
 
 def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The symbols of a kind to which `subject` may refer."""
+    """Items for the symbols of the kind `kind` to which `subject` may refer."""
     if kind in HANDLES:
         yield from _handles(request, kind)
     elif kind in _PROVIDERS:

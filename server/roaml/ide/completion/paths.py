@@ -9,15 +9,15 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.model.kinds import MACHINE_EXTENSIONS, FileKind
 from roaml.model.machine import Machine
-from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES
+from roaml.model.system_file import NODE_TYPES, PLUGIN_TYPES, TREE_TYPES, SystemSection, section_named
 from roaml.project.paths import seen_from
 from roaml.roles import ProtocolPart
 
 _BY_SECTION = {
-    "data_declarations": (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
-    "behavior_tree": (FileKind.TREE, FileKind.MACHINE),
-    "node_models": (FileKind.MACHINE,),
-    "properties": (FileKind.PROPERTIES, FileKind.XML_PROPERTIES),
+    SystemSection.DATA_DECLARATIONS: (FileKind.STRUCTS, FileKind.JSON_STRUCTS),
+    SystemSection.BEHAVIOR_TREE: (FileKind.TREE, FileKind.MACHINE),
+    SystemSection.NODE_MODELS: (FileKind.MACHINE,),
+    SystemSection.PROPERTIES: (FileKind.PROPERTIES, FileKind.XML_PROPERTIES),
 }
 
 _BY_TYPE = {
@@ -45,15 +45,19 @@ def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionIt
         yield CompletionItem(seen_from(path, request.path), ItemKind.FILE, detail=analysis.kind(path).value, rank=rank)
 
 
+_MUST_BE_PLUGIN = {SystemSection.BEHAVIOR_TREE: True, SystemSection.NODE_MODELS: False}
+"""The sections of machines, and whether these are plugins."""
+
+
 def _expected_kinds(subject: CompletionSubject) -> tuple[tuple[FileKind, ...], bool | None]:
     """The expected kinds of the file, and whether a machine must be a plugin; `None` if it may be a plugin or not."""
     if subject.type.name == "include":
         return (FileKind.TREE,), None
-    section = subject.parents[-1].element.name if subject.parents else ""
+    section = section_named(subject.parents[-1].element.name) if subject.parents else None
     written = subject.element.get("type") if subject.element else None
     type_ = written.value if written else ""
-    kinds = _BY_TYPE.get(type_) or _BY_SECTION.get(section, ())
-    return kinds, {"behavior_tree": True, "node_models": False}.get(section)
+    kinds = _BY_TYPE.get(type_) or (_BY_SECTION[section] if section else ())
+    return kinds, _MUST_BE_PLUGIN.get(section) if section else None
 
 
 def _is_plugin(machine: Machine) -> bool:

@@ -291,7 +291,7 @@ def _linked(request: Request) -> Mapping[str, LinkedVariable]:
 
 def _written(request: Request) -> Mapping[str, LinkedVariable]:
     """The variables of a file that belongs to no system."""
-    found: dict[str, LinkedVariable] = {}
+    variables: dict[str, LinkedVariable] = {}
     for _, written in request.property_file.variables if request.property_file is not None else ():
         if written.id is not None:
             text = written.type.text.strip() if written.type is not None else ""
@@ -302,10 +302,10 @@ def _written(request: Request) -> Mapping[str, LinkedVariable]:
                 else UNKNOWN,
             )
             is_bool = written.kind in (PortVariableKind.EVENT, PortVariableKind.ACCEPTED)
-            found[written.id.value] = LinkedVariable(
+            variables[written.id.value] = LinkedVariable(
                 written.id.value, written.kind, BOOL if is_bool else type_, "", written
             )
-    return found
+    return variables
 
 
 def compared_values(request: Request, start: int) -> Iterator[CompletionItem]:

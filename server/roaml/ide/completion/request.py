@@ -15,6 +15,7 @@ from roaml.language import ElementType
 from roaml.model.machine import Chart, Handler, Machine, RosSend
 from roaml.model.property_file import PropertyFile
 from roaml.model.system import System
+from roaml.model.system_file import SystemSection
 from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
@@ -59,7 +60,7 @@ class Request:
         return tuple(system for system in owners if system is not None)
 
     @cached_property
-    def sections(self) -> frozenset[str]:
+    def sections(self) -> frozenset[SystemSection]:
         """The sections of system files that list the file."""
         listed = (listed_file for system in self.systems for listed_file in self.analysis.listed(system.path))
         return frozenset(listed_file.input.section for listed_file in listed if listed_file.path == self.path)

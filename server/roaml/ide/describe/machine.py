@@ -37,7 +37,7 @@ _OCCASIONS = {
     ProtocolPart.RESPONSE: "the response of",
     ProtocolPart.GOAL: "a goal for",
     ProtocolPart.CANCEL: "a request to cancel a goal of",
-    ProtocolPart.GOAL_RESPONSE: "the answer to a goal of",
+    ProtocolPart.GOAL_RESPONSE: "the response to a goal of",
     ProtocolPart.FEEDBACK: "feedback of",
     ProtocolPart.RESULT: "the result of",
     ProtocolPart.TICK: "the timer",
@@ -45,7 +45,7 @@ _OCCASIONS = {
     ProtocolPart.THREAD_FREE: "the end of a thread of",
     ProtocolPart.BT_TICK: "a tick",
     ProtocolPart.BT_HALT: "a halt",
-    ProtocolPart.CHILD_STATUS: "the answer of child",
+    ProtocolPart.CHILD_STATUS: "the status of child",
     ProtocolPart.CHILD_HALTED: "the halt of child",
 }
 
@@ -268,7 +268,7 @@ def _any(occasions: Iterable[str]) -> str:
 
 
 def occasion(handler: Handler) -> str:
-    """A phrase for the trigger of a transition."""
+    """A phrase for the trigger of a transition, such as "a message on `/level`"."""
     if handler.event is not None:
         return name(handler.event.value)
     words = _OCCASIONS[handler.trigger]

@@ -68,7 +68,7 @@ def prose(text: str) -> str:
 
 
 def _tame(paragraph: str) -> str:
-    """A paragraph that a user wrote, with escapes. They would be visible in code, so code that needs escapes becomes
+    """A paragraph that a user wrote, with escapes. Escapes would be visible in code, so code that needs them becomes
     plain text."""
     parts: list[str] = []
     text = ""

@@ -94,8 +94,10 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
         return ""
     called = next((name for value, name in values.items() if str(value) == written.text), "")
     every = ", ".join(f"{value} = {name}" for value, name in values.items())
-    what = "Codes of action results (`action_msgs/GoalStatus`)" if values is GOAL_STATUSES else "Statuses of tree nodes"
-    return paragraphs(code(f"{written.text} = {called}") if called else "", f"{what}: {every}")
+    meaning = (
+        "Codes of action results (`action_msgs/GoalStatus`)" if values is GOAL_STATUSES else "Statuses of tree nodes"
+    )
+    return paragraphs(code(f"{written.text} = {called}") if called else "", f"{meaning}: {every}")
 
 
 def global_variable(variable: GlobalVariable) -> str:

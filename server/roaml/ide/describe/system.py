@@ -35,7 +35,7 @@ def node_of(system: System, variable: str) -> SystemAutomaton | None:
 
 
 def _system(analysis: Analysis, symbol: Symbol) -> System | None:
-    """The system of a symbol; `None` if its file is analysed alone."""
+    """The system of a symbol; `None` if the file of the symbol belongs to no system."""
     return analysis.system(symbol.path) if symbol.path in analysis.system_paths else None
 
 
@@ -129,7 +129,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 
 
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
-    """A description of a topic, service or action without its type, for descriptions of the machines that use it."""
+    """The description of a topic, service or action without its type, as a part of other descriptions."""
     connected = find_channel(system, symbol)
     head = f"{_sentence(symbol.kind.value)} {name(written)}"
     return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
@@ -319,7 +319,7 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _struct(analysis: Analysis, symbol: Symbol, struct_name: str) -> Struct | None:
-    """The struct with a name in the system of a symbol, or in the symbol's file if it belongs to no system."""
+    """The struct `struct_name` in the system of a symbol, or in the symbol's file if it belongs to no system."""
     if symbol.path in analysis.system_paths:
         struct = analysis.structs(symbol.path).types.get(struct_name)
         return struct if isinstance(struct, Struct) else None

@@ -51,10 +51,10 @@ def _value(port: Port, declared: PortVariable) -> str:
     happens = str(event_clause(port))
     if declared.kind is PortVariableKind.EVENT:
         return f"True in the step in which {happens}, false in all others"
-    what = {
+    subject = {
         PortVariableKind.GOAL_ID: "The number of the goal",
         PortVariableKind.RESULT_CODE: "The code of the result",
         PortVariableKind.ACCEPTED: "Whether the goal was accepted",
     }.get(declared.kind, f"The value of {quoted(declared.field.value if declared.field else '')}")
     before = f"; {name(declared.initial.text)} before" if declared.initial is not None else ""
-    return f"{what} at the last time that {happens}{before}"
+    return f"{subject} at the last time that {happens}{before}"

@@ -13,6 +13,7 @@ from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.ros import ros_picture
+from roaml.ide.diagrams.system import system_picture
 from roaml.ide.diagrams.tree import tree_picture
 from roaml.project.analysis import Analysis
 
@@ -31,6 +32,7 @@ __all__ = [
     "machine_picture",
     "picture_of",
     "ros_picture",
+    "system_picture",
     "tree_picture",
 ]
 
@@ -38,6 +40,7 @@ _MAKERS: Mapping[DiagramKind, Callable[[Analysis, str], Picture | None]] = {
     DiagramKind.MACHINE: machine_picture,
     DiagramKind.TREE: tree_picture,
     DiagramKind.ROS: ros_picture,
+    DiagramKind.SYSTEM: system_picture,
 }
 
 

@@ -19,12 +19,14 @@ class DiagramKind(enum.Enum):
     MACHINE = "machine"
     TREE = "tree"
     ROS = "ros"
+    SYSTEM = "system"
 
 
 class DiagramNodeKind(enum.Enum):
     STATE = "state"
     CHOICE = "choice"
     THREAD = "thread"
+    MACHINE = "machine"
     CONTROL = "control"
     DECORATOR = "decorator"
     ACTION = "action"

@@ -52,6 +52,15 @@ def _id(automaton: SystemAutomaton) -> str:
     return f"{kind} {automaton.index} {automaton.path}"
 
 
+def machine_node_ids(system: System) -> Mapping[str, tuple[str, ...]]:
+    """The ids of the nodes that show a machine or plugin, by its file."""
+    ids: dict[str, tuple[str, ...]] = {}
+    for automaton in system.automata:
+        if automaton.path:
+            ids[automaton.path] = tuple(dict.fromkeys((*ids.get(automaton.path, ()), _id(automaton))))
+    return ids
+
+
 def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, DiagramNode]]:
     for automaton in system.automata:
         machine = analysis.machine(automaton.path) if automaton.path else None

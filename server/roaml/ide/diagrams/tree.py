@@ -59,6 +59,8 @@ class _Tree:
         self.system = system
         self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
+        lone = {path: analysis.forest(path) for path in self.files} if system is None else {}
+        self.forests = {path: forest for path, forest in lone.items() if forest is not None}
         self.written = {instance.number: self.node(instance) for instance in instances}
 
     def node(self, instance: Instance) -> TreeNode | None:
@@ -135,9 +137,17 @@ class _Tree:
 
     def kind(self, instance: Instance, node: TreeNode | None) -> DiagramNodeKind:
         written = node.element.name if node else ""
-        described = self.described.get(instance.plugin, "")
+        described = self.described.get(instance.plugin, "") or self.declared(instance)
         if node is not None and node.type is not None and node.type.node and node.type.name not in EXPLICIT:
             word = node.type.node.value
         else:
             word = (written if written in EXPLICIT else described).lower()
-        return _KINDS.get(word, DiagramNodeKind.CONTROL if instance.children else DiagramNodeKind.ACTION)
+        number = len(instance.children)
+        unknown = (DiagramNodeKind.ACTION, DiagramNodeKind.DECORATOR)[number] if number < 2 else DiagramNodeKind.CONTROL
+        return _KINDS.get(word, unknown)
+
+    def declared(self, instance: Instance) -> str:
+        """The kind of a node in a tree without a system, if a library or a model declares it."""
+        forest = self.forests.get(instance.source.path)
+        node = forest.node(instance.plugin) if forest is not None else None
+        return node.kind.value if node is not None else ""

@@ -151,7 +151,7 @@ class _Formatter:
             yield Spacing(Span(element.close_name_span.end, element.close_span.end - 1), "")
 
     def between(self, element: Element) -> list[Span]:
-        """The gaps before the attributes."""
+        """The spans of the white space before the attributes."""
         ends = [element.name_span.end, *(attribute.span.end for attribute in element.attributes)]
         return [Span(end, attribute.span.start) for end, attribute in zip(ends, element.attributes, strict=False)]
 

@@ -49,20 +49,20 @@ def in_json(place: Place) -> tuple[Span, str] | None:
         known = PROPERTIES.keys(schema, owner).get(member.key)
         if member.key_span.contains(offset):
             return (member.key_span, describe_properties.member(known)) if known else None
-        held = member.value
-        if not isinstance(held, JsonString) or not held.content_span.contains(offset):
+        text_value = member.value
+        if not isinstance(text_value, JsonString) or not text_value.content_span.contains(offset):
             continue
         text = ""
         if member.key == "op":
             head = code(describe_properties.formula(owner))
-            description = describe_properties.operator(held.value)
+            description = describe_properties.operator(text_value.value)
             text = paragraphs(head, description) if description else ""
         elif member.key == "name" and PROPERTIES.is_a(schema, "property"):
             expression = members(owner).get("expression")
             text = code(describe_properties.formula(expression)) if expression else ""
         elif known is not None and known.name in ("fun", "constant", "distribution"):
             text = describe_properties.member(known)
-        return (held.content_span, text) if text else None
+        return (text_value.content_span, text) if text else None
     return None
 
 

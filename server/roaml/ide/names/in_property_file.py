@@ -146,7 +146,7 @@ class _PropertyFile:
 
     def around(self, system: System, instance: Instance) -> list[tuple[Symbol, ...]]:
         """The symbols to which the names in `parts_above` refer, in the same order."""
-        found: list[tuple[Symbol, ...]] = []
+        symbols_around: list[tuple[Symbol, ...]] = []
         frame = self.frame_of(instance)
         while True:
             parent = system.by_instance.get(instance.parent) if instance.parent is not None else None
@@ -154,11 +154,11 @@ class _PropertyFile:
             outermost = self.frame_of(around) if around is not None else None
             while frame is not None and frame is not outermost:
                 symbols = tuple(self.names_of(frame))
-                found += [symbols] if symbols else []
+                symbols_around += [symbols] if symbols else []
                 frame = frame.outer
             if parent is None or around is None:
-                return found[::-1]
-            found.append((self.symbol_of(parent),))
+                return symbols_around[::-1]
+            symbols_around.append((self.symbol_of(parent),))
             instance = around
 
     def frame_of(self, instance: Instance) -> Frame | None:

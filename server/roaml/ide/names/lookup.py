@@ -25,7 +25,7 @@ _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
 
 @dataclass(frozen=True, slots=True)
 class SymbolUse:
-    """An occurrence in a file."""
+    """An occurrence, and the path of the file that contains it."""
 
     path: str
     occurrence: Occurrence

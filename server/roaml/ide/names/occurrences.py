@@ -49,7 +49,7 @@ def occurrences(analysis: Analysis, path: str, system: str | None = None) -> tup
 
 
 def _index(occurrences: Iterable[Occurrence]) -> Uses:
-    """The uses that consist of some occurrences, without duplicates."""
+    """The index of some occurrences, without duplicates."""
     by_symbol: dict[Symbol, list[Occurrence]] = {}
     by_span: dict[Span, list[Occurrence]] = {}
     ordered: list[Occurrence] = []

@@ -181,7 +181,7 @@ class NodeProgram:
 
     @functools.cached_property
     def needed_ports(self) -> tuple[str, ...]:
-        """The ports that the program reads when it is ticked; it cannot work without them."""
+        """The ports that the program reads when it is ticked. They must be set."""
         return tuple(dict.fromkeys(port for part in self.tick if isinstance(part, Read) for port in part.ports))
 
     @functools.cached_property
@@ -194,14 +194,14 @@ class NodeProgram:
 
     @functools.cached_property
     def asks_world(self) -> bool:
-        """Whether the program depends on something that happens in the world."""
+        """Whether the program depends on an event in the world (docs/spec/mocks.md#world)."""
         choices = (part.probability for part in self.tick if isinstance(part, Choose))
         return any(isinstance(probability, ast.Name) and probability.id == "event" for probability in choices)
 
 
 @functools.cache
 def programs() -> Mapping[str, NodeProgram]:
-    """The programs of all nodes, by name."""
+    """Name of a node -> its program."""
     result: dict[str, NodeProgram] = {}
     for file in FILES:
         text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")

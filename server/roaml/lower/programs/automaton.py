@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node of an executed tree -> a plain automaton (docs/spec/mocks.md#nodes).
+"""Creates the plain automaton of a node of an executed tree (docs/spec/mocks.md#nodes).
 
-The program of the node is executed symbolically: variables that are known during translation become part of the states,
-so that a tick needs few steps. A state waits for an event of the tree or of the blackboard, or decides what depends on
-the values of variables.
+The program of the node is executed symbolically. Variables whose values are known during the translation become part of
+the states, so that a tick needs few steps. In a state, the automaton waits for an event of the tree or of the
+blackboard, or decides by the values of its variables how it continues.
 """
 
 from __future__ import annotations
@@ -54,17 +54,17 @@ MAX_STATES = 20_000
 
 
 MACHINE = "machine"
-"""The program that evaluates the conditions of a node that is a machine. Machines are also halted after they have ended
-(docs/spec/nodes.md#library)."""
+"""The name of the program that evaluates the conditions of a node with a machine. Machines are also halted after they
+have ended (docs/spec/nodes.md#library)."""
 
 
 class NodeTooLargeError(Exception):
-    """The program of a node has more states than `MAX_STATES`."""
+    """Raised if the automaton of a node has more states than `MAX_STATES`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NodeAutomaton:
-    """An automaton, and what its parent has to know of it."""
+    """The automaton of a node, and the properties of the node on which its parent depends."""
 
     automaton: Automaton
     child: Child
@@ -84,7 +84,7 @@ def node_automaton(code: NodeCode) -> NodeAutomaton:
 
 
 Fixed: TypeAlias = "tuple[tuple[str, Known], ...]"
-"""The values of all variables that are known, sorted by name."""
+"""The variables whose values are known, with the values; sorted by name."""
 
 _TOUCHED = "*touched"
 _SKIPS = "*skips"
@@ -123,7 +123,7 @@ class _Asking(NamedTuple):
 
 
 class _Deciding(NamedTuple):
-    """What follows depends on the values of variables."""
+    """The node decides by the values of variables how it continues."""
 
     place: Place
     fixed: Fixed
@@ -134,7 +134,7 @@ class _Exception(NamedTuple):
 
 
 class _Decision(NamedTuple):
-    """What follows depends on a condition on the values of variables."""
+    """The execution continues at `yes` if a condition on variables holds, otherwise at `no`."""
 
     condition: Expr
     yes: Place
@@ -142,14 +142,21 @@ class _Decision(NamedTuple):
 
 
 _Stop: TypeAlias = str | _Decision | Draw
-"""Where the execution stops: in a state, or at something that depends on values or on chance."""
+"""The reason why the execution stops: it has reached the state with this name, or it depends on a condition or on
+chance."""
 
 _Key: TypeAlias = _Rest | _Ticking | _Halting | _Asking | _Deciding | _Exception
 
 
 @dataclass(slots=True)
 class _Way:
-    """One way through the code up to the next state: the statements on it, and what is known."""
+    """One execution of the code up to the next state.
+
+    Attributes:
+        place: the next instruction.
+        fixed: variable whose value is known -> the value.
+        body: the statements that the automaton executes.
+    """
 
     place: Place
     fixed: dict[str, Known]
@@ -202,7 +209,7 @@ class _Explorer:
     # ------------------------------------------------------------------ states
 
     def state(self, word: str, key: _Key) -> str:
-        """The state for a key; a new one is built later."""
+        """The name of the state for `key`. A new state is named after `word` and is built later."""
         if key not in self.states:
             count = self.names[word] = self.names.get(word, 0) + 1
             self.states[key] = word if count == 1 else f"{word}_{count}"
@@ -210,7 +217,7 @@ class _Explorer:
         return self.states[key]
 
     def rest(self, fixed: Mapping[str, Known]) -> str:
-        """The state in which the node waits for its parent."""
+        """The name of the state in which the node waits for its parent."""
         kept = {k: v for k, v in fixed.items() if k in self.kept or k == _TOUCHED}
         word = next(word for word, number in STATUS_CODES.items() if number == kept["status"]).lower()
         return self.state(word, _Rest(_frozen(kept)))
@@ -249,8 +256,8 @@ class _Explorer:
     def has_conditions(self) -> bool:
         return any(script.startswith("_") for script in self.code.scripts)
 
-    def event(self, what: str) -> ScxmlEvent:
-        return tree_event(self.code.address, what)
+    def event(self, kind: str) -> ScxmlEvent:
+        return tree_event(self.code.address, kind)
 
     def on_halt(self, fixed: dict[str, Known]) -> list[Transition]:
         if fixed["status"] == RUNNING:
@@ -273,7 +280,7 @@ class _Explorer:
         cond: Expr | None = None,
         body: Sequence[Statement] = (),
     ) -> list[Transition]:
-        """The transitions on an event: the code from `place` to the next states."""
+        """The transitions on an event, which execute the code from `place` to the next states."""
         origin = self.code.origin
         return [
             Transition(event, guard, targets, origin)
@@ -281,8 +288,8 @@ class _Explorer:
         ]
 
     def alternatives(self, way: _Way, cond: Expr | None) -> list[tuple[Expr | None, tuple[Target, ...]]]:
-        """What can follow, depending on conditions in the current state. Conditions are decided at once only as long as
-        nothing was executed."""
+        """The conditions and targets of the transitions that continue an execution. A condition becomes the condition
+        of a transition only if no statement precedes it; otherwise it is decided in a separate state."""
         stop = self.run(way)
         match stop:
             case _Decision(test, yes, no) if not way.body:
@@ -303,17 +310,17 @@ class _Explorer:
         return self.target(way, self.run(way), share)
 
     def target(self, way: _Way, stop: _Stop, share: float) -> Target:
-        # What depends on values is decided in a state of its own.
+        # A condition after statements is decided in a separate state.
         later = _Deciding(way.place, _frozen(way.fixed))
         state = stop if isinstance(stop, str) else self.state("deciding", later)
         return Target(state, share, tuple(way.body), self.code.origin)
 
     def run(self, way: _Way) -> _Stop:
-        """Execute until an event has to arrive, or something depends on values. `way.place` is the instruction at which
-        it stops.
+        """Execute instructions until the node must wait for an event, or until a condition or chance decides how it
+        continues. `way.place` is then the instruction at which the execution stopped.
 
         Returns:
-            the name of a state, or the instruction with what it depends on and the places that follow.
+            The name of the state that is reached, or the decision with the places at which the execution continues.
         """
         while True:
             segment, index = way.place
@@ -334,7 +341,8 @@ class _Explorer:
                 return stop
 
     def end(self, segment: str, way: _Way) -> str | None:
-        """At the end of a segment: the next one, or the answer to the parent."""
+        """Continue after the end of a segment. Return the name of the reached state, or `None` if `way.place` is the
+        beginning of the next segment."""
         match segment:
             case "before":
                 way.place = ("tick", 0)
@@ -369,7 +377,7 @@ class _Explorer:
         return self.rest(way.fixed)
 
     def execute(self, instruction: Instruction, following: Place, way: _Way) -> _Stop | None:
-        """Execute one instruction; return where to stop, or `None` to go on at `way.place`."""
+        """Execute one instruction. Return the reason to stop, or `None` if the execution continues at `way.place`."""
         segment = following[0]
 
         def at(label: CodeLabel) -> Place:
@@ -480,13 +488,13 @@ class _Explorer:
         return self.added(f"*{script}*{following}", lambda key: script_steps(key, compiled, following, otherwise))
 
     def added(self, segment: str, steps: Callable[[str], tuple[Step, ...]]) -> Place:
-        """The beginning of a segment, which is added if it does not exist yet."""
+        """The place at the beginning of a segment. `steps` returns the segment if it does not exist yet."""
         if segment not in self.segments:
             self.segments[segment] = steps(segment)
         return (segment, 0)
 
     def step(self, step: Step, way: _Way) -> _Stop | None:
-        """Execute an added step; return where to stop, or `None` to go on at `way.place`."""
+        """Execute one step. Return the reason to stop, or `None` if the execution continues at `way.place`."""
         segment, index = way.place
         match step:
             case Ask(entries):

@@ -105,9 +105,11 @@ def _kind_of_type(name: str) -> EntryKind:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _ScriptFacts:
-    """Attributes:
-    typed: the parts of a script that show types of entries, in the order of the text.
-    read: the names of the entries that it reads.
+    """The parts of a script from which types and uses of entries are inferred.
+
+    Attributes:
+        typed: the assignments and comparisons, which determine types of entries, in the order of the text.
+        read: the names of the entries that the script reads.
     """
 
     typed: tuple[Assignment | Comparison, ...]

@@ -88,9 +88,10 @@ class NodeCode:
 
     @property
     def shape(self) -> Hashable:
-        """What determines the states of the automaton: those of two nodes with equal shapes differ only in names.
+        """A key for everything that determines the states of the automaton. The automata of two nodes with equal shapes
+        differ only in names and values.
 
-        Expressions with variables are not part of it, because both of their outcomes are followed.
+        Conditions on variables are not part of the shape, because the automaton contains both of their outcomes.
         """
         positions: dict[str, int] = {}
 

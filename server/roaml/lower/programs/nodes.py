@@ -202,7 +202,7 @@ class _Reader:
         for port, entry, _, span in node.ports():
             if port in ("output_key", "key") and target is None:
                 reason = (
-                    f"`{{{entry}}}` means the entry whose name is the value of `{entry}`, which is known only when "
+                    f"`{{{entry}}}` means the entry whose name is the value of `{entry}`, which is only known when "
                     f'the tree runs; write `{port}="{entry}"` for the entry `{entry}` itself'
                 )
                 raise TreeRefusal(Location(node.origin.path, span), reason)

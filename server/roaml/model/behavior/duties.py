@@ -75,7 +75,7 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
         if possible(step) and not (step.event and step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT))
     ]
     lost = waiting - _back((taking & waiting) | known, between)
-    # The machine still leaves a configuration if it expects an event that needs no further tick or request.
+    # Leave out configurations that the machine leaves on an event that follows without a further tick or request.
     left = {
         step.source
         for step in between
@@ -115,9 +115,9 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
         elif behavior.configurations[step.target].state in ready and _moves(behavior, step):
             early.add(step.target)
             yield step
-    told = _forward(early, inside)
+    reported = _forward(early, inside)
     for step in following:
-        if step.target not in going_on and step.source not in told and (step.source in going_on or step.ignored):
+        if step.target not in going_on and step.source not in reported and (step.source in going_on or step.ignored):
             yield step
 
 
@@ -135,11 +135,11 @@ def is_suspicious(behavior: Behavior) -> bool:
         duties = {
             Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, ProtocolPart.GOAL)
         }
-        asked = [duty for duty in duties if duty.kind.is_of_tree]
+        tree_duties = [duty for duty in duties if duty.kind.is_of_tree]
         known[behavior] = (
             any(step.faults for step in behavior.steps)
             or any(unfinished(behavior, duty) for duty in duties)
-            or any(untaken(behavior, duty) for duty in asked)
+            or any(untaken(behavior, duty) for duty in tree_duties)
             or any(event.part is ProtocolPart.THREAD_START for step in behavior.steps for event in step.sent)
         )
     return bool(known[behavior])

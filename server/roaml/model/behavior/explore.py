@@ -384,7 +384,7 @@ class _Explorer:
             self.declarations[user] = find_handle(self.machine, user)
         return self.declarations[user]
 
-    # ------------------------------------------------------ what is followed
+    # --------------------------------------------------- variables that matter
 
     def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
         """The variables whose values may decide which path is taken: the variables that conditions read, if they are

@@ -298,7 +298,7 @@ def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]
             waiting += automaton.instance.children
 
 
-# -------------------------------------------------- while a machine stands still
+# ------------------------------------------- while a machine stays in one state
 
 
 def comes_again(

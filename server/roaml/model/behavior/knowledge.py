@@ -114,12 +114,12 @@ class Knowledge:
         return next((entry.domain for entry in self.entries if entry.term == term), None)
 
     def without(self, variable: str) -> Knowledge:
-        """The knowledge without the terms that contain a variable."""
+        """The knowledge without the terms that contain the variable `variable`."""
         kept = tuple(entry for entry in self.entries if variable not in entry.roots)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
     def within(self, variables: frozenset[str]) -> Knowledge:
-        """The knowledge about the terms whose variables are all among these."""
+        """The knowledge about the terms that contain only variables of `variables`."""
         kept = tuple(entry for entry in self.entries if entry.roots <= variables)
         return self if len(kept) == len(self.entries) else Knowledge(kept)
 
@@ -152,14 +152,14 @@ class _Term(NamedTuple):
 
 @dataclass(frozen=True)
 class ConditionFacts:
-    """Facts that hold for the variables of a chart on every path.
+    """Facts about the variables of a chart that hold on every path. They decide what is stored in a `Knowledge`.
 
     Attributes:
-        whole: variables whose values are integers.
-        logical: variables that are booleans.
-        followed: variables whose values are followed; `None` for all.
-        counted: variables for which sums and remainders are followed.
-        constants: names of values, such as `SUCCESS`.
+        whole: the variables whose values are integers.
+        logical: the variables that are booleans.
+        followed: the variables whose values are stored; `None` for all variables.
+        counted: the variables for which the values of sums and remainders are computed and stored.
+        constants: name of a constant, such as `SUCCESS` -> its value.
     """
 
     whole: frozenset[str] = frozenset()

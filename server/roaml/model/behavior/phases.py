@@ -49,15 +49,16 @@ class Subject(Vocabulary):
     TREE = "tree"
     """The plugin itself, as a node of the tree."""
     CHILD = "child"
-    """Its children."""
+    """The children of the plugin, as nodes of the tree."""
     REQUEST = "request"
     GOAL = "goal"
     RESULT = "result"
-    """The duties of a server."""
+    """REQUEST, GOAL and RESULT: the answers that a server owes."""
     RESPONSE = "response"
     DECISION = "decision"
     OUTCOME = "outcome"
-    """The answers that a client waits for; the outcome is the result of its goal."""
+    """RESPONSE, DECISION and OUTCOME: the answers that a client waits for. The decision accepts or rejects its goal;
+    the outcome is the result of its goal."""
 
 
 class Phase(Vocabulary):

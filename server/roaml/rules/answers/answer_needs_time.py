@@ -24,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    told: set[tuple[Handler, Duty]] = set()
+    reported: set[tuple[Handler, Duty]] = set()
     for automaton in plugins(context):
         if not is_readable(system, automaton):
             continue
@@ -39,8 +39,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     if awaited is None or not instants.possible(step):
                         continue
                     for handler in _beginning(behavior, step, duty):
-                        if (handler, duty) not in told:
-                            told.add((handler, duty))
+                        if (handler, duty) not in reported:
+                            reported.add((handler, duty))
                             yield _finding(context, system, handler, duty, instants.delay(awaited), automaton)
 
 

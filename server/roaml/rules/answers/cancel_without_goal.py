@@ -28,7 +28,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for statement in requests:
         declaration = find_handle(context.machine, statement)
         if declaration is not None and declaration not in sending:
-            yield _finding(context, statement, f"this client sends no goal: there is no `<{_SENDS_GOALS}>` for it")
+            yield _finding(context, statement, f"there is no `<{_SENDS_GOALS}>` for its client")
     for behavior in behaviors(context):
         for statement in _useless(context, behavior):
             if find_handle(context.machine, statement) in sending:

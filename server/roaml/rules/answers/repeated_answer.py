@@ -17,7 +17,7 @@ from roaml.rules.support.answers import SENT, answered_in, behaviors, place, plu
 from roaml.text import TextEdit
 
 KINDS = (FaultKind.UNASKED, FaultKind.WRONG_KIND)
-_ASKED_BY = {
+_REQUESTS_OF = {
     DutyKind.REQUEST: (ProtocolPart.REQUEST,),
     DutyKind.GOAL: (ProtocolPart.GOAL,),
     DutyKind.RESULT: (ProtocolPart.GOAL, ProtocolPart.THREAD_START),
@@ -27,14 +27,14 @@ _ASKED_BY = {
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report answers that are sent twice or without a request: they are used as the answer to the next request."""
-    told: set[tuple[Handler, Duty]] = set()
+    reported: set[tuple[Handler, Duty]] = set()
     in_tree = bool(plugins(context))
     for behavior in behaviors(context):
         for step in behavior.steps:
             for fault in step.faults:
-                if (step.handler, fault.duty) in told or not _counts(context, behavior, step, fault, in_tree):
+                if (step.handler, fault.duty) in reported or not _counts(context, behavior, step, fault, in_tree):
                     continue
-                told.add((step.handler, fault.duty))
+                reported.add((step.handler, fault.duty))
                 yield _finding(context, behavior, step, fault)
 
 
@@ -47,16 +47,16 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
         takes = ProtocolPart.BT_TICK if isinstance(fault.statement, ReturnStatus) else ProtocolPart.BT_HALT
         if not any(s.event and s.event.part is takes for s in behavior.steps) and not _twice(step, fault):
             return False  # the missing handler is reported instead
-    elif len(answered_in(context.machine, fault.duty)) > 1 or not _is_asked(behavior, fault.duty):
+    elif len(answered_in(context.machine, fault.duty)) > 1 or not _handles_requests(behavior, fault.duty):
         return False
     elif fault.duty.kind is DutyKind.REQUEST and _owes_another(behavior, step, fault.duty):
         return False  # the unanswered request is reported instead
     return not behavior.approximate or _twice(step, fault)
 
 
-def _is_asked(behavior: Behavior, duty: Duty) -> bool:
+def _handles_requests(behavior: Behavior, duty: Duty) -> bool:
     """Whether this chart handles the requests that an answer to the duty is sent for."""
-    parts = _ASKED_BY[duty.kind]
+    parts = _REQUESTS_OF[duty.kind]
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
 
@@ -110,7 +110,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
         return f"`<{tag}>` is sent while no {event} waits for it; send it where the {event} is handled"
     earlier, place, other = f"`<{first.element.name}>`", _where(behavior, first), _where(behavior, fault.statement)
     if not _twice(step, fault):
-        why = f"on a path to this place it was already {how} by {earlier} {place}"
+        why = f"on a path to this place the {event} was already {how} by {earlier} {place}"
         return f"`<{tag}>` is sent while no {event} waits for it: {why}; {tail}"
     by = f"first by {earlier} {place}, then by `<{tag}>` {other}"
     if place == other:
@@ -120,7 +120,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
     """The statement that answered the request first, in the same step or in the nearest step before it. `None` if there
-    is no such statement."""
+    is none."""
     if fault.kind is FaultKind.WRONG_KIND:
         return None
     events = _answers(fault)

@@ -19,12 +19,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
     accept or end a goal are reported by silent-server."""
     awaited = _awaited(context)
     for behavior in behaviors(context):
-        asked = {
+        handles = {
             s.event.name
             for s in behavior.steps
             if s.event and s.event.part in (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
         }
-        for name in sorted(asked):
+        for name in sorted(handles):
             for kind in (DutyKind.GOAL, DutyKind.RESULT):
                 duty = Duty(kind, name)
                 if kind is DutyKind.RESULT and name not in awaited:
@@ -58,12 +58,12 @@ def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
     how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
     end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"
-    if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _asks(step)):
-        which = "the goal that waits here"
+    if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _handles_goal(step)):
+        which = "the goal that is pending here"
     return f"{which} {how}, so its client waits for ever; {end} on every path"
 
 
-def _asks(step: BehaviorStep) -> bool:
+def _handles_goal(step: BehaviorStep) -> bool:
     return step.event is not None and step.event.part is ProtocolPart.GOAL
 
 

@@ -71,7 +71,7 @@ def _message(step: BehaviorStep, certain: bool) -> str:
         tag = f"<{step.handler.element.name}>"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
-    where = "a halt that is handled here" if halted else "the halt that waits here"
+    where = "a halt that is handled here" if halted else "the halt that is pending here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
 

@@ -22,12 +22,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
     """Report services that answer a request only on some paths. Services that never answer are reported by
     silent-server."""
     for behavior in behaviors(context):
-        asked = {
+        handlers = {
             step.event.name: step.handler
             for step in behavior.steps
             if step.event and step.event.part is ProtocolPart.REQUEST
         }
-        for name, handler in asked.items():
+        for name, handler in handlers.items():
             duty = Duty(DutyKind.REQUEST, name)
             if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
                 yield from _missed(context, behavior, duty, handler)
@@ -42,22 +42,24 @@ def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Ha
 
 
 def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
-    asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
+    handles_request = step.event is not None and step.event.part is ProtocolPart.REQUEST
     if step.ignored:
         reason = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
-        if not asked:
+        if not handles_request:
             reason = f"events are dropped while this condition does not hold, so the request for `{duty.handle}` is"
         tag = f"<{step.handler.element.name}>"
         return f"{reason} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
-    where = "a request that is handled here" if asked else f"the request for `{duty.handle}` that waits here"
+    where = (
+        "a request that is handled here" if handles_request else f"the request for `{duty.handle}` that is pending here"
+    )
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the client waits for ever; send one `<ros_service_send_response>` on every path"
 
 
-def _fixes(context: MachineContext, step: BehaviorStep, asked: Handler) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep, request_handler: Handler) -> Iterator[Fix]:
     """A fix that sends a response with zero values in all fields at the end of the handler."""
     place = step.handler.targets[step.choice].element or step.handler.element
-    declaration = find_handle(context.machine, asked)
+    declaration = find_handle(context.machine, request_handler)
     if not step.certain or step.ignored or not place.complete or declaration is None or declaration.type is None:
         return
     interface = context.interface("srv", declaration.type.value)

@@ -65,7 +65,7 @@ def _message(step: BehaviorStep, certain: bool) -> str:
         if not ticked:
             reason = "events are dropped while this condition does not hold, so the tick is never answered,"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    where = "a tick that is handled here" if ticked else "the tick that waits here"
+    where = "a tick that is handled here" if ticked else "the tick that is pending here"
     how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
 

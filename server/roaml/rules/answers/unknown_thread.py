@@ -15,15 +15,15 @@ from roaml.rules.support.answers import behaviors, place
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report starts of threads with a number that no thread has; threads are numbered from 0."""
     for behavior in behaviors(context):
-        told: set[Statement] = set()
+        reported: set[Statement] = set()
         for step in behavior.steps:
             for fault in step.faults:
                 if (
                     fault.kind is FaultKind.THREAD
-                    and fault.statement not in told
+                    and fault.statement not in reported
                     and isinstance(fault.statement, RosSend)
                 ):
-                    told.add(fault.statement)
+                    reported.add(fault.statement)
                     yield _finding(context, step, fault, fault.statement)
 
 

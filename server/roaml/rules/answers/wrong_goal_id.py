@@ -41,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     """Report answers whose goal id differs from the id with which the goal arrived. They reach another client, or
     none."""
     for behavior in behaviors(context):
-        told: set[tuple[str, FaultKind]] = set()
+        reported: set[tuple[str, FaultKind]] = set()
         for step, fault in _faults(behavior).values():
             statement = fault.statement
             if fault.kind is FaultKind.UNDECIDED and not is_spelled(context, Duty(DutyKind.GOAL, fault.duty.handle)):
@@ -49,8 +49,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             assert isinstance(statement, RosSend)
             assert statement.goal_id is not None
             variable = statement.goal_id.text.strip()
-            if (variable, fault.kind) not in told:
-                told.add((variable, fault.kind))
+            if (variable, fault.kind) not in reported:
+                reported.add((variable, fault.kind))
                 yield _finding(context, step, fault, statement, variable)
     yield from _constants(context)
 
@@ -110,7 +110,7 @@ def _constants(context: MachineContext) -> Iterator[Finding]:
                         named.setdefault(value, []).append(statement)
             for value, statements in named.items():
                 why = _wrong_constant(context.system, channel, value)
-                if why and not _asks_for_ids(chart):
+                if why and not _tests_goal_ids(chart):
                     yield _constant_finding(statements, why)
 
 
@@ -137,7 +137,7 @@ def _wrong_constant(system: System, channel: Channel, value: float) -> str:
     return f"which is not the id of any client of `{channel.name}`: the ids are {ids}"
 
 
-def _asks_for_ids(chart: Chart) -> bool:
+def _tests_goal_ids(chart: Chart) -> bool:
     """Whether a condition reads the id of a goal, so that a constant may be right where the condition holds."""
     read = [h.cond.tree for state in chart.states for h in state.handlers if h.cond]
     stored = {"_action"}

@@ -14,7 +14,7 @@ from roaml.text import TextEdit
 from roaml.xml_syntax import Attribute, Element
 
 CHANGES_MEANING = ("delay", "delayexpr", "initial", "src")
-SPEAKS_FOR = {("param", "location"): "expr"}
+EFFECTIVE_ATTRIBUTES = {("param", "location"): "expr"}
 """Ignored attributes, with the attributes in which their values would have an effect."""
 
 
@@ -38,7 +38,7 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def _fix(context: FileContext, element: Element, attribute: Attribute) -> Fix:
-    instead = SPEAKS_FOR.get((element.name, attribute.name))
+    instead = EFFECTIVE_ATTRIBUTES.get((element.name, attribute.name))
     if instead is not None and element.get(instead) is None:
         return Fix(f"Change to `{instead}`", (TextEdit(attribute.name_span, instead),))
     return Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=False)

@@ -22,7 +22,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if counts and int(name.value[:9]) >= max(counts):
                     most = max(counts)
                     children = "no children" if most == 0 else f"{most} {'child' if most == 1 else 'children'}"
-                    message = f"there is no child {name.value}: in the tree the node has {children}, counted from 0"
+                    message = (
+                        f"there is no child {name.value}: in the tree the node has {children}, and children are "
+                        "counted from 0"
+                    )
                     yield RULE.at(name.span, message)
             else:
                 yield from _variable(context, chart, name)

@@ -35,7 +35,7 @@ def check(context: FileContext) -> Iterator[Finding]:
         assert context.grammar is not None
         if child_count is None:
             if not misspelled.among(element.elements, violation.names[0], context.grammar):
-                message = f"`<{element.name}>` needs a `<{violation.names[0]}>`"
+                message = f"`<{element.name}>` needs {_with_article(violation.names[0])}"
                 facts = MissingChild(element.name, violation.names[0])
                 yield RULE.at(element.name_span, message, *_leave_out(context, element), facts=facts)
         elif not has_counted_children(violation.type):
@@ -83,6 +83,10 @@ def _add_state(context: MachineContext, chart: Chart) -> Iterator[Fix]:
         if chart.element.get("initial") is None and not chart.scope:
             edits.append(TextEdit(Span(at, at), f' initial="{name}"'))
         yield Fix(f"Add the state `{name}`", tuple(edits))
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'aeiou' else 'a'} `<{name}>`"
 
 
 RULE = Rule(

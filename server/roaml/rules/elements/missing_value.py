@@ -22,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         types = context.typed.variables.get(chart.scope, {})
         for data in chart.data:
             if data.id is not None and is_missing(data.element, data.value):
-                message = f"the variable `{data.id.value}` has no initial value"
+                message = f"the variable `{data.id.value}` has no initial value; add `expr`"
                 yield RULE.at(data.element.name_span, message, *_fix(data.element, types.get(data.id.value)))
         for statement in chart.statements:
             match statement:

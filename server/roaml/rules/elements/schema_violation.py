@@ -14,11 +14,11 @@ from roaml.rules.rule import FileContext, Rule
 def check(context: FileContext) -> Iterator[Finding]:
     """Report violations of the schema that no other rule explains."""
     for violation in context.violations:
-        if isinstance(violation, SchemaViolation) and not _told_elsewhere(context, violation):
+        if isinstance(violation, SchemaViolation) and not _is_reported_elsewhere(context, violation):
             yield RULE.at(violation.element.name_span, f"invalid according to the schema: {violation.reason}")
 
 
-def _told_elsewhere(context: FileContext, violation: SchemaViolation) -> bool:
+def _is_reported_elsewhere(context: FileContext, violation: SchemaViolation) -> bool:
     """Whether another rule reports the violation: branch-order the order in an `<if>`, transition-target the siblings
     of a `<target>`."""
     name = violation.element.name

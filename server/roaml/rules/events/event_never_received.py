@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import GapAct
 from roaml.model.machine import Send
 from roaml.model.name_forms import EVENT
+from roaml.model.system_file import SystemSection
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.removed_events import REMOVED_EVENTS
 
@@ -18,7 +19,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if system is None:
         return
     awaited = [e.name for e in system.events.values() if e.receivers and not e.senders and EVENT.match(e.name)]
-    known = () if context.listed_as == {"node_models"} else REMOVED_EVENTS  # reported by removed-bt-event
+    known = () if context.listed_as == {SystemSection.NODE_MODELS} else REMOVED_EVENTS  # reported by removed-bt-event
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and statement.event.value not in known:

@@ -14,6 +14,7 @@ from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import System
+from roaml.model.system_file import SystemSection
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.scxml.names import TIMER_PREFIX
@@ -50,7 +51,7 @@ def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Han
                 event = handler.event
                 if handler.trigger is not ProtocolPart.EVENT or event is None:
                     continue
-                if event.value in OF_THE_TREE and context.listed_as != {"node_models"}:
+                if event.value in OF_THE_TREE and context.listed_as != {SystemSection.NODE_MODELS}:
                     continue
                 if "*" in event.value or len(event.value.split()) > 1:
                     continue

@@ -48,7 +48,7 @@ def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[F
                 hint = ROUND if value.type != value.sent and same_kind(value.type, theirs) else ""
                 yield RULE.at(
                     value.value.span,
-                    f"`{name}` is {phrase(mine)} here, but {there} in another `{event.name}`{hint}",
+                    f"`{name}` is {phrase(mine)} here, but {there} in another `<send>` of `{event.name}`{hint}",
                     related=(Related(Symbol(automaton.path, SymbolKind.EVENT, event.name), f"sent as {there}"),),
                 )
                 return

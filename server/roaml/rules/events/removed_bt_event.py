@@ -8,13 +8,14 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.model.machine import Handler, Send
+from roaml.model.system_file import SystemSection
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.removed_events import REMOVED_EVENTS, removed_handlers, removed_sends
 from roaml.text import Edit, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.listed_as == {"node_models"}:
+    if context.listed_as == {SystemSection.NODE_MODELS}:
         return  # in a node these are ordinary events
     yield from (_handler(handler, context.source.text) for handler in removed_handlers(context.machine))
     yield from map(_send, removed_sends(context.machine))

@@ -34,7 +34,7 @@ def _check(problem: UnknownMember, event: PlainEvent, params: list[str]) -> Iter
     close = close_names(problem.name, params)
     senders = dict.fromkeys(Symbol(automaton.path, SymbolKind.EVENT, event.name) for automaton, _ in event.senders)
     related = [Related(symbol, "sent here") for symbol in [*senders][:3]]
-    message = f"no machine sends a parameter `{problem.name}` with `{event.name}`{did_you_mean(close)}"
+    message = f"no machine sends a parameter `{problem.name}` with the event `{event.name}`{did_you_mean(close)}"
     yield RULE.at(problem.span, message, *replacements(problem.span, close), related=related)
 
 

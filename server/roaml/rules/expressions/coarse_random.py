@@ -71,13 +71,13 @@ def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Findin
         exact = Fraction(str(bound))
         below = math.ceil(exact * values) if operator in _STRICT else math.floor(exact * values) + 1
         if operator in (Operator.LESS, Operator.LESS_EQUAL):
-            real, meant = Fraction(below, values), exact
+            real, suggested = Fraction(below, values), exact
         else:
-            real, meant = 1 - Fraction(below, values), 1 - exact
-        if real != meant:
+            real, suggested = 1 - Fraction(below, values), 1 - exact
+        if real != suggested:
             message = (
                 f"`{left.name}` is one of {values:,} values of `Math.random()`, so this holds with probability "
-                f"{float(real):g}, not {float(meant):g}; {_comparison_advice(left.name, operator, exact, values)}"
+                f"{float(real):g}, not {float(suggested):g}; {_comparison_advice(left.name, operator, exact, values)}"
             )
             yield RULE.at(node.span, message, severity=Severity.INFORMATION)
 
@@ -87,7 +87,7 @@ _STRICT = (Operator.LESS, Operator.GREATER_EQUAL)
 
 
 def drawn_variables(chart: Chart) -> frozenset[str]:
-    """The variables that hold only random numbers: `Math.random()` is assigned to them, and otherwise at most
+    """The variables that hold only random numbers: all values that are assigned to them are `Math.random()` or
     constants."""
     assigned: dict[str, list[Expr | None]] = {}
     for statement in chart.statements:

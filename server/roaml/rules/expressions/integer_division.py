@@ -23,9 +23,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         ):
             continue  # type-mismatch reports this with more detail
         problems = [problem for problem in value.problems if isinstance(problem, IntegerDivision)]
-        meant = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()
+        rounded = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()
         for problem in problems:
-            if problem.span not in meant:
+            if problem.span not in rounded:
                 message = "`/` of integers is a real number (`7 / 2` is 3.5)"
                 yield RULE.at(
                     problem.span, f"{message}; for an integer write `Math.floor(a / b)`", *_fixes(value.value, problem)

@@ -28,7 +28,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, WrongType):
-                message = f"{_what(value)} is `{problem.required}`, not {phrase(problem.given)}"
+                message = f"{_what(value)} must be `{problem.required}`, not {phrase(problem.given)}"
                 yield RULE.at(
                     problem.span, message, *_fixes(context, value, problem.given, problem.required, problem.span)
                 )
@@ -52,7 +52,7 @@ def can_hold(required: Type, given: Type) -> bool:
 
 
 def _mismatch(context: MachineContext, value: TypedValue, required: Type) -> Finding:
-    message = f"{_what(value)} is `{required}`, not {phrase(value.type)}"
+    message = f"{_what(value)} must be `{required}`, not {phrase(value.type)}"
     edits = _without_points(context, value, required)
     if not edits:
         return RULE.at(value.value.span, message, *_fixes(context, value, value.type, required, value.value.span))
@@ -98,7 +98,7 @@ def _too_long(tree: Expr, required: Type, size: int | None) -> Iterator[Finding]
 
 def _longer(span: Span, holder: str, parts: str, length: int, most: int | None) -> Iterator[Finding]:
     if most is not None and length > most:
-        yield RULE.at(span, f"{holder} {most} {parts}; these are {length}")
+        yield RULE.at(span, f"{holder} at most {most} {parts}, not {length}")
 
 
 def _what(value: TypedValue) -> str:

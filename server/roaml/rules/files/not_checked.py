@@ -15,6 +15,7 @@ from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
+from roaml.model.system_file import SystemSection
 from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
@@ -88,18 +89,20 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
         for placed in context.gaps:
             for automaton in context.automata:
                 yield placed.span, system.facts(placed.gap, automaton)
-        if context.machine.name is None and "behavior_tree" in context.listed_as:
+        if context.machine.name is None and SystemSection.BEHAVIOR_TREE in context.listed_as:
             yield context.machine.element.name_span, _ANY_PLUGIN
         return
     for placed in context.gaps:
         yield placed.span, system.facts(placed.gap)
     if isinstance(context, SystemContext):
         plugins = [
-            f for f in context.files if f.input.section == "behavior_tree" and f.required_kind is not FileKind.TREE
+            f
+            for f in context.files
+            if f.input.section is SystemSection.BEHAVIOR_TREE and f.required_kind is not FileKind.TREE
         ]
         yield from ((listed.span, _ANY_PLUGIN) for listed in plugins if not listed.usable)
-        strange = system.ticked_nodes | system.idle_plugins
-        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in strange)
+        misplaced = system.ticked_nodes | system.idle_plugins
+        yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in misplaced)
         return
     for instance in system.instances:
         if instance.source.path == context.source.path and system.plugin(instance.plugin)[1] is None:

@@ -9,17 +9,17 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import Name
-from roaml.model.system_file import ListedFile
+from roaml.model.system_file import ListedFile, SystemSection
 from roaml.rules.rule import Rule, SystemContext
 from roaml.text import TextEdit
 
 TYPES = {
-    ("behavior_tree", FileKind.TREE): "bt.cpp-xml",
-    ("behavior_tree", FileKind.MACHINE): "bt-plugin-ascxml",
-    ("properties", FileKind.PROPERTIES): "jani",
-    ("properties", FileKind.XML_PROPERTIES): "xml",
-    ("data_declarations", FileKind.STRUCTS): "xml",
-    ("data_declarations", FileKind.JSON_STRUCTS): "json",
+    (SystemSection.BEHAVIOR_TREE, FileKind.TREE): "bt.cpp-xml",
+    (SystemSection.BEHAVIOR_TREE, FileKind.MACHINE): "bt-plugin-ascxml",
+    (SystemSection.PROPERTIES, FileKind.PROPERTIES): "jani",
+    (SystemSection.PROPERTIES, FileKind.XML_PROPERTIES): "xml",
+    (SystemSection.DATA_DECLARATIONS, FileKind.STRUCTS): "xml",
+    (SystemSection.DATA_DECLARATIONS, FileKind.JSON_STRUCTS): "json",
 }
 """The value of `type` for each section and kind of file."""
 
@@ -40,13 +40,13 @@ def check(context: SystemContext) -> Iterator[Finding]:
 def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Iterator[Finding]:
     """Report a machine that is listed as a plugin but is a node, or is listed as a node but is a plugin."""
     system, section = context.system, listed.input.section
-    ticked = section == "node_models" and listed.path in system.ticked_nodes
-    same = (f for f in context.files if f.path == listed.path and f.input.section == "behavior_tree")
+    ticked = section is SystemSection.NODE_MODELS and listed.path in system.ticked_nodes
+    same = (f for f in context.files if f.path == listed.path and f.input.section is SystemSection.BEHAVIOR_TREE)
     plugins = list(same) if ticked else []
     reason = ""
     if plugins:  # otherwise tree-element-in-node reports it
         reason = "a plugin of the behavior tree and listed as one, so it cannot be a node; name the file of the node"
-    elif section == "behavior_tree" and listed.path in system.idle_plugins:
+    elif section is SystemSection.BEHAVIOR_TREE and listed.path in system.idle_plugins:
         reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"
     if reason:
         drop = remove(context.document, listed.input.element)

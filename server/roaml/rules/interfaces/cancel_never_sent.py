@@ -22,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     missing-client."""
     if context.system is None:
         return
-    told: set[Handler] = set()
+    reported: set[Handler] = set()
     for declaration, _, action in declared(context, SymbolKind.ACTION_SERVER):
         if not action.users or any(ProtocolPart.CANCEL in client.use.sends for client in action.users):
             continue
@@ -31,10 +31,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for chart in context.machine.charts:
             for state in chart.states:
                 for handler in state.handlers:
-                    if handler.trigger is not ProtocolPart.CANCEL or handler in told:
+                    if handler.trigger is not ProtocolPart.CANCEL or handler in reported:
                         continue
                     if find_handle(context.machine, handler) is declaration:
-                        told.add(handler)
+                        reported.add(handler)
                         message = (
                             f"this handler is never taken: no client of `{action.name}` has a "
                             "`<ros_action_cancel_goal>`; add one, or remove the handler"

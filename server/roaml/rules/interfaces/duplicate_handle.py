@@ -85,7 +85,10 @@ def _written(value: Name | PortRead | None) -> str:
 def _same_client(declaration: Declaration, interface: Name, before: Declaration) -> Finding:
     """The finding for a service or action that a client declares twice (docs/spec/ros.md#services)."""
     assert before.handle is not None
-    message = f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`"
+    message = (
+        f"the {CLIENTS[declaration.kind]} `{interface.value}` is already declared as `{before.handle.value}`; "
+        "use that declaration"
+    )
     return RULE.at(interface.span, message, related=(Related(before.handle.span, "declared first here"),))
 
 

@@ -34,11 +34,11 @@ def _missing(context: MachineContext, statement: RosSend) -> list[tuple[str, Typ
     # A field that is only misspelled, or set as a whole, is reported as an unknown field.
     names = {field.name.value for field in statement.fields if field.name}
     known = [".".join(path) for path, _ in leaves(part)]
-    meant = {path for name in names.difference(known) for path in _meant(name, known)}
-    return [(path, type_) for path, type_ in unset if path not in meant]
+    intended = {path for name in names.difference(known) for path in _misspelled_fields(name, known)}
+    return [(path, type_) for path, type_ in unset if path not in intended]
 
 
-def _meant(name: str, known: Iterable[str]) -> tuple[str, ...]:
+def _misspelled_fields(name: str, known: Iterable[str]) -> tuple[str, ...]:
     """The known fields that a field with the unknown name `name` was probably intended to set."""
     inside = tuple(path for path in known if path.startswith(f"{name}."))
     return inside or close_names(name, known, 1)

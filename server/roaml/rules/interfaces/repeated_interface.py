@@ -12,12 +12,12 @@ from roaml.rules.rule import MachineContext, Rule
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report each package once, where a machine first uses it."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for declaration in context.machine.declarations:
         for repeated in context.repeated_types:
             type_ = declaration.type
-            if type_ is not None and type_.value == repeated.used_by and repeated.package not in told:
-                told.add(repeated.package)
+            if type_ is not None and type_.value == repeated.used_by and repeated.package not in reported:
+                reported.add(repeated.package)
                 message = f"there are two copies of the package `{repeated.package}`, and `{repeated.name}` differs: "
                 message += (
                     f"{_folder(repeated, repeated.path)} is used, {_folder(repeated, repeated.other)} is ignored; "

@@ -21,7 +21,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    told: set[RosSend] = set()
+    reported: set[RosSend] = set()
     for declaration, _, action in declared(context, SymbolKind.ACTION_CLIENT):
         if not action.sources or any(ProtocolPart.CANCEL in server.use.receives for server in action.sources):
             continue
@@ -29,10 +29,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
             continue
         for chart in context.machine.charts:
             for statement in chart.statements:
-                if not isinstance(statement, RosSend) or statement.part is not ProtocolPart.CANCEL or statement in told:
+                if (
+                    not isinstance(statement, RosSend)
+                    or statement.part is not ProtocolPart.CANCEL
+                    or statement in reported
+                ):
                     continue
                 if find_handle(context.machine, statement) is declaration:
-                    told.add(statement)
+                    reported.add(statement)
                     message = (
                         f"the server of `{action.name}` rejects every request to cancel a goal: "
                         "it has no `<ros_action_handle_cancel_goal>`; add one to the states in which a goal can be "

@@ -61,7 +61,7 @@ _CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "N
 
 def _finding(use: Use, first: Use) -> Finding:
     related = [Related(first.span, f"`{first.type}` here")] if first.path == use.path else []
-    message = f"the entry `{use.name}` is of type `{first.type}`; this port is `{use.type}`"
+    message = f"the entry `{use.name}` has the type `{first.type}`, but this port has the type `{use.type}`"
     severity = Severity.ERROR if use.from_library and first.from_library else Severity.WARNING
     return RULE.at(use.span, message, severity=severity, related=related)
 

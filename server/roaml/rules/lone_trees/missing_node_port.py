@@ -49,8 +49,8 @@ def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:
 
 def _without_value(node: TreeNode, known: Node) -> Iterator[Finding]:
     """Report the input ports that are not set and have no default, although the node may work without them."""
-    meant = probable_ports(node, known)
-    if not all(meant.values()):
+    ports_of_attributes = probable_ports(node, known)
+    if not all(ports_of_attributes.values()):
         return  # unknown-node-port reports an attribute that may be a misspelling of any port
     probable = _probable(node, known)
     for port in known.ports:

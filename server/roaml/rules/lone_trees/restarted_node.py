@@ -29,8 +29,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             for child in running[1:]:
                 first = running[0]
                 message = (
-                    f"`{_name(child)}` never ends: at the next tick, `{name}` ticks `{_name(first)}` first, which is "
-                    f"RUNNING again, and halts `{_name(child)}`"
+                    f"this `{_name(child)}` never ends: at the next tick, `{name}` ticks the earlier `{_name(first)}`, "
+                    "which is RUNNING again, and halts this node"
                 )
                 related = [Related(first.element.name_span, "starts again at every tick")]
                 yield RULE.at(child.element.name_span, message, related=related)

@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.UNUSED,
     Severity.WARNING,
-    "No property uses a variable of a port, or a port has none.",
+    "No property uses a variable of a port, or a port has no variables.",
 )

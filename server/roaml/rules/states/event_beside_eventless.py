@@ -21,8 +21,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 names = listing(dict.fromkeys(_awaited(handler) for handler in waiting))
                 yield RULE.at(
                     always.element.name_span,
-                    f"without an event or condition this is taken at once, so the state never waits for {names}; "
-                    "give it an `event` or a `cond`",
+                    f"without an event or condition, this transition is taken at once, so the state never waits for "
+                    f"{names}; give it an `event` or a `cond`",
                     related=(Related(handler.element.name_span, "never taken") for handler in waiting),
                 )
 

@@ -25,9 +25,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if cover.same:
                     why = "an earlier branch has the same condition"
                 elif cover.by:
-                    why = "whenever its condition holds, that of an earlier branch holds as well"
+                    why = "whenever its condition holds, the condition of an earlier branch holds as well"
                 else:
-                    why = "whenever its condition holds, that of one of the earlier branches holds as well"
+                    why = "whenever its condition holds, the condition of one of the earlier branches holds as well"
                 message = f"this branch is never executed: {why}; change one of the conditions"
                 related = [Related(branch.element.name_span, "tested first") for branch in earlier]
                 yield RULE.at(branches[cover.number].element.name_span, message, related=related)

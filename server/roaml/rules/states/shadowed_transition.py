@@ -35,8 +35,8 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
             yield RULE.at(
                 handler.element.name_span,
                 (
-                    f"this is never taken: an earlier transition {when} has no condition; add one, or move this one "
-                    "before it"
+                    f"this transition is never taken: an earlier transition {when} has no condition; add a condition "
+                    "to it, or move this transition before it"
                 ),
                 *_fixes(context, handler, before),
                 related=(Related(before.element.name_span, "always taken first"),),
@@ -61,11 +61,11 @@ def _in_order(context: MachineContext, facts: ConditionFacts, handlers: list[Han
         if cover.same:
             why = f"an earlier transition {when} has the same condition"
         elif cover.by:
-            why = f"whenever its condition holds, that of an earlier transition {when} holds as well"
+            why = f"whenever its condition holds, the condition of an earlier transition {when} holds as well"
         else:
             why = f"whenever its condition holds, one of the earlier transitions {when} is taken"
         drop = remove(context.document, handler.element, "Remove this transition")
-        message = f"this is never taken: {why}; change one of the conditions"
+        message = f"this transition is never taken: {why}; change one of the conditions"
         related = [Related(earlier_handler.element.name_span, "taken first") for earlier_handler in earlier]
         yield RULE.at(handler.element.name_span, message, drop, severity=Severity.WARNING, related=related)
 

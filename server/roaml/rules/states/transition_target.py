@@ -51,4 +51,4 @@ def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Fin
             yield RULE.at(beside.name_span, message)
 
 
-RULE = Rule("transition-target", Severity.ERROR, "A transition has no target, or two.", machine=check)
+RULE = Rule("transition-target", Severity.ERROR, "A transition has no target or two targets.", machine=check)

@@ -100,10 +100,10 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     for handler, handler_steps in steps.items():
         if all(step.ignored for step in handler_steps) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        told = [step for step in handler_steps if not _may_be_unread(context.machine, behavior, duty, step)]
-        if told:
-            certain = [step for step in told if step.certain and not step.ignored]
-            yield (certain or told)[0], bool(certain)
+        unexplained = [step for step in handler_steps if not _may_be_unread(context.machine, behavior, duty, step)]
+        if unexplained:
+            certain = [step for step in unexplained if step.certain and not step.ignored]
+            yield (certain or unexplained)[0], bool(certain)
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:

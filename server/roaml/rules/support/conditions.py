@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds conditions that never decide: they are tested in order, and an earlier one always holds when they do."""
+"""Finds conditions that have no effect. Conditions are tested in order, and the first that holds decides; a condition
+never decides if an earlier condition holds whenever it does."""
 
 from __future__ import annotations
 

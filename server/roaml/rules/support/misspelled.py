@@ -38,12 +38,12 @@ def declaration(machine: Machine, tag: str, name: str) -> bool:
     This is true for a `<tag>` whose name is missing or misspelled, for a `<tag>` in a place where it is ignored, and
     for an unknown element in the place of a `<tag>`.
     """
-    meant = _meant(machine, tag)
-    return "" in meant or name in meant
+    names = _intended_names(machine, tag)
+    return "" in names or name in names
 
 
 @lru_cache(maxsize=16)  # an unreadable declaration leads to a finding at each of its uses
-def _meant(machine: Machine, tag: str) -> frozenset[str]:
+def _intended_names(machine: Machine, tag: str) -> frozenset[str]:
     """The names that unreadable elements are probably intended to declare with a `<tag>`. An empty string in the result
     means that the name could be any."""
     read = {data.element for chart in machine.charts for data in chart.data if data.id}
@@ -61,16 +61,16 @@ def _meant(machine: Machine, tag: str) -> frozenset[str]:
 def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[str]:
     """The names that an element is probably intended to declare as `<tag key="…">`; an empty string means any name."""
     values = {attribute.name: attribute.value.strip() for attribute in element.attributes}
-    said = values.get(key, "")
+    key_value = values.get(key, "")
     if element.name == tag:
         known = HL_SCXML.elements[tag].attributes
-        return [said] if said else [value for name, value in values.items() if name not in known] or [""]
+        return [key_value] if key_value else [value for name, value in values.items() if name not in known] or [""]
     place = HL_SCXML.find(parent.name)
     allowed = place.children if place else ()
     if element.name in allowed:
         return ()
     if element.name in HL_SCXML.elements:
-        return [said] if said and tag in allowed else ()
+        return [key_value] if key_value and tag in allowed else ()
     in_place = tag in allowed or among((element,), tag, HL_SCXML)
     return [value for value in values.values() if value] if in_place else ()
 

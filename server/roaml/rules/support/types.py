@@ -15,7 +15,9 @@ def phrase(type_: Type) -> str:
     if isinstance(type_, Array):
         return f"an array (`{type_}`)"
     if isinstance(type_, Struct):
-        return f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"a {type_.what}"
+        return (
+            f"`{type_}`" if type_.name not in ("", "object") else f"an {type_}" if type_.name else f"the {type_.what}"
+        )
     if isinstance(type_, Unknown):
         return "this"
     kinds: dict[object, str] = {

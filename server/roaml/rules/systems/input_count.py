@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
 from roaml.facts import Facts
 from roaml.model.kinds import FileKind
-from roaml.model.system_file import ListedFile
+from roaml.model.system_file import ListedFile, SystemSection
 from roaml.rules.rule import Rule, SystemContext
 
 
@@ -28,10 +28,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
         message = "a system allows only one file of trees, which may include others"
         yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
     yield from _property_files(context)
-    section = context.file.element.find("behavior_tree")
-    kinds = [f.required_kind for f in context.files if f.input.section == "behavior_tree"]
+    section = context.file.element.find(SystemSection.BEHAVIOR_TREE.value)
+    kinds = [f.required_kind for f in context.files if f.input.section is SystemSection.BEHAVIOR_TREE]
     # An input with an unknown or misspelled type may be the tree; other rules report it.
-    unread = "behavior_tree" in context.file.unread
+    unread = SystemSection.BEHAVIOR_TREE in context.file.unread
     if section is not None and not unread and kinds and all(kind is FileKind.MACHINE for kind in kinds):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
         yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))

@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.globals import event_names
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, sanitise
-from roaml.model.system_file import ListedFile
+from roaml.model.system_file import ListedFile, SystemSection
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
 from roaml.scxml.names import is_generated
@@ -19,7 +19,7 @@ from roaml.scxml.names import is_generated
 def check(context: SystemContext) -> Iterator[Finding]:
     """Report repeated names of automata, and repeated names of plugins."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
-    first: dict[tuple[str, str], ListedFile] = {}
+    first: dict[tuple[SystemSection, str], ListedFile] = {}
     generated = _generated(context.system)
     for listed in context.files:
         outline = outlines.get(listed.path) if listed.required_kind is FileKind.MACHINE else None
@@ -28,7 +28,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
         before = first.setdefault((listed.input.section, outline.name), listed)
         if before is not listed:
             yield _finding(context, listed, before, outline.name)
-        elif listed.input.section == "node_models" and (reason := _taken(outline.name, generated)):
+        elif listed.input.section is SystemSection.NODE_MODELS and (reason := _taken(outline.name, generated)):
             named = Related(Symbol(listed.path, SymbolKind.MACHINE, outline.name), "named here")
             message = f"the node has the same name as {reason}: `{outline.name}`; rename the node"
             yield RULE.at(listed.input.src.span, message, related=[named])
@@ -64,13 +64,13 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
     assert src is not None
     assert earlier is not None
     first = Related(earlier.span, "the first `<input>`")
-    kind_name = "node" if listed.input.section == "node_models" else "plugin"
+    kind_name = "node" if listed.input.section is SystemSection.NODE_MODELS else "plugin"
     if before.path == listed.path:
         # A plugin that is listed twice still exists once; a node would exist twice.
         same = f", so there would be two nodes `{name}`" if kind_name == "node" else ""
         remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
         severity = Severity.ERROR if kind_name == "node" else Severity.WARNING
-        message = f"`{src.value}` is listed twice{same}"
+        message = f"`{src.value}` is listed twice{same}; remove this `<input>`"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
     named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
     message = f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`; rename one of them"

@@ -39,8 +39,8 @@ def missing_ports(node: TreeNode, plugin: MachineOutline, path: str) -> list[Por
     given = {attribute.name for attribute in node.element.attributes} | {setting.key.value for setting in node.ports}
     missing = [port for port in plugin.ports if port.key not in known and port.key not in given]
     # unknown-port reports a port that is only misspelled.
-    strange = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]
-    misspelled = {close for name in strange for close in close_names(name, [port.key for port in missing], 1)}
+    unknown_keys = [setting.key.value for setting in node.ports if plugin.port(setting.key.value) is None]
+    misspelled = {close for name in unknown_keys for close in close_names(name, [port.key for port in missing], 1)}
     return [port for port in missing if port.key not in misspelled]
 
 

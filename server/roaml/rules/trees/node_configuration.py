@@ -66,7 +66,8 @@ def _set_twice(context: TreeContext) -> Iterator[Finding]:
 
 
 def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
-    """Every constant setting of a node: its own ones, and those from subtrees and from defaults of the tree model."""
+    """Every constant setting of a node, with its key and value. Constants from subtrees and from defaults of the tree
+    model are included."""
     executed: set[TreeNode] = set()
     for node, automaton in instances(context):
         executed.add(node)

@@ -188,7 +188,8 @@ def _place(node: TreeNode, port: PortOutline) -> Span:
 
 @dataclass(frozen=True, slots=True)
 class ConstantProblem:
-    """Why a port cannot hold a constant; `replacement` is the constant that was probably meant."""
+    """Why a port cannot hold a constant; `replacement` is the constant that was probably intended, or an empty
+    string."""
 
     message: str
     severity: Severity = Severity.ERROR
@@ -202,7 +203,7 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     if type_ is None or is_kind(type_, ScalarKind.STRING):
         return None
     if not text:
-        return ConstantProblem(f"the port `{port.key}` has no value; it needs a `{port.type}`")
+        return ConstantProblem(f"the port `{port.key}` has no value; it needs a value of the type `{port.type}`")
     tree, findings = parse(Decoded(text, 0))
     given, problems = infer(tree, lambda _: None)
     sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)

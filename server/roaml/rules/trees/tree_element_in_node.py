@@ -7,12 +7,13 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.edit.elements import remove
+from roaml.model.system_file import SystemSection
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import own_elements
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if "node_models" not in context.listed_as or "behavior_tree" in context.listed_as:
+    if SystemSection.NODE_MODELS not in context.listed_as or SystemSection.BEHAVIOR_TREE in context.listed_as:
         return
     for element in own_elements(context.document):
         if not element.name.startswith("bt_"):

@@ -34,7 +34,7 @@ def _check(context: TreeContext, model: NodeModel, plugin: MachineOutline, path:
         if known is None:
             drop = remove(context.document, port.element)
             close = close_names(port.name.value, [p.key for p in plugin.ports])
-            message = f"`{plugin.name}` has no port `{port.name.value}`{did_you_mean(close)}"
+            message = f"the plugin `{plugin.name}` has no port `{port.name.value}`{did_you_mean(close)}"
             yield RULE.at(port.name.span, message, *replacements(port.name.span, close), drop, related=related)
         elif port.direction not in (Direction.INOUT, known.direction):
             message = f"the port `{port.name.value}` of `{plugin.name}` is an {known.direction}put port"

@@ -68,7 +68,7 @@ def _id(context: TreeContext, tree: Tree, known: Mapping[str, Sequence[TreeOutli
 
 
 def _is_first(context: TreeContext, tree: Tree) -> bool:
-    """Whether a tree is the first with its name, which keeps the name."""
+    """Whether a tree is the first with its name. The first tree keeps the name and is not reported."""
     assert context.forest is not None
     return tree.id is not None and context.forest.trees[tree.id.value][1] is tree
 
@@ -169,7 +169,7 @@ def _around(own: str, uses: Mapping[str, Iterable[str]]) -> Set[str]:
 
 
 def _cycle(start: str, first: str, uses: Mapping[str, Iterable[str]]) -> list[str]:
-    """The names on a path from `start` through `first` back to `start`; empty if there is no such path."""
+    """The names on a path from `start` through `first` back to `start`; empty if there is no path."""
     came_from = {first: start}
     stack = [first]
     while stack:

@@ -10,6 +10,7 @@ from roaml.edit.elements import after, first_in
 from roaml.expr.types import Scalar
 from roaml.model.machine import Machine, SetOutput
 from roaml.model.syntax import Name, PortRead
+from roaml.model.system_file import SystemSection
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.roles import Direction
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
@@ -18,21 +19,21 @@ from roaml.rules.support.ports import reads, writes
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.listed_as == {"node_models"}:
+    if context.listed_as == {SystemSection.NODE_MODELS}:
         return  # tree-element-in-node reports that a node has no ports
     ports = {port.key.value: port for port in context.machine.ports if port.key}
     inputs = [key for key in reads(context.machine, context.typed) if key.value not in ports]
     for key in inputs:
         if not _is_misspelled_declaration(context.machine, key.value):
             close = close_names(key.value, ports)
-            message = f"there is no port `{key.value}`{did_you_mean(close)}"
+            message = f"there is no port `{key.value}`{did_you_mean(close) or '; declare it'}"
             yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.IN))
     outputs = [name for name, port in ports.items() if port.direction is Direction.OUT]
     for key in writes(context.machine):
         port = ports.get(key.value)
         close = close_names(key.value, outputs)
         if port is None and not _is_misspelled_declaration(context.machine, key.value):
-            message = f"there is no output port `{key.value}`{did_you_mean(close)}"
+            message = f"there is no output port `{key.value}`{did_you_mean(close) or '; declare it'}"
             yield RULE.at(key.span, message, *replacements(key.span, close), *_declare(context, key, Direction.OUT))
         elif port is not None and port.direction is Direction.IN:
             message = f"`{key.value}` is an input port and cannot be written{did_you_mean(close)}"

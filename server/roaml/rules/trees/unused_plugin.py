@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.model.gaps import GapAct
+from roaml.model.system_file import SystemSection
 from roaml.rules.rule import Rule, SystemContext
 
 
@@ -18,7 +19,12 @@ def check(context: SystemContext) -> Iterator[Finding]:
     names = {path: outline.name for path, outline in system.plugins}
     for listed in context.files:
         src, name = listed.input.src, names.get(listed.path)
-        if listed.input.section == "behavior_tree" and src is not None and name is not None and name not in used:
+        if (
+            listed.input.section is SystemSection.BEHAVIOR_TREE
+            and src is not None
+            and name is not None
+            and name not in used
+        ):
             if system.may(GapAct.NODE, name):
                 continue
             yield RULE.at(src.span, f"the tree never uses the plugin `{name}`", tags=(Tag.UNNECESSARY,))

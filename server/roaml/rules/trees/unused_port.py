@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity, Tag
 from roaml.edit.elements import remove
 from roaml.model.system import CHILDREN_COUNT
+from roaml.model.system_file import SystemSection
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.ports import reads, writes
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    if context.listed_as == {"node_models"}:
+    if context.listed_as == {SystemSection.NODE_MODELS}:
         return  # tree-element-in-node reports that a node has no ports
     used = {key.value for key in (*reads(context.machine, context.typed), *writes(context.machine))}
     for port in context.machine.ports:

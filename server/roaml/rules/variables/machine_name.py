@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.system import builtin_plugins
+from roaml.model.system_file import SystemSection
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.rules.support.names import WrongName
@@ -23,16 +24,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
             fixes = [Fix(f"Call it `{stem}`", (TextEdit(attribute.span, f'name="{stem}"'),))] if stem else []
             yield RULE.at(attribute.span, "the name of the machine is empty; set `name`", *fixes)
         return
-    if "behavior_tree" in context.listed_as and name.value in builtin_plugins():
+    if SystemSection.BEHAVIOR_TREE in context.listed_as and name.value in builtin_plugins():
         message = f"`{name.value}` is the name of a node of BehaviorTree.CPP; rename the plugin"
         yield RULE.at(name.span, message, facts=WrongName(name.value))
-    elif "behavior_tree" in context.listed_as and name.value in (*EXPLICIT, *SUBTREES):
+    elif SystemSection.BEHAVIOR_TREE in context.listed_as and name.value in (*EXPLICIT, *SUBTREES):
         message = f"`<{name.value}>` has a special meaning in trees; rename the plugin"
         yield RULE.at(name.span, message, facts=WrongName(name.value))
     elif (safe := safe_name(name.value)) != name.value:
         message = f"`{name.value}` is not an identifier; generated names use `{safe}`"
         # The tree, if there is one, would have to be changed as well.
-        fixes = [] if "behavior_tree" in context.listed_as else [*replacements(name.span, [safe])]
+        fixes = [] if SystemSection.BEHAVIOR_TREE in context.listed_as else [*replacements(name.span, [safe])]
         yield RULE.at(name.span, message, *fixes, severity=Severity.WARNING, facts=WrongName(name.value))
 
 

@@ -24,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for data in chart.data:
             if data.type is None and data.id is not None and not misspelled.attribute(data.element, "type", KNOWN):
                 span = data.id.span
-                message = f"the variable `{data.id.value}` has no type"
+                message = f"the variable `{data.id.value}` has no type; add `type`"
                 yield RULE.at(span, message, *_fix(data))
 
 

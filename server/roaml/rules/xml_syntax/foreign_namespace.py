@@ -23,7 +23,7 @@ def check(context: FileContext) -> Iterator[Finding]:
     if context.grammar in (HL_SCXML, PLAIN_SCXML):
         if declared.value != SCXML_NAMESPACE:
             fix = Fix("Change to the namespace of SCXML", (TextEdit(declared.value_span, SCXML_NAMESPACE),), safe=True)
-            yield RULE.at(declared.span, f"the namespace of SCXML is `{SCXML_NAMESPACE}`", fix)
+            yield RULE.at(declared.span, f"this is not the namespace of SCXML; write `{SCXML_NAMESPACE}`", fix)
     else:
         fix = Fix("Remove the attribute", (removal(context.source.text, declared.span),), safe=True)
         fixes = [] if root.prefix else [fix]

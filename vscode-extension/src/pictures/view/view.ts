@@ -5,6 +5,7 @@ import {
     DIRECTIONS,
     type Drawing,
     type FromView,
+    type Lit,
     type Part,
     type Picture,
     type PictureEdge,
@@ -39,6 +40,7 @@ class View {
     private selected = -1;
     private here: Part | null = null;
     private highlighted = "";
+    private lit: Lit = { nodes: {}, edges: [] };
 
     constructor() {
         this.bar.className = "bar";
@@ -70,6 +72,9 @@ class View {
                 break;
             case "highlight":
                 this.highlight(message.node);
+                break;
+            case "light":
+                this.light(message.lit);
                 break;
             case "rasterize":
                 void pngData(message.svg).then((data) => {
@@ -112,6 +117,7 @@ class View {
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
         this.legend.replaceChildren(...legendOf(picture, words).map(entry));
         this.look(this.sight);
+        this.light(this.lit);
         if (this.input.value !== "") this.search();
     }
 
@@ -169,7 +175,7 @@ class View {
     }
 
     private reveal(node: number): void {
-        const box = this.drawing?.nodes.find((each) => each.index === node);
+        const box = this.drawing?.nodes.find((candidate) => candidate.index === node);
         const { width, height } = this.svg.getBoundingClientRect();
         if (box) this.look(reveal(this.sight, box, width, height));
     }
@@ -209,6 +215,25 @@ class View {
         if (highlighted >= 0) this.reveal(highlighted);
     }
 
+    /** Show where a run is: active states, statuses of nodes, messages. */
+    private light(lit: Lit): void {
+        const { picture, scene } = this;
+        this.lit = lit;
+        if (!picture || !scene) return;
+        for (const [index, group] of scene.nodes) {
+            const look = lit.nodes[picture.nodes[index]?.id ?? ""];
+            if (look === undefined) delete group.dataset["look"];
+            else group.dataset["look"] = look;
+        }
+        for (const [index, groups] of scene.edges) {
+            const edge = picture.edges[index];
+            const isLit = lit.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
+            for (const group of groups) group.classList.toggle("lit", isLit);
+        }
+        const next = picture.nodes.findIndex(({ id }) => lit.nodes[id] === "next" || lit.nodes[id] === "message");
+        if (next >= 0) this.reveal(next);
+    }
+
     private parts(part: Part | null): readonly SVGGElement[] {
         if (part === null || !this.scene) return [];
         if ("edge" in part) return this.scene.edges.get(part.edge) ?? [];
@@ -222,13 +247,13 @@ class View {
 
     private search(forward = false): void {
         if (!this.picture || !this.scene) return;
-        const found = search(this.picture, this.input.value);
+        const matches = search(this.picture, this.input.value);
         this.scene.root.classList.toggle("searched", this.input.value.trim() !== "");
-        for (const [index, node] of this.scene.nodes) node.classList.toggle("found", found.includes(index));
+        for (const [index, node] of this.scene.nodes) node.classList.toggle("found", matches.includes(index));
         this.notice.textContent =
-            this.input.value.trim() !== "" && found.length === 0 ? (this.words?.nothing ?? "") : "";
-        const next = forward ? found.find((index) => index > this.selected) : undefined;
-        const first = next ?? found[0];
+            this.input.value.trim() !== "" && matches.length === 0 ? (this.words?.nothing ?? "") : "";
+        const next = forward ? matches.find((index) => index > this.selected) : undefined;
+        const first = next ?? matches[0];
         if (first !== undefined) this.select(first);
     }
 

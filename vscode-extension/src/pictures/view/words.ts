@@ -71,6 +71,7 @@ export function legendOf(picture: Picture, words: Words): LegendEntry[] {
     };
     switch (picture.kind) {
         case "machine":
+        case "system":
             for (const { kind } of picture.edges.filter((edge) => !edge.probabilistic))
                 add(EDGE_TONES[kind], words.kinds[kind], true);
             if (picture.edges.some((edge) => edge.probabilistic)) add("chance", words.byChance, true);

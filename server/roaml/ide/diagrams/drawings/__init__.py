@@ -14,12 +14,14 @@ from roaml.figures.layout import LayoutDirection
 from roaml.ide.diagrams.diagram import DiagramKind, Picture
 from roaml.ide.diagrams.drawings.machine import draw_machine
 from roaml.ide.diagrams.drawings.ros import draw_ros
+from roaml.ide.diagrams.drawings.system import draw_system
 from roaml.ide.diagrams.drawings.tree import draw_tree
 
 _PAINTERS: Mapping[DiagramKind, Callable[[Picture, LayoutDirection], Drawing]] = {
     DiagramKind.MACHINE: draw_machine,
     DiagramKind.TREE: draw_tree,
     DiagramKind.ROS: draw_ros,
+    DiagramKind.SYSTEM: draw_system,
 }
 
 PAGE = (1200.0, 900.0)

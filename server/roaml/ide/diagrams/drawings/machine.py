@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNodeKind, EdgeKind, Picture
-from roaml.ide.diagrams.drawings.assembly import moved
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
@@ -92,7 +92,7 @@ class _Chart:
         return frozenset(choices - leaving)
 
     def _rows(self, state: str) -> Iterator[Row]:
-        """The rows below the title of a state."""
+        """The rows below the title of a state: its details, and its transitions to itself."""
         for text in self._picture.nodes[self._index[state]].details:
             lines = paragraph(text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
             yield Row(lines, hint=text if is_shortened(lines, text) else "")

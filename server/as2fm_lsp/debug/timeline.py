@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Requests for what a client shows beside the source: the timeline of the run, and the lit parts of pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TypeVar
+
+from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.debug.session import Body, DebugSession, Handler
+from roaml.debugging.debugger import Debugger
+from roaml.debugging.lit import lit_edges, lit_nodes
+from roaml.figures.svg import svg_scene
+from roaml.figures.themes import THEMES
+from roaml.jani.node import Origin
+from roaml.simulation.session import Session
+from roaml.timeline import (
+    Axis,
+    Timeline,
+    View,
+    draw_names,
+    draw_timeline,
+    extent,
+    height_of,
+    position_of,
+    step_at,
+)
+from roaml.views.story import as_mermaid
+
+MAX_WIDTH = 20_000
+"""The maximum width of a drawing in pixels."""
+NAMES_WIDTH = 180.0
+
+T = TypeVar("T")
+
+
+class TimelineRequests:
+    """The handlers of these requests."""
+
+    def __init__(self, session: DebugSession) -> None:
+        self._session = session
+        self._run: Session | None = None
+        self._timeline: Timeline | None = None
+        self.handlers: Mapping[str, Handler] = {
+            "timeline": self._show,
+            "exportTimeline": self._export,
+            "pictures": self._pictures,
+        }
+
+    def _followed(self, debugger: Debugger) -> Timeline:
+        """The timeline of the run, with all steps that have been taken."""
+        if self._timeline is None or self._run is not debugger.session:
+            self._run, self._timeline = debugger.session, Timeline(debugger.session)
+        self._timeline.follow(debugger.session)
+        return self._timeline
+
+    def _show(self, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        timeline = self._followed(debugger)
+        view = _view(arguments, timeline)
+        names = {"names": svg_scene(draw_names(timeline, NAMES_WIDTH))} if arguments.flag("names", False) else {}
+        return {
+            "scene": svg_scene(draw_timeline(timeline, view)),
+            **names,
+            "from": view.start,
+            "to": view.end,
+            "width": view.width,
+            "height": height_of(timeline),
+            "extent": extent(timeline, view.axis),
+            "hasTime": bool(timeline.times),
+            "step": debugger.session.position,
+            "steps": timeline.count,
+            "cursor": position_of(timeline, view.axis, debugger.session.position),
+            "first": step_at(timeline, view.axis, view.start),
+        }
+
+    def _export(self, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        timeline = self._followed(debugger)
+        view = _view(arguments, timeline)
+        first, last = (step_at(timeline, view.axis, position) for position in (view.start, view.end))
+        format_ = arguments.text("format", None)
+        if format_ == "svg":
+            from as2fm_lsp.verification.run_files import stretch_svg  # noqa: PLC0415 - only here
+
+            theme = arguments.text("theme")
+            title = Path(debugger.sources.target.path).name
+            return {"text": stretch_svg(timeline, view, title, theme if theme in THEMES else "light")}
+        if format_ == "csv":
+            from as2fm_lsp.verification.run_files import csv_lines  # noqa: PLC0415
+
+            return {"text": _at(debugger, last, lambda session: "".join(csv_lines(session, first)))}
+        if format_ == "mermaid":
+
+            def place_of(origin: Origin) -> str:
+                place = debugger.sources.place(origin)
+                return f"{Path(place.path).name}:{place.line}" if place else ""
+
+            return {"text": _at(debugger, last, lambda session: as_mermaid(session.story(), place_of, first))}
+        raise RequestError(f"`format` is `{format_}`; it must be `svg`, `csv` or `mermaid`")
+
+    def _pictures(self, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        return {
+            "nodes": [
+                {
+                    "kind": node.picture.value,
+                    "source": self._session.client.source(node.path),
+                    "node": node.node,
+                    "look": node.look,
+                }
+                for node in lit_nodes(debugger)
+            ],
+            "edges": [{"from": edge.source, "to": edge.target} for edge in lit_edges(debugger)],
+        }
+
+
+def _view(arguments: Arguments, timeline: Timeline) -> View:
+    axis = Axis.STEPS if arguments.text("axis") == "steps" or not timeline.times else Axis.TIME
+    start = max(0.0, arguments.decimal("from", 0.0))
+    end = arguments.decimal("to", extent(timeline, axis))
+    width = arguments.decimal("width", 1000.0)
+    if not 1 <= width <= MAX_WIDTH:
+        raise RequestError(f"`width` must be between 1 and {MAX_WIDTH}")
+    if end < start:
+        raise RequestError("`to` must not be smaller than `from`")
+    top, bottom = arguments.decimal("top", 0.0), arguments.decimal("bottom", math.inf)
+    return View(axis, start, end, width, top, bottom)
+
+
+def _at(debugger: Debugger, step: int, read: Callable[[Session], T]) -> T:
+    """What is read at a step of the run; the run is where it was afterwards."""
+    session = debugger.session
+    position = session.position
+    session.jump(step)
+    try:
+        return read(session)
+    finally:
+        session.jump(position)

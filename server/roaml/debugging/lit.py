@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of pictures that are lit while a run is stopped: active states, statuses of tree nodes, messages that have
+been sent and not been received yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roaml.debugging.debugger import Debugger
+from roaml.ide.diagrams import DiagramKind, DiagramNodeKind
+from roaml.ide.diagrams.machine import state_id
+from roaml.ide.diagrams.ros import machine_node_ids
+from roaml.ide.diagrams.system import id_in_system
+from roaml.jani.node import Origin
+from roaml.model.machine import Chart
+from roaml.model.system import System, sanitise
+from roaml.project.analysis import Analysis
+from roaml.scxml.names import CANCEL_PREFIX, received_by
+from roaml.simulation.state import MachineState, SystemState
+
+ACTIVE, NEXT, MESSAGE = "active", "next", "message"
+"""How a part is lit: a state that is active, one of a machine that does the next step, a message; nodes of the tree are
+lit as their status, in lower case."""
+
+
+@dataclass(frozen=True, slots=True)
+class LitNode:
+    """
+    Attributes:
+        path: the file of the picture: of a machine, or of the system.
+        node: the id of the node in the picture.
+        look: `ACTIVE`, `NEXT`, `MESSAGE`, or the status of a node of the tree in lower case.
+    """
+
+    picture: DiagramKind
+    path: str
+    node: str
+    look: str
+
+
+@dataclass(frozen=True, slots=True)
+class LitEdge:
+    """An edge of the ROS graph between the sender or receiver of a message and its topic, service or action."""
+
+    source: str
+    target: str
+
+
+def lit_nodes(debugger: Debugger) -> Iterator[LitNode]:
+    """The lit nodes of all pictures of the system; none for a JANI model."""
+    analysis, system = _sources(debugger)
+    if analysis is None or system is None:
+        return
+    session, path = debugger.session, debugger.sources.target.path
+    state, upcoming = session.state(), debugger.upcoming()
+    actors = {part.automaton for part in session.actors(upcoming)} if upcoming is not None else set()
+    origins = {automaton.name: automaton.origin for automaton in session.automata_of_model}
+    for machine in state.machines:
+        origin = origins[machine.automaton]
+        chart = _chart(analysis, machine, origin)
+        if chart is not None and origin is not None:
+            node, look = state_id(chart, machine.state), NEXT if machine.automaton in actors else ACTIVE
+            yield LitNode(DiagramKind.MACHINE, origin.path, node, look)
+            yield LitNode(DiagramKind.SYSTEM, path, id_in_system(origin.path, node), look)
+    for tree_node in state.nodes:
+        yield LitNode(DiagramKind.TREE, path, str(tree_node.number), tree_node.status.value.lower())
+    for channel in dict.fromkeys(channel for channel, _, _ in _in_flight(state, system)):
+        yield LitNode(DiagramKind.ROS, path, channel, MESSAGE)
+
+
+def lit_edges(debugger: Debugger) -> Iterator[LitEdge]:
+    """The edges of the ROS graph with a message: from its sender, and to the receivers of the next step."""
+    analysis, system = _sources(debugger)
+    if analysis is None or system is None:
+        return
+    session, upcoming = debugger.session, debugger.upcoming()
+    state, ids = session.state(), machine_node_ids(system)
+    machines = {
+        automaton.name: ids.get(automaton.origin.path, ())
+        for instance, automaton in enumerate(session.automata_of_model)
+        if automaton.origin is not None and session.is_machine(instance)
+    }
+    senders = {machine.name: machines.get(machine.automaton, ()) for machine in state.machines}
+    actors = [part.automaton for part in session.actors(upcoming)] if upcoming is not None else []
+    received = received_by(upcoming.action or "") if upcoming is not None else ""
+    for channel, event, sender in _in_flight(state, system):
+        for node in senders.get(sender, ()):
+            yield LitEdge(node, channel)
+        if event == received:
+            for actor in actors:
+                yield from (LitEdge(channel, node) for node in machines.get(actor, ()))
+
+
+def _sources(debugger: Debugger) -> tuple[Analysis | None, System | None]:
+    analysis = debugger.sources.analysis
+    return analysis, None if analysis is None else analysis.system(debugger.sources.target.path)
+
+
+def _chart(analysis: Analysis, machine: MachineState, origin: Origin | None) -> Chart | None:
+    """The chart of a machine with its state; of several, the one that contains what the machine does."""
+    read = None if origin is None else analysis.machine(origin.path)
+    charts = [
+        chart
+        for chart in (read.charts if read is not None else ())
+        if any(state.id is not None and state.id.value == machine.state for state in chart.states)
+    ]
+    place = machine.origin
+    return next((chart for chart in charts if place is not None and _contains(chart, place)), next(iter(charts), None))
+
+
+def _contains(chart: Chart, place: Origin) -> bool:
+    spans = (state.element.span for state in chart.states)
+    return any(span.start <= place.span.start and place.span.end <= span.end for span in spans)
+
+
+def _in_flight(state: SystemState, system: System) -> Iterator[tuple[str, str, str]]:
+    """The ids of topics, services and actions, each with an event that has not been received yet and its sender."""
+    topic, service, action = DiagramNodeKind.TOPIC, DiagramNodeKind.SERVICE, DiagramNodeKind.ACTION_INTERFACE
+    prefixes = [
+        *((f"topic_{channel.name}_msg_", f"{topic.value} {channel.name}") for channel in system.topics.values()),
+        *((f"srv_{sanitise(c.name)}_", f"{service.value} {c.name}") for c in system.services.values()),
+        *((f"action_{sanitise(c.name)}_", f"{action.value} {c.name}") for c in system.actions.values()),
+        *((f"{CANCEL_PREFIX}{sanitise(c.name)}_", f"{action.value} {c.name}") for c in system.actions.values()),
+    ]
+    for event in state.events:
+        if event.is_waiting:
+            for prefix, node in prefixes:
+                if f"{event.event}_".startswith(prefix):
+                    yield node, event.event, event.sender

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drawing of a part of a timeline.
+
+Only what is visible is drawn: what is narrower than a few pixels is drawn together with its neighbours. So the size of
+a drawing, and the time that it takes, depend on its width and not on the number of steps.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.geometry import Box, Extent, Point
+from roaml.figures.text import ELLIPSIS, SMALL, text_width
+from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
+
+LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
+"""The heights of a lane, a plot, the axis, and the row with the names of messages."""
+_SPAN, _MARGIN = 20.0, 8.0
+_LEAST = 3.0
+"""States that are shorter are drawn together."""
+_SAMPLE = 50
+"""States drawn together have the color of their kind if so many of them have the same."""
+_ARROW_DISTANCE = 6.0
+"""Messages have arrows if their average distance is not smaller, in pixels."""
+_MACHINE_TONES = (Tone.ROS, Tone.TREE, Tone.BLACKBOARD, Tone.ACTION, Tone.CHANCE)
+_STATUS_TONES: Mapping[str, Tone] = {
+    "RUNNING": Tone.RUNNING,
+    "SUCCESS": Tone.SUCCESS,
+    "FAILURE": Tone.FAILURE,
+}
+
+
+class Axis(enum.Enum):
+    """What the horizontal axis shows: the time of the model, or the steps of the run."""
+
+    TIME = "time"
+    STEPS = "steps"
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """The part of a timeline that is drawn.
+
+    Attributes:
+        start, end: on the axis, in s or steps.
+        width: of the drawing, in pixels.
+        top, bottom: the rows between which something is drawn, in pixels of the whole timeline.
+        cursor: the position of the run as a number of steps; -1 to draw none.
+    """
+
+    axis: Axis
+    start: float
+    end: float
+    width: float
+    top: float = 0.0
+    bottom: float = math.inf
+    cursor: int = -1
+
+
+def extent(timeline: Timeline, axis: Axis) -> float:
+    """The end of a timeline on an axis."""
+    return timeline.times[-1] if axis is Axis.TIME and timeline.times else float(timeline.count)
+
+
+def position_of(timeline: Timeline, axis: Axis, step: int) -> float:
+    """Where the state after `step` steps is on an axis."""
+    return timeline.times[step] if axis is Axis.TIME and timeline.times else float(step)
+
+
+def step_at(timeline: Timeline, axis: Axis, position: float) -> int:
+    """The number of steps taken at a position on an axis: at most those of the run."""
+    if axis is Axis.TIME and timeline.times:
+        return max(0, bisect_right(timeline.times, position) - 1)
+    return max(0, min(timeline.count, math.floor(position)))
+
+
+def height_of(timeline: Timeline) -> float:
+    return AXIS + MESSAGES + LANE * len(timeline.lanes) + PLOT * len(timeline.plots)
+
+
+def draw_names(timeline: Timeline, width: float) -> Drawing:
+    """The column with the names of the rows."""
+    groups = [Group("name", Tone.PLAIN, (_text("messages", 4.0, AXIS + MESSAGES / 2, width - 8.0, "muted"),))]
+    for index, lane in enumerate(timeline.lanes):
+        bold = lane.kind is LaneKind.MACHINE
+        text = _text(lane.name, 4.0, _middle(index), width - 8.0, "text", bold=bold)
+        groups.append(Group("name", Tone.PLAIN, (text,), hint=lane.name))
+    for index, plot in enumerate(timeline.plots):
+        y = _plot_top(timeline, index) + PLOT / 2
+        groups.append(Group("name", Tone.PLAIN, (_text(plot.name, 4.0, y, width - 8.0, "muted"),), hint=plot.name))
+    return Drawing(Extent(width, height_of(timeline)), tuple(groups), {})
+
+
+def draw_timeline(timeline: Timeline, view: View) -> Drawing:
+    """The rows over the axis, without their names."""
+    painter = _Painter(timeline, view)
+    return Drawing(Extent(view.width, height_of(timeline)), tuple(painter.groups()), {})
+
+
+class _Painter:
+    def __init__(self, timeline: Timeline, view: View) -> None:
+        self._timeline = timeline
+        self._view = view
+        self._scale = view.width / max(view.end - view.start, 1e-9)
+        self._end = self._x(timeline.count)
+
+    def _x(self, step: int) -> float:
+        return (position_of(self._timeline, self._view.axis, step) - self._view.start) * self._scale
+
+    def _first_step(self, x: float) -> int:
+        """The first step at or right of a pixel."""
+        position = self._view.start + x / self._scale
+        if self._view.axis is Axis.TIME and self._timeline.times:
+            return bisect_left(self._timeline.times, position)
+        return math.ceil(position)
+
+    def groups(self) -> Iterator[Group]:
+        timeline = self._timeline
+        yield from self._axis()
+        for index, lane in enumerate(timeline.lanes):
+            if self._is_visible(_lane_top(index), LANE):
+                yield from self._lane(index, lane)
+        for index, plot in enumerate(timeline.plots):
+            if self._is_visible(_plot_top(timeline, index), PLOT):
+                yield self._plot(_plot_top(timeline, index), plot)
+        yield from self._messages()
+        if self._view.cursor >= 0:
+            x = self._x(self._view.cursor)
+            if 0 <= x <= self._view.width:
+                line = Polyline((Point(x, 0), Point(x, height_of(timeline))), role="cursor")
+                yield Group("cursor", Tone.FAILURE, (line,))
+
+    def _is_visible(self, top: float, height: float) -> bool:
+        return top + height >= self._view.top and top <= self._view.bottom
+
+    # ------------------------------------------------------------ axis
+
+    def _axis(self) -> Iterator[Group]:
+        view = self._view
+        distance = _round_distance((view.end - view.start) * 90.0 / max(view.width, 1.0))
+        if view.axis is Axis.STEPS:
+            distance = max(1.0, distance)
+        unit = " s" if view.axis is Axis.TIME and self._timeline.times else ""
+        digits = max(0, -math.floor(math.log10(distance)))
+        rules: list[Item] = []
+        names: list[Item] = [Shape(Box(0.0, 0.0, view.width, AXIS), Outline.RECTANGLE, "axis-card")]
+        last = min(view.end, extent(self._timeline, view.axis))
+        free_from = 0.0
+        for number in range(math.ceil(view.start / distance - 1e-9), math.floor(last / distance + 1e-9) + 1):
+            x = (number * distance - view.start) * self._scale
+            rules.append(Polyline((Point(x, AXIS), Point(x, height_of(self._timeline))), role="rule"))
+            text = f"{number * distance:,.{digits}f}{unit}"
+            width = text_width(text, SMALL)
+            left = min(max(x - width / 2, 0.0), view.width - width)
+            if left >= free_from:
+                names.append(TextItem(text, left, AXIS - 8.0, SMALL, "muted"))
+                free_from = left + width + 6.0
+        yield Group("axis", Tone.PLAIN, tuple(rules))
+        yield Group("axis-names", Tone.PLAIN, tuple(names))
+
+    # ------------------------------------------------------------ lanes
+
+    def _lane(self, index: int, lane: Lane) -> Iterator[Group]:
+        y = _lane_top(index) + (LANE - _SPAN) / 2
+        starts = lane.starts
+        right = min(self._view.width, self._end)
+        number = max(0, bisect_right(starts, self._first_step(0.0)) - 1)
+        while number < len(starts):
+            x, end = self._ends(starts, number)
+            if x > right:
+                return
+            if end - x >= _LEAST:
+                if end > 0:
+                    yield self._span(lane, number, max(x, 0.0), min(end, self._view.width), y)
+                number += 1
+                continue
+            first, left = number, x
+            while end - x < _LEAST and x <= right:
+                # The next state, without those that begin in the same pixel.
+                number = max(number + 1, bisect_left(starts, self._first_step(x + 1.0), number) - 1)
+                if number == len(starts):
+                    x = self._end
+                    break
+                x, end = self._ends(starts, number)
+            yield self._busy(lane, first, number, left, x, y)
+
+    def _ends(self, starts: Sequence[int], number: int) -> tuple[float, float]:
+        """Where a state begins and ends, in pixels."""
+        end = self._x(starts[number + 1]) if number + 1 < len(starts) else self._end
+        return self._x(starts[number]), end
+
+    def _span(self, lane: Lane, number: int, x: float, end: float, y: float) -> Group:
+        state = lane.states[number]
+        box = Box(x, y, end - x, _SPAN)
+        items: list[Item] = [Shape(box, Outline.RECTANGLE, "span")]
+        text = _fitting(state, end - x - 8.0)
+        if text:
+            items.append(TextItem(text, x + 4.0, y + _SPAN / 2 + SMALL * 0.35, SMALL, "text"))
+        hint = f"{lane.name}: {state}, {self._when(lane.starts[number])}"
+        return Group("state", _tone(lane, state), tuple(items), hint=hint, step=lane.starts[number])
+
+    def _busy(self, lane: Lane, first: int, number: int, x: float, end: float, y: float) -> Group:
+        box = Box(max(x, 0.0), y, max(min(end, self._view.width) - max(x, 0.0), 2.0), _SPAN)
+        count = number - first
+        counted = lane.states[first] if count == 1 else f"{count:,} states from step {lane.starts[first]:,}"
+        tones = {_tone(lane, state) for state in lane.states[first : min(number, first + _SAMPLE)]}
+        tone = tones.pop() if len(tones) == 1 else Tone.PLAIN
+        hint = f"{lane.name}: {counted}" + (f", {self._when(lane.starts[first])}" if count == 1 else "")
+        items = (Shape(box, Outline.RECTANGLE, "busy"),)
+        return Group("state", tone, items, hint=hint, step=lane.starts[first] if count == 1 else None)
+
+    def _when(self, step: int) -> str:
+        return f"step {step:,}" + (f", {self._timeline.times[step]:.3f} s" if self._timeline.times else "")
+
+    # ------------------------------------------------------------ messages
+
+    def _messages(self) -> Iterator[Group]:
+        """A mark and, where there is space, a name for each message; arrows if there are not too many of them."""
+        messages = self._timeline.messages
+        first = bisect_left(messages, self._first_step(0.0), key=_received)
+        last = bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
+        has_arrows = last - first <= self._view.width / _ARROW_DISTANCE
+        free_from = -math.inf
+        number = first
+        while number < last:
+            message = messages[number]
+            x = self._x(message.received)
+            if x > self._view.width:
+                return
+            width = text_width(message.name, SMALL)
+            items: list[Item] = [Shape(Box(x - 1.0, AXIS + 2.0, 2.0, MESSAGES - 4.0), Outline.RECTANGLE, "pulse")]
+            if x >= free_from and x + width + 3.0 < self._view.width:
+                items.append(TextItem(message.name, x + 3.0, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
+                free_from = x + width + 12.0
+            if has_arrows:
+                start = Point(self._x(message.sent), _middle(message.sender))
+                items += (
+                    Polyline((start, Point(x, _middle(receiver))), True, "message", is_round=False)
+                    for receiver in message.receivers
+                    if receiver != message.sender
+                )
+            names = ", ".join(self._timeline.lanes[receiver].name for receiver in message.receivers)
+            hint = f"{message.name}: {self._timeline.lanes[message.sender].name} → {names}"
+            hint += f", {self._when(message.received)}"
+            yield Group("event", Tone.PLAIN, tuple(items), hint=hint, step=message.received)
+            number += 1
+            if not has_arrows:  # without those in the same pixel
+                number = max(number, bisect_left(messages, self._first_step(x + 1.0), number, last, key=_received))
+
+    # ------------------------------------------------------------ plots
+
+    def _plot(self, top: float, plot: Plot) -> Group:
+        first = max(0, bisect_right(plot.steps, self._first_step(0.0)) - 1)
+        last = bisect_right(plot.steps, self._first_step(self._view.width))
+        finite = [value for value in plot.values if math.isfinite(value)] or [0.0]
+        low, high = (0.0, 1.0) if plot.is_flag else (min(finite), max(finite))
+        space = PLOT - 2 * _MARGIN
+
+        def y(value: float) -> float:
+            clipped = min(max(value, low), high) if not math.isnan(value) else low
+            return top + PLOT - _MARGIN - (clipped - low) / ((high - low) or 1.0) * space
+
+        points: list[Point] = []
+        number = first
+        while number < last:
+            x = max(0.0, self._x(plot.steps[number]))
+            if x > self._view.width:
+                break
+            following = max(number + 1, bisect_left(plot.steps, self._first_step(x + 1.0), number, last))
+            values = plot.values[number:following]
+            if points:
+                points.append(Point(x, points[-1].y))
+            points.append(Point(x, y(values[0])))
+            if len(values) > 2:
+                points += (Point(x, y(min(values))), Point(x, y(max(values))))
+            if len(values) > 1:
+                points.append(Point(x, y(values[-1])))
+            number = following
+        if points:
+            points.append(Point(max(points[-1].x, min(self._view.width, self._end)), points[-1].y))
+        items: list[Item] = [
+            Polyline((Point(0.0, top + PLOT), Point(self._view.width, top + PLOT)), role="rule"),
+        ]
+        if len(points) > 1:
+            items.append(Polyline(tuple(points), role="plot", is_round=False))
+        width = max(text_width(_number(value), SMALL) for value in (low, high))
+        if not plot.is_flag and width + 2.0 <= self._view.width:
+            items.append(TextItem(_number(high), 2.0, top + _MARGIN + 4.0, SMALL, "muted"))
+            if low != high:
+                items.append(TextItem(_number(low), 2.0, top + PLOT - 2.0, SMALL, "muted"))
+        return Group("variable", Tone.ROS, tuple(items), hint=plot.name)
+
+
+def _received(message: SentMessage) -> int:
+    return message.received
+
+
+def _lane_top(index: int) -> float:
+    return AXIS + MESSAGES + LANE * index
+
+
+def _middle(index: int) -> float:
+    return _lane_top(index) + LANE / 2
+
+
+def _plot_top(timeline: Timeline, index: int) -> float:
+    return _lane_top(len(timeline.lanes)) + PLOT * index
+
+
+def _tone(lane: Lane, state: str) -> Tone:
+    if lane.kind is LaneKind.NODE:
+        return _STATUS_TONES.get(state, Tone.IDLE)
+    return _MACHINE_TONES[lane.ranks[state] % len(_MACHINE_TONES)]
+
+
+def _text(text: str, x: float, middle: float, width: float, role: str, *, bold: bool = False) -> TextItem:
+    return TextItem(_fitting(text, width, bold=bold), x, middle + SMALL * 0.35, SMALL, role, bold)
+
+
+def _fitting(text: str, width: float, *, bold: bool = False) -> str:
+    """The text, shortened to a width; "" if less than three characters fit."""
+    if text_width(text, SMALL, bold=bold) <= width:
+        return text
+    while len(text) > 3 and text_width(text + ELLIPSIS, SMALL, bold=bold) > width:
+        text = text[:-1]
+    return text + ELLIPSIS if text_width(text + ELLIPSIS, SMALL, bold=bold) <= width else ""
+
+
+def _round_distance(distance: float) -> float:
+    """The next larger one of 1, 2, 5, 10, 20, ..."""
+    power = 10.0 ** math.floor(math.log10(max(distance, 1e-9)))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= distance * (1 - 1e-9))
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"

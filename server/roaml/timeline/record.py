@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a timeline shows, read from the steps of a run.
+
+Steps are read once and in their order, so that a timeline of a long run can be continued. If other steps follow at an
+earlier position, because a choice was made by hand, the timeline is read again from the start.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+
+from roaml.scxml.names import (
+    ACTION_HANDLER_PREFIX,
+    BLACKBOARD,
+    CLOCK,
+    NODE_AUTOMATON,
+    OBSERVER_SUFFIX,
+    SERVICE_HANDLER_PREFIX,
+    TreeEventKind,
+    is_length,
+    is_timer,
+    read_tree_event,
+    received_by,
+    sent_by,
+)
+from roaml.simulation.session import Session
+from roaml.simulation.words import STATUS_NAMES, who
+from roaml.smc.record import TraceStep
+from roaml.views.event_words import interface_name
+from roaml.views.events import EventReader
+
+IDLE = "IDLE"
+
+
+class LaneKind(enum.Enum):
+    MACHINE = "machine"
+    NODE = "node"
+
+
+@dataclass(slots=True)
+class Lane:
+    """The states of a machine or plugin, or the statuses of a tree node.
+
+    Attributes:
+        starts: the numbers of the steps after which it has another state, 0 first.
+        states: its state after each of them.
+        ranks: the different states, numbered in the order in which they are entered first.
+    """
+
+    name: str
+    kind: LaneKind
+    starts: list[int] = field(default_factory=list)
+    states: list[str] = field(default_factory=list)
+    ranks: dict[str, int] = field(default_factory=dict)
+
+    def enter(self, step: int, state: str) -> None:
+        if not self.states or self.states[-1] != state:
+            self.starts.append(step)
+            self.states.append(state)
+            self.ranks.setdefault(state, len(self.ranks))
+
+
+@dataclass(frozen=True, slots=True)
+class SentMessage:
+    """An event from one lane to another one.
+
+    Attributes:
+        name: that of the topic, service or action, or of the event.
+        sent, received: the numbers of the steps.
+        sender, receivers: indexes of lanes.
+    """
+
+    name: str
+    sent: int
+    received: int
+    sender: int
+    receivers: tuple[int, ...]
+
+
+@dataclass(slots=True)
+class Plot:
+    """A variable that is a number or a truth value: its values after the steps that change it."""
+
+    name: str
+    is_flag: bool
+    steps: list[int]
+    values: list[float]
+
+
+class Timeline:
+    """
+    Attributes:
+        times: the time in s before the first step, and after each step; empty if the model has no clock.
+        messages: in the order in which they are received.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._begin(session)
+
+    def _begin(self, session: Session) -> None:
+        self._last: TraceStep | None = None
+        self.count = 0
+        automata = session.automata_of_model
+        self._automata = [automaton.name for automaton in automata]
+        self._events = EventReader(automata, session.start)
+        self._clock = session.clock
+        self._clock_values = dict.fromkeys(self._clock, 0.0)
+        self.times: list[float] = [0.0] if self._clock else []
+        self._resting = session.resting
+        self.lanes: list[Lane] = []
+        self._lane_of: dict[int, int] = {}
+        self._nodes: dict[int, int] = {}
+        self._begin_lanes(session)
+        self.messages: list[SentMessage] = []
+        self._sent: dict[str, tuple[int, int]] = {}
+        self._held: dict[int, tuple[int, int]] = {}
+        self._plots: dict[tuple[int, str], Plot] = {}
+
+    def _begin_lanes(self, session: Session) -> None:
+        """The lanes before the first step: first the machines, then the nodes of the tree by their numbers."""
+        machines = [
+            instance
+            for instance, name in enumerate(self._automata)
+            if session.is_machine(instance) and not name.endswith(OBSERVER_SUFFIX)
+        ]
+        nodes = {i: match for i, name in enumerate(self._automata) if (match := NODE_AUTOMATON.fullmatch(name))}
+        self._machines = frozenset(machines) - nodes.keys()
+        for instance in machines:
+            if instance in self._machines:
+                self._add(instance, Lane(who(self._automata[instance]), LaneKind.MACHINE))
+                self.lanes[-1].enter(0, session.first_locations[instance])
+        for instance, match in sorted(nodes.items(), key=lambda node: int(node[1][1])):
+            self._nodes[int(match[1])] = len(self.lanes)
+            self._add(instance, Lane(who(self._automata[instance]), LaneKind.NODE))
+            self.lanes[-1].enter(0, IDLE)
+        self._plotted = {
+            instance: "" if name == BLACKBOARD else f"{who(name)}."
+            for instance, name in enumerate(self._automata)
+            if name == BLACKBOARD or instance in machines
+        }
+
+    def _add(self, instance: int, lane: Lane) -> None:
+        self._lane_of[instance] = len(self.lanes)
+        self.lanes.append(lane)
+
+    @property
+    def plots(self) -> list[Plot]:
+        """The variables that change in the run, those of the same machine together."""
+        return [self._plots[key] for key in sorted(self._plots)]
+
+    def follow(self, session: Session) -> None:
+        """Read the steps of the run that have not been read yet."""
+        steps = session.steps
+        if self.count > len(steps) or (self.count and steps[self.count - 1] is not self._last):
+            self._begin(session)
+        for index in range(self.count, len(steps)):
+            self._read(steps[index])
+        self.count = len(steps)
+        self._last = steps[-1] if steps else None
+
+    def _read(self, step: TraceStep) -> None:
+        number = step.number
+        self._events.read(step)
+        for change in step.changes:
+            instance, name = change.variable
+            if instance < 0:
+                if name in self._clock_values and isinstance(change.after, (int, float)):
+                    self._clock_values[name] = change.after
+            elif instance in self._plotted:
+                self._plot(number, instance, name, change.before, change.after)
+        if self._clock:
+            self.times.append(self._clock_values[self._clock[0]] + self._clock_values[self._clock[1]] / 1e9)
+        for part in step.parts:
+            if part.instance in self._machines:
+                location = part.destination.location
+                if location in self._resting[part.instance]:
+                    self.lanes[self._lane_of[part.instance]].enter(number, location)
+        action = step.action or ""
+        if event := sent_by(action):
+            self._send(number, event, step)
+        elif event := received_by(action):
+            self._receive(number, event, step)
+
+    def _plot(self, number: int, instance: int, name: str, before: object, after: object) -> None:
+        if not isinstance(before, (bool, int, float)) or not isinstance(after, (bool, int, float)) or is_length(name):
+            return
+        plot = self._plots.get((instance, name))
+        if plot is None:
+            plot = Plot(self._plotted[instance] + name, isinstance(after, bool), [0], [float(before)])
+            self._plots[instance, name] = plot
+        plot.steps.append(number)
+        plot.values.append(float(after))
+
+    def _send(self, number: int, event: str, step: TraceStep) -> None:
+        tree = read_tree_event(event)
+        if tree is not None:
+            if tree.kind is TreeEventKind.RESPONSE:
+                status = self._events.parameters(event).get("status")
+                self._enter(tree.number, number, STATUS_NAMES.get(status, IDLE) if isinstance(status, int) else IDLE)
+            elif tree.kind is TreeEventKind.HALT_RESPONSE:
+                self._enter(tree.number, number, IDLE)
+            return
+        if is_timer(event):
+            return
+        actors = self._events.actors(step)
+        if not actors or actors[0].automaton == CLOCK:
+            return
+        instance = actors[0].instance
+        if instance in self._lane_of:
+            self._sent[event] = number, self._lane_of[instance]
+        elif instance in self._held:
+            self._sent[event] = self._held.pop(instance)
+
+    def _enter(self, node: int, step: int, status: str) -> None:
+        if node in self._nodes:
+            self.lanes[self._nodes[node]].enter(step, status)
+
+    def _receive(self, number: int, event: str, step: TraceStep) -> None:
+        sent = self._sent.pop(event, None)
+        if sent is None:
+            return
+        actors = self._events.actors(step)
+        for part in actors:
+            if part.automaton.startswith((SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX)):
+                self._held[part.instance] = sent  # it passes the call on
+        receivers = tuple(self._lane_of[part.instance] for part in actors if part.instance in self._lane_of)
+        if receivers:
+            name = interface_name(event, self._automata) or self._events.name(event)
+            self.messages.append(SentMessage(name, sent[0], number, sent[1], receivers))

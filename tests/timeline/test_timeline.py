@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Timelines: their lanes and plots against the states of the run, and their drawings."""
+
+from __future__ import annotations
+
+import itertools
+import xml.etree.ElementTree as ET
+from bisect import bisect_right
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+from roaml import api
+from roaml.figures.drawing import Drawing, TextItem
+from roaml.simulation import Session
+from roaml.simulation.state import NodeStatus
+from roaml.timeline import Axis, LaneKind, Timeline, View, draw_timeline, extent, position_of, step_at
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ROBOT = EXAMPLES / "assembly_robot" / "main_with_bug.xml"
+CASE_STUDY = EXAMPLES / "case_study" / "main.xml"
+DELIVERY = EXAMPLES / "delivery_robot" / "main.xml"
+
+
+def timeline_of(session: Session) -> Timeline:
+    timeline = Timeline(session)
+    timeline.follow(session)
+    return timeline
+
+
+@pytest.mark.parametrize("path", [ROBOT, DELIVERY], ids=lambda path: path.parent.name)
+def test_lanes_and_plots_show_the_states_of_the_run(path: Path) -> None:
+    session = api.session(api.load(str(path)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    lanes = {lane.name: lane for lane in timeline.lanes}
+    plots = {plot.name: plot for plot in timeline.plots}
+    compared = set()
+    for position in range(session.position + 1):
+        session.jump(position)
+        state = session.state()
+        assert timeline.times[position] == state.time
+        for machine in state.machines:
+            if machine.name not in lanes:
+                assert machine.name.endswith("__observer")
+                continue
+            lane = lanes[machine.name]
+            if lane.kind is LaneKind.MACHINE:
+                assert lane.states[bisect_right(lane.starts, position) - 1] == machine.state, position
+            for name, value in machine.variables.items():
+                plot = plots.get(f"{machine.name}.{name}")
+                if plot is not None:
+                    assert plot.values[bisect_right(plot.steps, position) - 1] == value
+                    compared.add(plot.name)
+        for node in state.nodes:
+            lane = lanes[f"{node.type} (bt_{node.number})"]
+            if node.status is not NodeStatus.TICKED:
+                assert lane.states[bisect_right(lane.starts, position) - 1] == node.status.value, position
+    assert compared
+
+
+def test_messages_lead_from_their_sender_to_their_receivers() -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    session.until_decided()
+    timeline = timeline_of(session)
+    names = [lane.name for lane in timeline.lanes]
+    first = timeline.messages[0]
+    assert (first.name, names[first.sender]) == ("/arm/command", "PickUp (bt_1003)")
+    assert [names[receiver] for receiver in first.receivers] == ["Arm"]
+    assert first.sent < first.received
+    assert session.steps[first.received - 1].action == "topic_arm__command_msg_on_receive"
+
+
+def test_a_call_goes_through_its_handler_to_the_server() -> None:
+    session = api.session(api.load(str(CASE_STUDY)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    names = [lane.name for lane in timeline.lanes]
+    calls = {
+        (names[message.sender], names[receiver])
+        for message in timeline.messages
+        for receiver in message.receivers
+        if message.name == "/block/pick_up"
+    }
+    assert calls == {("Recoverer", "Mover"), ("Mover", "Recoverer")}
+
+
+def test_a_timeline_is_continued_and_read_again_after_a_choice() -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    timeline = Timeline(session)
+    for _ in range(40):
+        session.turn()
+        timeline.follow(session)
+    assert timeline.lanes == timeline_of(session).lanes
+    assert timeline.plots == timeline_of(session).plots
+    before = list(timeline.times)
+    while len(session.choices()) < 2:
+        session.back()
+    other = next(choice for choice in session.choices() if session.upcoming().parts[0].automaton not in choice.automata)
+    session.step(other)
+    timeline.follow(session)
+    assert timeline.count == session.position
+    assert timeline.messages == timeline_of(session).messages
+    assert timeline.times == before[: session.position + 1]
+
+
+@pytest.mark.parametrize("axis", Axis)
+def test_drawings_stay_within_their_width(axis: Axis) -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    session.until_decided()
+    timeline = timeline_of(session)
+    whole = extent(timeline, axis)
+    for start, end, width in ((0.0, whole, 900.0), (whole / 3, whole / 2, 900.0), (0.0, whole, 40.0), (0.0, 0.0, 90.0)):
+        drawing = draw_timeline(timeline, View(axis, start, end, width, cursor=session.position))
+        items = list(drawing.walk())
+        assert len(items) <= (len(timeline.lanes) + len(timeline.plots) + 2) * (width / 3 + 10)
+        texts = _texts(drawing)
+        assert all(text.box.x >= -0.1 and text.box.right <= width + 0.1 for text in texts)
+        rows = {text.y for text in texts}
+        for row in rows:
+            boxes = sorted(text.box for text in texts if text.y == row and text.role != "muted")
+            assert all(left.right <= right.x for left, right in itertools.pairwise(boxes))
+
+
+def _texts(drawing: Drawing) -> list[TextItem]:
+    return [item for _, item in drawing.walk() if isinstance(item, TextItem)]
+
+
+def test_only_the_visible_rows_are_drawn() -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    session.until_decided()
+    timeline = timeline_of(session)
+    view = View(Axis.STEPS, 0.0, float(timeline.count), 900.0, top=70.0, bottom=80.0)
+    states = [group for group in draw_timeline(timeline, view).groups if group.role == "state"]
+    assert states
+    assert len({group.hint.split(":")[0] for group in states}) == 2
+
+
+def test_positions_lead_back_to_their_steps() -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    session.until_decided()
+    timeline = timeline_of(session)
+    for step in range(timeline.count + 1):
+        assert step_at(timeline, Axis.STEPS, position_of(timeline, Axis.STEPS, step)) == step
+        later = step_at(timeline, Axis.TIME, position_of(timeline, Axis.TIME, step))
+        assert timeline.times[later] == timeline.times[step]
+    assert step_at(timeline, Axis.TIME, 1e9) == timeline.count
+
+
+def test_simulate_writes_a_timeline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "run.svg"
+    assert run(["simulate", str(ROBOT), "--seed", "3", "--svg", str(file), "--theme", "dark"]) == 0
+    assert capsys.readouterr().out == ""
+    root = ET.fromstring(file.read_text(encoding="utf-8"))
+    texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"Arm", "moving", "RUNNING", "Arm.way", "/arm/command", "0 s"} <= set(texts)

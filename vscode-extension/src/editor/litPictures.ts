@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/** While a run is stopped, the open pictures show where it is. A command shows all of them side by side. */
+
+import * as vscode from "vscode";
+import type { Lit } from "../pictures/contract";
+import type { DebugSessions } from "./debugSessions";
+import type { LitNode, PicturePanels } from "./picturePanels";
+
+/** The answer to the request `pictures` (docs/debugging.md). */
+interface Answer {
+    readonly nodes: readonly (Omit<LitNode, "path"> & { readonly source: { readonly path: string } })[];
+    readonly edges: Lit["edges"];
+}
+
+/** The source on the left; on the right all machines above the tree and the ROS graph. */
+const LAYOUT = {
+    orientation: 0,
+    groups: [{ size: 0.35 }, { size: 0.65, groups: [{ size: 0.55 }, { size: 0.45, groups: [{}, {}] }] }],
+};
+
+export class LitPictures implements vscode.Disposable {
+    private readonly subscriptions: vscode.Disposable[];
+
+    constructor(
+        private readonly sessions: DebugSessions,
+        private readonly pictures: PicturePanels,
+    ) {
+        this.subscriptions = [
+            sessions.onStopped((session) => void this.light(session)),
+            sessions.onEnded(() => {
+                pictures.light([], []);
+            }),
+            vscode.commands.registerCommand("as2fm.showRun", () => this.showAll()),
+        ];
+    }
+
+    dispose(): void {
+        for (const part of this.subscriptions) part.dispose();
+    }
+
+    private async light(session: vscode.DebugSession): Promise<void> {
+        try {
+            const { nodes, edges } = (await session.customRequest("pictures")) as Answer;
+            this.pictures.light(
+                nodes.map(({ source, ...node }) => ({ ...node, path: source.path })),
+                edges,
+            );
+        } catch {
+            // The run is moving again; it is lit where it stops.
+        }
+    }
+
+    private async showAll(): Promise<void> {
+        const program: unknown = (this.sessions.current ?? vscode.debug.activeDebugSession)?.configuration["program"];
+        if (typeof program !== "string") return;
+        const uri = vscode.Uri.file(program);
+        await vscode.commands.executeCommand("vscode.setEditorLayout", LAYOUT);
+        await this.pictures.open("system", uri, vscode.ViewColumn.Two);
+        await this.pictures.open("tree", uri, vscode.ViewColumn.Three);
+        await this.pictures.open("ros", uri, vscode.ViewColumn.Four);
+    }
+}

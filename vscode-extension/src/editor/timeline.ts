@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The view with the timeline of the run that is debugged. */
+
+import { randomBytes } from "node:crypto";
+import * as path from "node:path";
+import * as vscode from "vscode";
+import type { FromTimeline, Tile, TileRequest, TimelineWords, ToTimeline } from "../timeline/contract";
+import type { DebugSessions } from "./debugSessions";
+
+const VIEW = "as2fm.timeline";
+
+export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvider {
+    private readonly subscriptions: vscode.Disposable[];
+    private view: vscode.WebviewView | undefined;
+
+    constructor(
+        private readonly context: vscode.ExtensionContext,
+        private readonly sessions: DebugSessions,
+    ) {
+        this.subscriptions = [
+            vscode.window.registerWebviewViewProvider(VIEW, this, {
+                webviewOptions: { retainContextWhenHidden: true },
+            }),
+            sessions.onStopped(() => {
+                this.post({ type: "stopped" });
+            }),
+            sessions.onEnded(() => {
+                this.post({ type: "ended" });
+            }),
+        ];
+    }
+
+    resolveWebviewView(view: vscode.WebviewView): void {
+        this.view = view;
+        const dist = vscode.Uri.joinPath(this.context.extensionUri, "dist");
+        view.webview.options = { enableScripts: true, enableForms: false, localResourceRoots: [dist] };
+        view.webview.html = page(view.webview, dist);
+        view.webview.onDidReceiveMessage((message: FromTimeline) => void this.receive(message));
+        view.onDidDispose(() => (this.view = undefined));
+    }
+
+    dispose(): void {
+        for (const part of this.subscriptions) part.dispose();
+    }
+
+    private post(message: ToTimeline): void {
+        void this.view?.webview.postMessage(message);
+    }
+
+    private async receive(message: FromTimeline): Promise<void> {
+        switch (message.type) {
+            case "ready":
+                this.post({ type: "words", words: words() });
+                this.post({ type: this.sessions.current ? "stopped" : "ended" });
+                break;
+            case "ask":
+                this.post({ type: "tile", asked: message.asked, tile: await this.tile(message.asked) });
+                break;
+            case "goToStep":
+                await this.sessions.request("goToStep", { step: message.step });
+                break;
+            case "goTo": {
+                const { axis, position } = message;
+                const part = { axis, from: position, to: position, width: 1, top: 0, bottom: 0, names: false };
+                const tile = await this.tile(part);
+                if (tile) await this.sessions.request("goToStep", { step: tile.first });
+                break;
+            }
+            case "export":
+                await this.export(message);
+                break;
+        }
+    }
+
+    /** A part of the timeline; null while the run is moving or when it has ended. */
+    private async tile(asked: TileRequest): Promise<Tile | null> {
+        try {
+            return ((await this.sessions.current?.customRequest("timeline", asked)) as Tile | undefined) ?? null;
+        } catch {
+            return null;
+        }
+    }
+
+    private async export(message: Extract<FromTimeline, { type: "export" }>): Promise<void> {
+        const { format, axis, from, to, theme } = message;
+        const options = { format, axis, from, to, theme, width: 1400 };
+        const file = (await this.sessions.request("exportTimeline", options)) as { text: string } | undefined;
+        const program: unknown = this.sessions.current?.configuration["program"];
+        if (!file || typeof program !== "string") return;
+        const extension = format === "mermaid" ? "mmd" : format;
+        const name = `${path.basename(program).replace(/\.\w+$/, "")}.run.${extension}`;
+        const target = await vscode.window.showSaveDialog({
+            defaultUri: vscode.Uri.joinPath(vscode.Uri.file(program), "..", name),
+            filters: { [format === "mermaid" ? "Mermaid" : format.toUpperCase()]: [extension] },
+        });
+        if (target) await vscode.workspace.fs.writeFile(target, Buffer.from(file.text, "utf8"));
+    }
+}
+
+function words(): TimelineWords {
+    return {
+        zoomIn: vscode.l10n.t("Zoom in"),
+        zoomOut: vscode.l10n.t("Zoom out"),
+        fit: vscode.l10n.t("Fit"),
+        selection: vscode.l10n.t("Zoom to Selection"),
+        time: vscode.l10n.t("Time"),
+        steps: vscode.l10n.t("Steps"),
+        exports: {
+            svg: vscode.l10n.t("Export the selection, or everything, as SVG"),
+            mermaid: vscode.l10n.t("Export the selection, or everything, as Mermaid"),
+            csv: vscode.l10n.t("Export the selection, or everything, as CSV"),
+        },
+        help: vscode.l10n.t(
+            "A click goes to a step, left and right arrow keys go one step, + and - zoom, 0 fits, Shift and drag selects.",
+        ),
+        nothing: vscode.l10n.t("No run is being debugged."),
+    };
+}
+
+function page(webview: vscode.Webview, dist: vscode.Uri): string {
+    const nonce = randomBytes(16).toString("base64");
+    const uri = (name: string) => webview.asWebviewUri(vscode.Uri.joinPath(dist, name)).toString();
+    // Scripts of the view set the places of its parts.
+    const policy = [
+        "default-src 'none'",
+        `script-src 'nonce-${nonce}'`,
+        `style-src ${webview.cspSource}`,
+        "base-uri 'none'",
+        "form-action 'none'",
+    ].join("; ");
+    return `<!DOCTYPE html>
+<html lang="${vscode.env.language}">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="${policy}">
+<link rel="stylesheet" href="${uri("view.css")}">
+<link rel="stylesheet" href="${uri("timeline.css")}">
+</head>
+<body>
+<script nonce="${nonce}" src="${uri("timeline.js")}"></script>
+</body>
+</html>`;
+}

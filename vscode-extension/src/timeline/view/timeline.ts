@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * The view of the timeline. The debug adapter draws the visible part and its surroundings; scrolling and zooming move
+ * that drawing at once, and a new one replaces it as soon as it comes.
+ */
+
+import type { Theme } from "../../pictures/contract";
+import { EXPORTS, type Axis, type FromTimeline, type Tile, type TileRequest, type TimelineWords } from "../contract";
+import type { ToTimeline } from "../contract";
+import { covers, pan, reveal, withMargins, zoom, type Stretch } from "./window";
+
+declare function acquireVsCodeApi(): { postMessage(message: FromTimeline): void };
+
+const editor = acquireVsCodeApi();
+const SVG = "http://www.w3.org/2000/svg";
+const ZOOM = 1.5;
+/** The rows above and below the visible ones that are drawn, in pixels. */
+const MARGIN = 400;
+/** A pointer that moves less has clicked. */
+const CLICK = 4;
+
+class TimelineView {
+    private readonly bar = div("bar");
+    private readonly body = div("body");
+    private readonly names = div("names");
+    private readonly rows = div("rows");
+    private readonly drawing = div("drawing");
+    private readonly cursor = div("cursor-line");
+    private readonly selected = div("selected-stretch");
+    private readonly notice = div("notice");
+    private words: TimelineWords | undefined;
+    private axis: Axis = "time";
+    private visible: Stretch = { from: 0, to: 0 };
+    private selection: Stretch | undefined;
+    private tile: Tile | undefined;
+    private pending = false;
+    private hasChanged = true;
+    private drag: { x: number; at: number; selects: boolean; moved: boolean } | undefined;
+
+    constructor() {
+        this.notice.setAttribute("role", "status");
+        this.rows.tabIndex = 0;
+        this.rows.setAttribute("role", "application");
+        this.rows.append(this.drawing, this.selected, this.cursor);
+        this.body.append(this.names, this.rows);
+        document.body.append(this.bar, this.body, this.notice);
+        this.listen();
+        new ResizeObserver(() => {
+            this.refresh();
+        }).observe(this.body);
+    }
+
+    receive(message: ToTimeline): void {
+        switch (message.type) {
+            case "words":
+                this.words = message.words;
+                this.fillBar(message.words);
+                break;
+            case "stopped":
+                this.hasChanged = true;
+                this.refresh();
+                break;
+            case "ended":
+                this.tile = undefined;
+                this.drawing.replaceChildren();
+                this.names.replaceChildren();
+                this.notice.textContent = this.words?.nothing ?? "";
+                document.body.classList.remove("shown");
+                break;
+            case "tile":
+                this.pending = false;
+                if (message.tile) this.show(message.asked, message.tile);
+                break;
+        }
+    }
+
+    private get width(): number {
+        return Math.max(1, this.rows.clientWidth);
+    }
+
+    /** Pixels for each second or step. */
+    private get scale(): number {
+        return this.width / Math.max(this.visible.to - this.visible.from, 1e-12);
+    }
+
+    private get extent(): number {
+        return Math.max(this.tile?.extent ?? 0, 1e-9);
+    }
+
+    /** Move the drawing to where it belongs, and ask for another one if it lacks something. */
+    private refresh(): void {
+        this.place();
+        const { scrollTop, clientHeight } = this.body;
+        const isCovered = this.tile !== undefined && covers(this.tile, this.visible, this.width) && this.hasRows();
+        if (this.pending || (isCovered && !this.hasChanged) || this.width < 50) return;
+        const isFirst = this.tile === undefined;
+        const part = isFirst ? { from: 0, width: this.width } : withMargins(this.visible, this.width);
+        this.pending = true;
+        this.top = scrollTop;
+        editor.postMessage({
+            type: "ask",
+            asked: {
+                ...part,
+                axis: this.axis,
+                width: Math.round(part.width),
+                top: scrollTop - MARGIN,
+                bottom: scrollTop + clientHeight + MARGIN,
+                names: this.hasChanged || isFirst,
+            },
+        });
+        this.hasChanged = false;
+    }
+
+    private top = 0;
+
+    private hasRows(): boolean {
+        return Math.abs(this.body.scrollTop - this.top) < MARGIN;
+    }
+
+    private show(asked: TileRequest, tile: Tile): void {
+        const before = this.tile;
+        if (asked.axis !== this.axis) return;
+        this.tile = tile;
+        if (!tile.hasTime) this.axis = "steps";
+        if (!before) {
+            // The first answer says how long the run is.
+            this.visible = { from: 0, to: Math.max(tile.extent, 1e-9) };
+            this.hasChanged = true;
+        } else if (before.step !== tile.step || before.extent !== tile.extent) {
+            const showedAll = this.visible.from <= 0 && this.visible.to >= before.extent;
+            this.visible = showedAll
+                ? { from: 0, to: Math.max(tile.extent, 1e-9) }
+                : reveal(this.visible, tile.cursor, this.extent);
+        }
+        document.body.classList.add("shown");
+        this.notice.textContent = "";
+        this.drawing.replaceChildren(sceneOf(tile.scene, tile.width, tile.height));
+        if (tile.names !== undefined) this.names.replaceChildren(sceneOf(tile.names, NAMES_WIDTH, tile.height));
+        this.rows.style.height = `${tile.height}px`;
+        const label = this.words ? `${this.words.steps} ${tile.step}. ${this.words.help}` : "";
+        this.rows.setAttribute("aria-label", label);
+        document.body.dataset["step"] = String(tile.step);
+        this.refresh();
+    }
+
+    private place(): void {
+        const { tile } = this;
+        if (!tile) return;
+        const x = (position: number) => (position - this.visible.from) * this.scale;
+        const stretch = (x(tile.to) - x(tile.from)) / tile.width;
+        this.drawing.style.transform = `translateX(${x(tile.from)}px) scaleX(${stretch})`;
+        this.cursor.style.transform = `translateX(${x(tile.cursor)}px)`;
+        this.cursor.style.height = `${tile.height}px`;
+        for (const axis of this.drawing.querySelectorAll(".axis-names"))
+            axis.setAttribute("transform", `translate(0 ${this.body.scrollTop})`);
+        this.selected.hidden = !this.selection;
+        if (this.selection) {
+            this.selected.style.left = `${x(this.selection.from)}px`;
+            this.selected.style.width = `${Math.max(1, x(this.selection.to) - x(this.selection.from))}px`;
+        }
+    }
+
+    private look(visible: Stretch): void {
+        this.visible = visible;
+        this.refresh();
+    }
+
+    private zoom(factor: number, about?: number): void {
+        const middle = (this.visible.from + this.visible.to) / 2;
+        this.look(zoom(this.visible, factor, about ?? middle, this.extent));
+    }
+
+    private fit(): void {
+        this.look({ from: 0, to: this.extent });
+    }
+
+    /** The position on the axis below the pointer. */
+    private at({ clientX }: MouseEvent): number {
+        return this.visible.from + (clientX - this.rows.getBoundingClientRect().left) / this.scale;
+    }
+
+    private switchAxis(axis: Axis): void {
+        if (axis === this.axis || this.tile?.hasTime === false) return;
+        this.axis = axis;
+        this.tile = undefined;
+        this.selection = undefined;
+        this.pending = false;
+        this.hasChanged = true;
+        for (const button of this.bar.querySelectorAll<HTMLElement>("[data-axis]"))
+            button.setAttribute("aria-pressed", String(button.dataset["axis"] === axis));
+        this.refresh();
+    }
+
+    // ------------------------------------------------------------------- the user
+
+    private listen(): void {
+        this.body.addEventListener("scroll", () => {
+            this.refresh();
+        });
+        this.body.addEventListener(
+            "wheel",
+            (event) => {
+                const isZoom = event.ctrlKey || event.metaKey;
+                const sideways = event.shiftKey ? event.deltaY + event.deltaX : event.deltaX;
+                if (!isZoom && sideways === 0) return;
+                event.preventDefault();
+                if (isZoom) this.zoom(Math.exp(-event.deltaY / 200), this.at(event));
+                else this.look(pan(this.visible, sideways / this.scale, this.extent));
+            },
+            { passive: false },
+        );
+        this.rows.addEventListener("pointerdown", (event) => {
+            if (event.button !== 0) return;
+            this.rows.setPointerCapture(event.pointerId);
+            this.drag = { x: event.clientX, at: this.at(event), selects: event.shiftKey, moved: false };
+        });
+        this.rows.addEventListener("pointermove", (event) => {
+            const { drag } = this;
+            if (!drag) return;
+            drag.moved ||= Math.abs(event.clientX - drag.x) > CLICK;
+            if (!drag.moved) return;
+            if (drag.selects) {
+                const [from, to] = [drag.at, this.at(event)].sort((one, other) => one - other) as [number, number];
+                this.selection = { from: Math.max(0, from), to: Math.min(this.extent, to) };
+                this.place();
+            } else this.look(pan(this.visible, -event.movementX / this.scale, this.extent));
+        });
+        this.rows.addEventListener("pointerup", (event) => {
+            const { drag } = this;
+            this.drag = undefined;
+            if (!drag || drag.moved) return;
+            const below = document.elementFromPoint(event.clientX, event.clientY);
+            const step = below?.closest<SVGElement>(".event[data-step]")?.dataset["step"];
+            if (step === undefined) editor.postMessage({ type: "goTo", axis: this.axis, position: drag.at });
+            else editor.postMessage({ type: "goToStep", step: Number(step) });
+        });
+        this.rows.addEventListener("keydown", (event) => {
+            if (this.key(event)) event.preventDefault();
+        });
+    }
+
+    /** Whether the view has handled the key. */
+    private key({ key, ctrlKey, metaKey }: KeyboardEvent): boolean {
+        if (ctrlKey || metaKey || !this.tile) return false;
+        if (key === "ArrowLeft") editor.postMessage({ type: "goToStep", step: Math.max(0, this.tile.step - 1) });
+        else if (key === "ArrowRight") editor.postMessage({ type: "goToStep", step: this.tile.step + 1 });
+        else if (key === "+" || key === "=") this.zoom(ZOOM, this.tile.cursor);
+        else if (key === "-") this.zoom(1 / ZOOM, this.tile.cursor);
+        else if (key === "0") this.fit();
+        else if (key === "Escape") {
+            this.selection = undefined;
+            this.place();
+        } else return false;
+        return true;
+    }
+
+    private fillBar(words: TimelineWords): void {
+        const button = (text: string, title: string, run: () => void) => {
+            const made = document.createElement("button");
+            made.textContent = text;
+            made.title = title;
+            made.setAttribute("aria-label", title);
+            made.addEventListener("click", run);
+            return made;
+        };
+        const axes = (["time", "steps"] as const).map((axis) => {
+            const made = button(words[axis], words[axis], () => {
+                this.switchAxis(axis);
+            });
+            made.dataset["axis"] = axis;
+            made.setAttribute("aria-pressed", String(axis === this.axis));
+            return made;
+        });
+        this.bar.replaceChildren(
+            ...axes,
+            button("+", words.zoomIn, () => {
+                this.zoom(ZOOM);
+            }),
+            button("−", words.zoomOut, () => {
+                this.zoom(1 / ZOOM);
+            }),
+            button(words.fit, words.fit, () => {
+                this.fit();
+            }),
+            button(words.selection, words.selection, () => {
+                if (this.selection && this.selection.to > this.selection.from) this.look(this.selection);
+            }),
+            ...EXPORTS.map((format) =>
+                button({ svg: "SVG", mermaid: "Mermaid", csv: "CSV" }[format], words.exports[format], () => {
+                    const part = this.selection ?? { from: 0, to: this.extent };
+                    editor.postMessage({ type: "export", format, axis: this.axis, ...part, theme: theme() });
+                }),
+            ),
+        );
+    }
+}
+
+const NAMES_WIDTH = 180;
+
+function div(name: string): HTMLDivElement {
+    const made = document.createElement("div");
+    made.className = name;
+    return made;
+}
+
+function sceneOf(scene: string, width: number, height: number): SVGSVGElement {
+    const text = `<svg xmlns="${SVG}" width="${width}" height="${height}">${scene}</svg>`;
+    const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    return document.importNode(parsed, true) as unknown as SVGSVGElement;
+}
+
+/** The kind of the theme of the editor. */
+function theme(): Theme {
+    const { classList } = document.body;
+    if (classList.contains("vscode-high-contrast-light")) return "high-contrast-light";
+    if (classList.contains("vscode-high-contrast")) return "high-contrast";
+    return classList.contains("vscode-dark") ? "dark" : "light";
+}
+
+const view = new TimelineView();
+window.addEventListener("message", ({ data }: MessageEvent<ToTimeline>) => {
+    view.receive(data);
+});
+editor.postMessage({ type: "ready" });
