@@ -97,7 +97,10 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
         ("<ScriptCondition code='level &gt; 3'/>", "nothing sets the entry `level`"),
         ("<Script code='x := 1 &amp; 2'/>", "works on bits"),
         ("<Script code=\"t := 'a'; t := t .. 'b'\"/>", "texts cannot be joined"),
-        ("<Sequence><Script code='k := 1'/><SetBlackboard value='2' output_key='{k}'/></Sequence>", "known only when"),
+        (
+            "<Sequence><Script code='k := 1'/><SetBlackboard value='2' output_key='{k}'/></Sequence>",
+            "means the entry whose name",
+        ),
         ("<LoopInt queue='{q}' value='{v}'><Drive/></LoopInt>", "a queue in the blackboard"),
         ("<ManualSelector><Drive/></ManualSelector>", "ManualSelector"),
     ],
