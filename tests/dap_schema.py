@@ -32,9 +32,9 @@ def _validator(definition: str) -> Validator:
 
 def validate(message: dict[str, Any]) -> None:
     """Raises an error if a message of the adapter does not fit the schema."""
-    name = message.get("command") or message.get("event")
+    name = message["event"] if message["type"] == "event" else message["command"]
     assert isinstance(name, str)
-    title = name[0].upper() + name[1:]
+    title = name[:1].upper() + name[1:]  # an error repeats the command of its request, which may be empty
     if message["type"] == "event":
         _validator(f"{title}Event").validate(message)
     elif not message["success"]:

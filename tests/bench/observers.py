@@ -33,7 +33,6 @@ SYSTEMS = (
     "string_comparison/main.xml",
     "array_of_strings/main.xml",
     "ros_add_int_srv_example/main.xml",
-    "set_float_srv_example/main.xml",
     "blackboard_test/main.xml",
     "bt_test_models/main_test_sequence.xml",
     "bt_test_models/main_test_fallback.xml",

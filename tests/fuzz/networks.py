@@ -90,6 +90,63 @@ def _condition(random: Random, names: tuple[str, ...]) -> Json:
     return {"op": random.choice(COMPARISONS), "left": left, "right": right}
 
 
+# --------------------------------------------------------------------- bounded
+
+
+def bounded(random: Random) -> Json:
+    """Some automata with few states, many chances and choices. Whether the property holds is often open: there are
+    locations without exit and bounds on steps."""
+    count = random.randint(1, 4)
+    automata = [_bounded_automaton(random, number) for number in range(count)]
+    syncs = []
+    for action in ACTIONS:
+        vector = [action if random.random() < 0.6 else None for _ in range(count)]
+        if any(vector):
+            syncs.append(vector)
+    document = _document(random, automata, syncs)
+    number = random.randint(1, 3)
+    goal: Json = {"op": "=", "left": "x", "right": number}
+    never: Json = {"op": "G", "exp": {"op": "≠", "left": "x", "right": number}}
+    path: Json = random.choice(({"op": "F", "exp": goal}, never, _until(_small_condition(random, SHARED), goal)))
+    if random.random() < 0.5:
+        path["step-bounds"] = {"upper": random.randint(3, 30)}
+    document["properties"][0]["expression"]["values"] = {"op": "Pmin", "exp": path}
+    return document
+
+
+def _until(left: Json, right: Json) -> Json:
+    return {"op": "U", "left": left, "right": right}
+
+
+def _bounded_automaton(random: Random, number: int) -> Json:
+    names = (*SHARED, f"own{number}")
+    edges = []
+    for location in "lm":  # nothing leads out of n
+        for _ in range(random.randint(1, 4)):
+            ways = []
+            for share in random.choice(((1.0,), (0.25, 0.75), (0.5, 0.125, 0.375), (0.05, 0.95))):
+                targets = random.sample(names, random.randint(0, 2))
+                assignments = [{"ref": target, "value": _small_number(random, names)} for target in targets]
+                way: Json = {"location": random.choice("llmmn"), "assignments": assignments}
+                ways.append({**way, "probability": {"exp": share}})
+            row: Json = {"location": location, "destinations": ways}
+            if random.random() < 0.7:
+                row["action"] = random.choice(ACTIONS)
+            if random.random() < 0.4:
+                row["guard"] = {"exp": _small_condition(random, names)}
+            edges.append(row)
+    return _written(f"m{number}", ["l", "m", "n"], edges, [f"own{number}"])
+
+
+def _small_number(random: Random, names: tuple[str, ...]) -> Json:
+    total = {"op": "+", "left": random.choice(names), "right": random.choice([*names, 1, 2])}
+    return {"op": "%", "left": total, "right": random.randint(2, 4)}
+
+
+def _small_condition(random: Random, names: tuple[str, ...]) -> Json:
+    return {"op": random.choice(COMPARISONS), "left": random.choice(names), "right": random.randint(0, 3)}
+
+
 # ------------------------------------------------------------------------ wide
 
 

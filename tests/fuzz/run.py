@@ -8,5 +8,6 @@ import sys
 from pathlib import Path
 
 if __name__ == "__main__":
-    sys.path[0] = str(Path(__file__).resolve().parents[1])
+    tests = Path(__file__).resolve().parents[1]
+    sys.path[:1] = [str(tests), str(tests / "mocks")]
     runpy.run_module("fuzz", run_name="__main__", alter_sys=True)

@@ -238,6 +238,26 @@ def test_a_new_plugin() -> None:
     assert not new_warnings(snapshot, texts)
 
 
+def test_mocks_for_leaves() -> None:
+    """For the leaf at the caret, for all leaves of a system, and a new system for a tree without one."""
+    two = SYSTEM.replace("<CountUp", '<Turn angle="{sum}" /><CountUp')
+    assert set(done(two, "Create a mock of `GoHome`")) == {"main.xml", "mock_go_home.ascxml"}
+    after = done(two, "Create mocks for 2 leaves")
+    assert set(after) == {"main.xml", "mock_turn.ascxml", "mock_go_home.ascxml"}
+    assert '<bt_declare_port_in key="angle" type="int16" />' in after["mock_turn.ascxml"]
+    lone = """-- tree.xml --
+<root BTCPP_format="4"><Behavior‸Tree ID="Main"><Sequence name="all">
+<ComputePathToPose goal="{goal}" path="{path}"/><Mine path="{path}" speed="2"/><Mine name="again"/>
+</Sequence></BehaviorTree></root>
+"""
+    after = done(lone, "Create a system with mocks for the leaves")
+    mocks = {"mock_compute_path_to_pose.ascxml", "mock_mine.ascxml"}
+    assert set(after) == {"tree.xml", "tree_system.xml", "tree_properties.xml"} | mocks
+    assert '<Action ID="Mine"><input_port name="path"' in after["tree.xml"]
+    for name in ("tree_succeeds", "reaches_ComputePathToPose_1001", "reaches_Mine_1003"):
+        assert f'id="{name}"' in after["tree_properties.xml"]
+
+
 def test_a_new_decorator_does_as_its_child_does() -> None:
     written = SYSTEM.replace(
         'GoHome from="{sum}" speed="0.5" loud="true" to="kitchen" />', 'Guard sum="{sum}"><AlwaysSuccess/></Guard>'

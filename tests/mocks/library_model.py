@@ -31,10 +31,13 @@ class World:
         calls: leaf and answer for each call of a leaf, and ("halt", leaf).
         outcomes: leaf -> its random outcomes, in order.
         writes: entry -> how often it was written.
+        happens: whether events of the world that Nav2's nodes ask about always occur, or never.
     """
 
-    def __init__(self, entries: dict[str, Any], outcomes: dict[str, list[str]], rate: int = 10) -> None:
-        self.entries, self.outcomes, self.rate = entries, outcomes, rate
+    def __init__(
+        self, entries: dict[str, Any], outcomes: dict[str, list[str]], rate: int = 10, *, happens: bool = False
+    ) -> None:
+        self.entries, self.outcomes, self.rate, self.happens = entries, outcomes, rate, happens
         self.calls: list[tuple[str, str]] = []
         self.writes: dict[str, int] = dict.fromkeys(entries, 1)
 
@@ -344,10 +347,10 @@ class Switch(Node):
 
     def tick(self) -> str:
         self.status = R
-        variable = self.world.entries[self.ports["variable"].strip("{}")]
+        variable = self.text("variable")
         chosen = self.children[-1]
         for i, child in enumerate(self.children[:-1]):
-            if str(variable) == self.ports[f"case_{i + 1}"]:
+            if variable == self.text(f"case_{i + 1}"):
                 chosen = child
                 break
         if self.running not in (None, chosen):
@@ -361,6 +364,10 @@ class Switch(Node):
     def halt(self) -> None:
         self.running = None
         super().halt()
+
+    def text(self, port: str) -> str:
+        value = self.ports[port]
+        return str(self.world.entries[value.strip("{}")]) if value.startswith("{") else value
 
 
 class TryCatch(Node):
@@ -723,16 +730,18 @@ class NonblockingSequence(Node):
 class PersistentSequence(Node):
     def tick(self) -> str:
         key = self.ports["current_child_idx"].strip("{}")
+        index = self.world.entries[key]
         self.status = R
-        while self.world.entries[key] < len(self.children):
-            answer = self.children[self.world.entries[key]].execute()
+        while index < len(self.children):
+            answer = self.children[index].execute()
             if answer == R:
                 return R
             if answer == F:
                 self.reset_children()
                 self.world.write(key, 0)
                 return F
-            self.world.write(key, self.world.entries[key] + 1)
+            index += 1
+            self.world.write(key, index)
         self.reset_children()
         self.world.write(key, 0)
         return S
@@ -775,6 +784,88 @@ class SingleTrigger(Decorator):
 class GoalUpdater(Decorator):
     def tick(self) -> str:
         return self.child.execute()
+
+
+class WorldController(Decorator):
+    """`DistanceController` and `GoalUpdatedController`: the child is ticked at the first tick after IDLE, while it is
+    RUNNING, and when the event has occurred."""
+
+    first = True
+
+    def tick(self) -> str:
+        if self.status == IDLE:
+            self.first = True
+        self.status = R
+        if not (self.first or self.child.status == R or self.world.happens):
+            return R
+        self.first = False
+        return self.child.execute()
+
+
+class DistanceController(WorldController):
+    pass
+
+
+class GoalUpdatedController(WorldController):
+    pass
+
+
+class SpeedController(Decorator):
+    """With the event, the speed is the highest and the period the shortest."""
+
+    first, age = True, 0
+
+    def tick(self) -> str:
+        if self.status == IDLE:
+            self.first, self.age = True, 0
+        else:
+            self.age += 1
+        self.status = R
+        rate = self.number("max_rate", 1.0) if self.world.happens else self.number("min_rate", 0.1)
+        if not self.first and self.child.status != R:
+            if self.age < self.world.ticks(1000 / rate):
+                return R
+            self.age = 0
+        self.first = False
+        return self.child.execute()
+
+
+class PathLongerOnApproach(Decorator):
+    def tick(self) -> str:
+        self.status = R
+        return self.child.execute() if self.world.happens else S
+
+
+class PauseResumeController(Node):
+    """Children: resumed, paused, on pause, on resume. A request is seen at the next tick."""
+
+    child = 0
+
+    def tick(self) -> str:
+        self.status = R
+        count = len(self.children)
+        if self.world.happens and self.child in (0, 1):
+            left = self.child
+            if left < count:
+                reset(self.children[left])
+            self.child = (2 if count > 2 else 1) if left == 0 else (3 if count > 3 else 0)
+        if self.child >= count:
+            return R
+        child = self.children[self.child]
+        answer = child.execute()
+        if answer == R:
+            return R
+        reset(child)
+        if answer == F or self.child == 0:
+            self.child = 0
+            self.reset_children()
+            return F if answer == F else S
+        self.child = {1: 1, 2: 1, 3: 0}[self.child]
+        return R
+
+    def halt(self) -> None:
+        self.child = 0
+        super().halt()
 
 
 # ------------------------------------------------------------------------- leaves

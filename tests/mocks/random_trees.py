@@ -4,15 +4,25 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+import random
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol, TypeAlias, TypeVar
 from xml.sax.saxutils import quoteattr
 
 import library_model
 from hypothesis import strategies as st
 
+Table: TypeAlias = Mapping[str, Mapping[str, Sequence[str]]]
+"""Types of nodes, with the ports of each and what they may contain."""
+T = TypeVar("T")
+
 ENTRIES = {"x": 0, "y": 1, "k": 0}
 """The entries that all random trees use, with their first values."""
+
+
+_NAME = re.compile(rf"\b({'|'.join(ENTRIES)})\b")
 
 
 @dataclass(frozen=True)
@@ -30,7 +40,7 @@ ATTRIBUTES = {
     **dict.fromkeys(("_failureIf", "_successIf", "_skipIf", "_while"), CONDITIONS),
     **dict.fromkeys(("_onSuccess", "_onFailure", "_onHalted", "_post"), ACTIONS),
 }
-CONTROLS: dict[str, dict[str, tuple[str, ...]]] = {
+CONTROLS: Table = {
     "Sequence": {},
     "Fallback": {},
     "AsyncSequence": {},
@@ -43,16 +53,23 @@ CONTROLS: dict[str, dict[str, tuple[str, ...]]] = {
     "IfThenElse": {},
     "WhileDoElse": {},
     "Switch2": {"variable": ("{x}", "{y}"), "case_1": ("1", "2"), "case_2": ("0", "3")},
+    **{
+        f"Switch{count}": {
+            "variable": ("{x}", "{y}", "2"),
+            **{f"case_{case}": (str(case), "{y}", "7") for case in range(1, count + 1)},
+        }
+        for count in (3, 4, 5, 6)
+    },
     "TryCatch": {"catch_on_halt": ("true", "false")},
 }
-NAV2_CONTROLS: dict[str, dict[str, tuple[str, ...]]] = {
+NAV2_CONTROLS: Table = {
     "PipelineSequence": {},
     "RecoveryNode": {"number_of_retries": ("0", "1", "2", "{x}")},
     "RoundRobin": {"wrap_around": ("true", "false")},
     "NonblockingSequence": {},
     "PersistentSequence": {"current_child_idx": ("{k}",)},
 }
-DECORATORS: dict[str, dict[str, tuple[str, ...]]] = {
+DECORATORS: Table = {
     "Inverter": {},
     "ForceSuccess": {},
     "ForceFailure": {},
@@ -64,17 +81,18 @@ DECORATORS: dict[str, dict[str, tuple[str, ...]]] = {
     "LoopInt": {"queue": ("1;2", "0"), "if_empty": ("SUCCESS", "FAILURE", "SKIPPED"), "value": ("{x}",)},
     "SkipUnlessUpdated": {"entry": ("x", "{y}")},
     "WaitValueUpdate": {"entry": ("x", "{y}")},
+    "SubTree": {"x": ("{x}", "{y}"), "y": ("{y}", "{x}"), "_autoremap": ("true",)},
 }
-TIMED: dict[str, dict[str, tuple[str, ...]]] = {
+TIMED: Table = {
     "Delay": {"delay_msec": ("0", "100", "250")},
     "Timeout": {"msec": ("0", "100", "250")},
 }
-NAV2_DECORATORS: dict[str, dict[str, tuple[str, ...]]] = {
+NAV2_DECORATORS: Table = {
     "RateController": {"hz": ("10.0", "5.0", "3.0")},
     "SingleTrigger": {},
     "GoalUpdater": {},
 }
-LEAVES: dict[str, dict[str, tuple[str, ...]]] = {
+LEAVES: Table = {
     "Check": {},
     "Act0": {},
     "Act1": {},
@@ -87,64 +105,128 @@ LEAVES: dict[str, dict[str, tuple[str, ...]]] = {
     "SetBlackboard": {"value": ("0", "1", "2", "{x}"), "output_key": ("y",)},
     "WasEntryUpdated": {"entry": ("x", "{y}")},
 }
-SLEEP: dict[str, dict[str, tuple[str, ...]]] = {"Sleep": {"msec": ("0", "100", "200")}}
-COUNTS = {"IfThenElse": (2, 3), "WhileDoElse": (2, 3), "Switch2": (3, 3), "TryCatch": (2, 3), "RecoveryNode": (2, 2)}
-ALL = {**CONTROLS, **NAV2_CONTROLS, **DECORATORS, **TIMED, **NAV2_DECORATORS, **LEAVES, **SLEEP}
+SLEEP: Table = {"Sleep": {"msec": ("0", "100", "200")}}
+WORLD_CONTROLS: Table = {"PauseResumeController": {}}
+WORLD_DECORATORS: Table = {
+    "DistanceController": {"distance": ("1.0",)},
+    "GoalUpdatedController": {},
+    "SpeedController": {"min_rate": ("1.0", "2.0"), "max_rate": ("5.0", "10.0")},
+    "PathLongerOnApproach": {},
+}
+"""Nodes that ask about the world, where the same event occurs always or never."""
+COUNTS = {
+    "IfThenElse": (2, 3),
+    "WhileDoElse": (2, 3),
+    **{f"Switch{count}": (count + 1, count + 1) for count in range(2, 7)},
+    "PauseResumeController": (1, 4),
+    "TryCatch": (2, 3),
+    "RecoveryNode": (2, 2),
+}
 
 
-def trees(
-    controls: dict[str, dict[str, tuple[str, ...]]],
-    decorators: dict[str, dict[str, tuple[str, ...]]],
-    leaves: dict[str, dict[str, tuple[str, ...]]],
-    depth: int = 3,
-) -> st.SearchStrategy[Drawn]:
-    @st.composite
-    def node(draw: st.DrawFn, left: int) -> Drawn:
-        kinds = ["leaf"] if left == 0 else ["leaf", "control", "control", "control", "decorator", "decorator"]
-        kind = draw(st.sampled_from(kinds)) if left < depth else draw(st.sampled_from(kinds[1:]))
-        table = {"leaf": leaves, "control": controls, "decorator": decorators}[kind]
-        type_ = draw(st.sampled_from(sorted(table)))
+class Choices(Protocol):
+    """Where a random tree takes its choices from: hypothesis, or a seed."""
+
+    def one_of(self, values: Sequence[T]) -> T: ...
+
+
+@dataclass(frozen=True)
+class SeededChoices:
+    source: random.Random
+
+    def one_of(self, values: Sequence[T]) -> T:
+        return self.source.choice(values)
+
+
+_NAME = re.compile(rf"\b({'|'.join(ENTRIES)})\b")
+
+
+@dataclass(frozen=True)
+class DrawnChoices:
+    draw: st.DrawFn
+
+    def one_of(self, values: Sequence[T]) -> T:
+        return self.draw(st.sampled_from(values))
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """The nodes of random trees."""
+
+    controls: Table
+    decorators: Table
+    leaves: Table
+
+    def tree(self, choices: Choices, depth: int = 3, is_root: bool = True) -> Drawn:
+        kinds = ["control", "control", "control", "decorator", "decorator"]
+        kind = "leaf" if depth == 0 else choices.one_of(kinds if is_root else ["leaf", *kinds])
+        table = {"leaf": self.leaves, "control": self.controls, "decorator": self.decorators}[kind]
+        type_ = choices.one_of(sorted(table))
         least, most = COUNTS.get(type_, (1, 3)) if kind == "control" else (int(kind == "decorator"),) * 2
-        count = draw(st.integers(least, most))
-        ports = [(key, draw(st.sampled_from(values))) for key, values in table[type_].items()]
-        if draw(st.integers(0, 5)) == 0:
-            key = draw(st.sampled_from(sorted(ATTRIBUTES)))
-            ports.append((key, draw(st.sampled_from(ATTRIBUTES[key]))))
-        return Drawn(type_, tuple(ports), tuple(draw(node(left - 1)) for _ in range(count)))
+        count = choices.one_of(range(least, most + 1))
+        ports = [(key, choices.one_of(values)) for key, values in table[type_].items()]
+        if choices.one_of(range(6)) == 0:
+            key = choices.one_of(sorted(ATTRIBUTES))
+            ports.append((key, choices.one_of(ATTRIBUTES[key])))
+        return Drawn(type_, tuple(ports), tuple(self.tree(choices, depth - 1, False) for _ in range(count)))
 
-    return node(depth)
+
+ANY = Kinds({**CONTROLS, **NAV2_CONTROLS}, {**DECORATORS, **TIMED, **NAV2_DECORATORS}, {**LEAVES, **SLEEP})
+"""All nodes but those that ask about the world."""
+WITH_WORLD = Kinds({**ANY.controls, **WORLD_CONTROLS}, {**ANY.decorators, **WORLD_DECORATORS}, ANY.leaves)
+
+
+def trees(kinds: Kinds) -> st.SearchStrategy[Drawn]:
+    @st.composite
+    def tree(draw: st.DrawFn) -> Drawn:
+        return kinds.tree(DrawnChoices(draw))
+
+    return tree()
 
 
 def as_xml(root: Drawn) -> str:
-    """A file with the tree; leaves of the program are named `leaf<n>` in pre-order."""
+    """A file with the tree; nodes are named `leaf<n>` in pre-order."""
     counter = itertools.count()
-    lines = ['<root BTCPP_format="4" main_tree_to_execute="Main">', '<BehaviorTree ID="Main">']
-    lines += _element(root, counter)
+    subtrees: list[str] = []
+    main = "\n".join(['<BehaviorTree ID="Main">', *_element(root, counter, subtrees), "</BehaviorTree>"])
     models = '<TreeNodesModel><Condition ID="Check"/></TreeNodesModel>'
-    return "\n".join([*lines, "</BehaviorTree>", models, "</root>"])
+    return "\n".join(['<root BTCPP_format="4" main_tree_to_execute="Main">', main, *subtrees, models, "</root>"])
 
 
-def _element(drawn: Drawn, counter: Iterator[int]) -> Iterator[str]:
-    name = f"leaf{next(counter)}"
+def _element(drawn: Drawn, counter: Iterator[int], subtrees: list[str]) -> Iterator[str]:
+    number = next(counter)
     ports = "".join(f" {key}={quoteattr(value)}" for key, value in drawn.ports)
     if is_program_leaf(drawn):
-        yield f'<{drawn.type} name="{name}"{ports}/>'
+        yield f'<{drawn.type} name="leaf{number}"{ports}/>'
+        return
+    children = [line for child in drawn.children for line in _element(child, counter, subtrees)]
+    if drawn.type == "SubTree":
+        yield f'<SubTree ID="Sub{number}"{ports}/>'
+        subtrees.append("\n".join([f'<BehaviorTree ID="Sub{number}">', *children, "</BehaviorTree>"]))
         return
     yield f"<{drawn.type}{ports}>"
-    for child in drawn.children:
-        yield from _element(child, counter)
+    yield from children
     yield f"</{drawn.type}>"
 
 
 def as_nodes(root: Drawn, world: library_model.World) -> library_model.Node:
     counter = itertools.count()
 
-    def build(drawn: Drawn) -> library_model.Node:
-        name = f"leaf{next(counter)}"
-        children = [build(child) for child in drawn.children]
-        return library_model.node_class(drawn.type)(world, name, dict(drawn.ports), children)
+    def build(drawn: Drawn, names: Mapping[str, str]) -> library_model.Node:
+        """`names` are the entries outside that the names of the tree stand for."""
 
-    return build(root)
+        def outside(text: str) -> str:
+            return _NAME.sub(lambda match: names[match[0]], text)
+
+        name = f"leaf{next(counter)}"
+        ports = {key: outside(value) for key, value in drawn.ports}
+        inner = names
+        if drawn.type == "SubTree":
+            inner = {entry: ports[entry].strip("{}") if entry in ports else names[entry] for entry in ENTRIES}
+        children = [build(child, inner) for child in drawn.children]
+        return library_model.node_class(drawn.type)(world, name, ports, children)
+
+    return build(root, {entry: entry for entry in ENTRIES})
 
 
 def is_program_leaf(drawn: Drawn) -> bool:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -96,7 +97,7 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
         ("<ScriptCondition code='level &gt; 3'/>", "nothing sets the entry `level`"),
         ("<Script code='x := 1 &amp; 2'/>", "works on bits"),
         ("<Script code=\"t := 'a'; t := t .. 'b'\"/>", "texts cannot be joined"),
-        ("<Sequence><Script code='k := 1'/><SetBlackboard value='2' output_key='{k}'/></Sequence>", "only known when"),
+        ("<Sequence><Script code='k := 1'/><SetBlackboard value='2' output_key='{k}'/></Sequence>", "known only when"),
         ("<LoopInt queue='{q}' value='{v}'><Drive/></LoopInt>", "a queue in the blackboard"),
         ("<ManualSelector><Drive/></ManualSelector>", "ManualSelector"),
     ],
@@ -125,9 +126,73 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert part in text
 
 
-def test_mocks_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def system(tmp_path: Path, content: str) -> str:
+    tree(tmp_path, content)
+    path = tmp_path / "main.xml"
+    path.write_text(
+        """<roaml>
+<parameters><max_time value="20" unit="s"/><bt_tick_rate value="10"/></parameters>
+<behavior_tree><input type="bt.cpp-xml" src="tree.xml"/></behavior_tree>
+<properties><input type="xml" src="properties.xml"/></properties>
+</roaml>
+""",
+        encoding="utf-8",
+    )
+    (tmp_path / "properties.xml").write_text(
+        """<properties><ports><bt_node node="root" event="response">
+<event_var id="answered"/><state_var id="status" type="int32" field="status" expr="0"/>
+</bt_node></ports><guarantees><property id="done" pattern="existence">
+<event>answered &amp;&amp; status == 1</event><scope type="globally"/></property></guarantees></properties>
+""",
+        encoding="utf-8",
+    )
+    return str(path)
+
+
+def probability(capsys: pytest.CaptureFixture[str], *arguments: str) -> float:
+    (result,) = verified(capsys, *arguments, "--max-traces", "400", "--scheduler", "uniform")["results"]  # type: ignore[misc]
+    value: float = result["probability"]
+    return value
+
+
+def test_leaves_of_a_system_without_plugins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`goal` is set by no node of the tree, and `path` is of a C++ type; neither keeps the system from being run."""
+    path = system(
+        tmp_path,
+        """<Sequence name="root"><ComputePathToPose goal="{goal}" path="{path}" error_code_id="{code}"/>
+        <FollowPath path="{path}" controller_id="FollowPath"/><Mine speed="0.5" code="{code}"/></Sequence>""",
+    )
+    assert probability(capsys, path, "--mock", "*: 1 in 1 s") == 1
+    assert probability(capsys, path, "--mock", "*: 1", "--mock", "Mine: 0") == 0
+    assert 0.35 < probability(capsys, path, "--mock", "*: 1", "--mock", "FollowPath: 0.5 in 300 ms") < 0.65
+    assert "these leaves need mocks: FollowPath, Mine" in refused(capsys, path, "--mock", "Comp*: 1")
+
+
+def test_events_of_the_world_in_a_system(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = system(
+        tmp_path,
+        """<PathLongerOnApproach name="root" path="{path}"><AlwaysFailure/></PathLongerOnApproach>""",
+    )
+    assert probability(capsys, path, "--mock", "PathLongerOnApproach: 0") == 1
+    assert probability(capsys, path, "--mock", "PathLongerOnApproach: 1") == 0
+    asks = """<PathLongerOnApproach name="root" path="{{path}}" _event_probability="{}">
+        <AlwaysFailure/></PathLongerOnApproach>"""
+    tree(tmp_path, asks.format("1"))
+    assert probability(capsys, path) == 0
+    tree(tmp_path, asks.format("x"))
+    assert "must be a number from 0 to 1" in refused(capsys, path)
+
+
+def test_a_trace_of_a_plugin_with_conditions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The plugin is behind an automaton for its conditions; the story tells what it answers."""
+    path = system(tmp_path, '<Sequence name="root"><Mine code="{c}" _skipIf="c == 5"/><AlwaysSuccess/></Sequence>')
+    run(["verify", path, "--mock", "Mine: 0.5", "--max-traces", "20", "--scheduler", "uniform", "--explain"])
+    text = capsys.readouterr().out
+    assert re.search(r"Mine \(bt_1001\) +is ticked in idle → failed: FAILURE", text)
+    assert "_inner_" not in text
+
+
+def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "main.xml"
     path.write_text("<roaml/>", encoding="utf-8")
-    assert "mocks, entries and a tick rate are for files of behavior trees" in refused(
-        capsys, str(path), "--mock", "*: 1"
-    )
+    assert "entries and a tick rate are for files of behavior trees" in refused(capsys, str(path), "--entry", "a=1")

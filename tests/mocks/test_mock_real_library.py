@@ -13,22 +13,22 @@ from typing import Any
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_trees import CONTROLS, DECORATORS, ENTRIES, LEAVES, Drawn, as_xml, trees
+from random_trees import CONTROLS, DECORATORS, ENTRIES, LEAVES, Drawn, Kinds, Table, as_xml, trees
 from translated_trees import Observed, observe, with_mocks
 
 from examples import TIMES, examples
 
 TICKS = 12
-NEWER = ("TryCatch", "SkipUnlessUpdated", "WaitValueUpdate", "Switch2", "LoopInt")
+NEWER = ("TryCatch", "SkipUnlessUpdated", "WaitValueUpdate", *(f"Switch{count}" for count in range(2, 7)), "LoopInt")
 """Nodes that 4.8 does not have, or that have another meaning there. A switch compares texts, and the entries are
 numbers."""
 
 
-def without(table: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+def without(table: Table, names: tuple[str, ...]) -> Table:
     return {name: ports for name, ports in table.items() if name not in names}
 
 
-TREES = trees(without(CONTROLS, NEWER), without(DECORATORS, NEWER), LEAVES)
+TREES = trees(Kinds(without(CONTROLS, NEWER), without(DECORATORS, NEWER), LEAVES))
 
 
 class Host:

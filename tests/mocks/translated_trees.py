@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from random_trees import WORLD_CONTROLS, WORLD_DECORATORS
+
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST
 from roaml.mocks.mock import Mock
@@ -47,10 +49,11 @@ def forest_of(text: str) -> Forest:
     return Forest(PATH, ((PATH, file),), replace(NEWEST, libraries=("nav2",)))
 
 
-def with_mocks(text: str, entries: dict[str, str], ticks: int) -> MockedTree:
-    """A tree ticked at 10 Hz; `Act<n>` is RUNNING for n ticks."""
+def with_mocks(text: str, entries: dict[str, str], ticks: int, *, happens: bool = False) -> MockedTree:
+    """A tree ticked at 10 Hz; `Act<n>` is RUNNING for n ticks. `happens`: whether events of the world always occur."""
     acts = [Mock(f"Act{n}", 0.6, Fraction(100 * n)) for n in range(4)]
-    options = MockOptions((*acts, Mock("*", 0.6)), entries, max_time=ticks * 10**8 + 5 * 10**7, counts=True)
+    world = [Mock(node, float(happens)) for node in (*WORLD_CONTROLS, *WORLD_DECORATORS)]
+    options = MockOptions((*acts, *world, Mock("*", 0.6)), entries, max_time=ticks * 10**8 + 5 * 10**7, counts=True)
     return mocked(forest_of(text), options)
 
 

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-from mock_plugins import mock_plugin
 from random_trees import ENTRIES, Drawn, as_xml, is_program_leaf
 from translated_trees import CODES, Observed
 
 from roaml import api
 from roaml.jani.model import Model
 from roaml.mocks.mock import Mock
+from roaml.mocks.plugin import mock_plugin
 from roaml.scxml.names import sent_by
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording
@@ -61,11 +61,12 @@ def translated(drawn: Drawn, ticks: int) -> Model:
 
 
 def leaves_of(drawn: Drawn) -> dict[int, tuple[str, str]]:
-    """Number -> name and type of the leaves of the program."""
+    """Number -> name and type of the leaves of the program. A `<SubTree>` has no number."""
     numbers, names = itertools.count(1000), itertools.count()
 
     def walk(node: Drawn) -> Iterator[tuple[int, tuple[str, str]]]:
-        number, name = next(numbers), f"leaf{next(names)}"
+        name = f"leaf{next(names)}"
+        number = next(numbers) if node.type != "SubTree" else 0
         if is_program_leaf(node):
             yield number, (name, node.type)
         for child in node.children:

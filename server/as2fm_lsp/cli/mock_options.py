@@ -14,7 +14,7 @@ MAX_RATE = 10_000
 
 
 def add_mock_options(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("trees without a system")
+    group = parser.add_argument_group("mocks", "for trees without a system, and for leaves of systems without a plugin")
     add = group.add_argument
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "

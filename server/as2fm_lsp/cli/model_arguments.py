@@ -64,8 +64,10 @@ def check_model_arguments(options: argparse.Namespace) -> None:
             raise UsageError("--max-time needs a system; a JANI model has no such parameter")
     elif options.constant:
         raise UsageError("--constant needs a JANI model; a system has no constants")
-    if has_mock_options(options) and not names_tree(options.main):
-        raise UsageError("mocks, entries and a tick rate are for files of behavior trees; a system has its own")
+    if options.main.endswith(".jani") and has_mock_options(options):
+        raise UsageError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
+    if (options.entry or options.tick_rate) and not names_tree(options.main):
+        raise UsageError("entries and a tick rate are for files of behavior trees; a system has its own")
 
 
 def read_target(options: argparse.Namespace, settings: Settings) -> VerificationTarget:
@@ -83,7 +85,15 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
         except MockError as error:
             raise UsageError(str(error)) from None
     overrides = Overrides(options.max_time, None)
-    return api.target(options.main, options.ros_path, settings, None, overrides, options.constant)
+    texts = None
+    if has_mock_options(options):
+        from as2fm_lsp.cli.mocked_system import mocked_texts  # noqa: PLC0415 - systems start faster without it
+
+        try:
+            texts = mocked_texts(options, settings)
+        except MockError as error:
+            raise UsageError(str(error)) from None
+    return api.target(options.main, options.ros_path, settings, texts, overrides, options.constant)
 
 
 def error_report(error: api.ModelError | api.JaniError) -> CheckReport:

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.mock_arguments import missing_mocks, mocks_in
 from as2fm_lsp.cli.output import complain
 from roaml.api.trees import LoadedTree, load_tree
-from roaml.mocks.mock import MockError, read_mock, read_mocks, unused
+from roaml.mocks.mock import MockError, unused
 from roaml.mocks.network import DEFAULT_MAX_TIME, DEFAULT_RATE, MissingMocksError, MockOptions
 from roaml.project.settings import Settings
-
-MAX_NAMES = 8
 
 
 def load_subject(options: argparse.Namespace, settings: Settings, *, counts: bool) -> LoadedTree:
@@ -29,22 +26,13 @@ def load_subject(options: argparse.Namespace, settings: Settings, *, counts: boo
         if not equals or not name.strip():
             raise MockError(f"`{text}` does not set an entry; write it as NAME=VALUE")
         entries[name.strip()] = value.strip()
-    try:
-        mocks = tuple(read_mock(text) for text in options.mock)
-        if options.mocks is not None:
-            mocks += read_mocks(Path(options.mocks).read_text(encoding="utf-8"))
-    except UnicodeDecodeError:
-        raise MockError(f"{options.mocks}: not valid UTF-8") from None
+    mocks = mocks_in(options)
     rate, max_time = options.tick_rate or DEFAULT_RATE, options.max_time or DEFAULT_MAX_TIME
     chosen = MockOptions(mocks, entries, rate, max_time, counts)
     try:
         tree = load_tree(options.main, chosen, settings)
     except MissingMocksError as missing:
-        names = list(dict.fromkeys(leaf.type for leaf in missing.leaves))
-        listed = ", ".join(names[:MAX_NAMES]) + (", …" if len(names) > MAX_NAMES else "")
-        raise MockError(
-            f'{shown_path(options.main)}: these leaves need mocks: {listed}; for example --mock "*: 0.9 in 1 s"'
-        ) from None
+        raise missing_mocks(options.main, [leaf.type for leaf in missing.leaves]) from None
     nodes = [(node.name, node.type) for node in tree.mocked.tree.nodes]
     for mock in unused(mocks, nodes):
         complain(f"the mock `{mock.pattern}` fits no node of the tree")

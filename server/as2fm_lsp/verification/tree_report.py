@@ -8,7 +8,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from roaml.mocks.network import EVENT_PROBABILITY, MockedTree
+from roaml.lower.programs.nodes import EVENT_PROBABILITY
+from roaml.mocks.network import MockedTree
 from roaml.model.expand import ROOT_NUMBER
 from roaml.scxml.names import sent_by
 from roaml.smc.statistics import Bounds

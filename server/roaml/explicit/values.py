@@ -101,4 +101,5 @@ class _Question:
             raise NoValueError("rewards are negative in a part of the model that can be repeated for ever")
         if solver_.has_ended_early:
             self.is_precise = False
-        return Bounds(low, high)
+        # Equal bounds can be in the wrong order after rounding.
+        return Bounds(min(low, high), max(low, high))

@@ -245,3 +245,17 @@ def same_kind(left: Type, right: Type) -> bool:
         case Scalar(), Scalar():
             return left.kind is right.kind
     return False
+
+
+def type_of_text(text: str) -> str:
+    """The name of the type that a text suggests, which is written without quotes, such as `float64` for `0.5`."""
+    stripped = text.strip()
+    if stripped in ("true", "false"):
+        return "bool"
+    for convert, name in ((int, "int32"), (float, "float64")):
+        try:
+            convert(stripped)
+        except ValueError:
+            continue
+        return name
+    return "string"

@@ -40,6 +40,8 @@ _NAMING_PORTS = {
     ("WaitValueUpdate", "entry"): "other",
 }
 """The ports whose value is the name of an entry even without braces."""
+_CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool", "Double", "String"))
+"""The ports that take elements from an entry and never add one."""
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
 
@@ -184,7 +186,10 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
             assert known is not None
             type_ = ANY if forest.is_partly_described(known) else port_type(port)
             library = bool(known.library)
-            yield Use(path, own, name, reads, direction.writes, True, type_, library, False, node, span)
+            writes = direction.writes
+            if library and (known.name, setting.attribute.name) in _CONSUMED:
+                reads, writes = True, False
+            yield Use(path, own, name, reads, writes, True, type_, library, False, node, span)
         elif name is not None:
             yield Use(path, own, name, None, None, True, ANY, False, False, node, span)
 

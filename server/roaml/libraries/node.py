@@ -9,6 +9,14 @@ from functools import cached_property
 
 from roaml.roles import Direction, NodeKind
 
+EVENT_ATTRIBUTE = "_event_probability"
+"""The attribute that gives a node which asks about the world the probability of the event at a tick. The libraries
+ignore it (docs/spec/mocks.md#world)."""
+WORLD_NODES = frozenset(
+    ("DistanceController", "GoalUpdatedController", "SpeedController", "PathLongerOnApproach", "PauseResumeController")
+)
+"""The nodes that ask about the world."""
+
 
 @dataclass(frozen=True, slots=True)
 class Port:

@@ -21,7 +21,15 @@ from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_auto
 from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
-from roaml.lower.programs.nodes import PortValues, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import (
+    EVENT_PROBABILITY,
+    PortValues,
+    compiled_scripts,
+    event_probability,
+    flags_at,
+    port_values,
+    program_of,
+)
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.outline import MachineOutline
@@ -35,8 +43,14 @@ from roaml.text import Location
 
 STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
 """The codes with which a machine answers."""
-WORLD = 0.1
-"""The probability of an event in the world at each tick (docs/spec/mocks.md#world)."""
+
+_NEVER_TICK_ENDED = frozenset(
+    (
+        *("Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll"),
+        *("RecoveryNode", *(node.name for node in library(BEHAVIORTREE_CPP).nodes.values() if node.children == (1, 1))),
+    )
+)
+"""The nodes that never tick a child that has ended before they reset it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +90,7 @@ class _FrameNames:
         value = self.frame.resolve(name)
         if isinstance(value, Reference):
             return value.variable
-        variable = identifier(f"{self.frame.prefix}{name}")
+        variable = identifier(value.variable)
         self.initial[variable] = value.text
         return variable
 
@@ -149,17 +163,22 @@ class LibraryTreeBuilder:
         yield _Part(node, program, _address(instance.number, len(conditions)), instance.automaton)
 
     def subtrees_above(self, instance: Instance) -> Iterator[ExecutedNode]:
-        """The `<SubTree>` nodes with conditions whose topmost node is the instance, the outermost first."""
+        """The `<SubTree>` elements that need an automaton and whose top node is the instance, the outermost first:
+        those with conditions, and one whose parent may tick it again although it has ended. Like any decorator, a
+        `<SubTree>` resets its child when the child has ended."""
         parent = None if instance.parent is None else self.system.by_instance.get(instance.parent)
         around = parent.instance.use if parent is not None and parent.instance is not None else None
         uses: list[TreeUse] = []
         index: int | None = instance.use
         while index != around and index is not None:
             use = self.system.tree_uses[index]
-            if use.scripts and use.frame.use is not None and use.frame.outer is not None:
+            if use.frame.use is not None and use.frame.outer is not None:
                 uses.append(use)
             index = use.outer
-        for use in reversed(uses):
+        is_ticked_again = parent is not None and parent.outline.name not in _NEVER_TICK_ENDED
+        for position, use in enumerate(reversed(uses)):
+            if not use.scripts and (position > 0 or not is_ticked_again):
+                continue
             assert use.frame.use is not None
             assert use.frame.outer is not None
             file = self.files.get(use.frame.use.path)
@@ -281,7 +300,8 @@ class LibraryTreeBuilder:
         is_condition = node.type in (MACHINE, "SubTree")
         values = PortValues() if is_condition else port_values(node, program, self.board)
         if program.asks_world:
-            values.known["event"] = WORLD
+            probability = event_probability(node)
+            values.known["event"] = EVENT_PROBABILITY if probability is None else probability
         return NodeCode(
             part.address,
             part.name,

@@ -19,7 +19,15 @@ from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.lower.programs.nodes import PortValues, compiled_scripts, flags_at, port_values, program_of
+from roaml.lower.programs.nodes import (
+    EVENT_PROBABILITY,
+    PortValues,
+    compiled_scripts,
+    event_probability,
+    flags_at,
+    port_values,
+    program_of,
+)
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
@@ -37,9 +45,6 @@ DEFAULT_RATE = Fraction(10)
 """The default number of ticks of the tree per second, in Hz."""
 DEFAULT_MAX_TIME = 600 * 10**9
 """The default limit of the simulated time, in ns."""
-EVENT_PROBABILITY = 0.1
-"""The probability of the event that a node depends on (docs/spec/mocks.md#world), at each tick, if the node has no
-mock."""
 TICKS = "ticks"
 """The name of the root's variable that counts the ticks."""
 MAX_TEXT_LENGTH = 100
@@ -207,6 +212,9 @@ class _Builder:
         mock = mock_for(exact, node.name, node.type)
         if mock is not None:
             return mock.probability
+        probability = event_probability(node)
+        if probability is not None:
+            return probability
         self.assumed.append(node)
         return EVENT_PROBABILITY
 

@@ -75,9 +75,14 @@ class TreeFileOutline:
 
 @dataclass(frozen=True, slots=True)
 class PortConstant:
-    """A port with a constant text."""
+    """A port with a constant text.
+
+    Attributes:
+        variable: the full name of the variable whose value it is, if a `<SubTree>` gives it; "" otherwise.
+    """
 
     text: str
+    variable: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -541,7 +546,9 @@ class _Expander:
         remapped: dict[str, PortValue] = {}
         for name, text in {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}.items():
             if name not in _OWN_ATTRIBUTES and not name.startswith("_"):
-                remapped[name] = frame.value(name, text)
+                value = frame.value(name, text)
+                is_given_here = isinstance(value, PortConstant) and not value.variable
+                remapped[name] = PortConstant(text, f"{prefix}{name}") if is_given_here else value
         autoremap = _is_autoremapped(node)
         use, inside = NodeSource(frame.tree.path, frame.tree.id, node.position), frame.inside | {inner.id}
         entered = Frame(

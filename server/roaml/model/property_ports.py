@@ -157,8 +157,10 @@ class PortLinker:
         problems = len(self.problems)
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete() and len(self.problems) == problems:
-            who = _SENDING.get(event, "answers")
+            who = _SENDING.get(event, "sends feedback of" if event is ObservedPart.FEEDBACK else "answers")
             self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
+        if events and port.kind is not PortKind.TOPIC and port.target is None and port.origin is None:
+            self._warn_of_clients(port, channel, event)
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
 
@@ -232,8 +234,6 @@ class PortLinker:
             return
         chooser = port.origin if event in _OF_CLIENTS else port.target
         clients = self._chosen(chooser, channel.users, "is a client of", channel)
-        if port.target is None and port.origin is None and len(channel.users) > 1:
-            self._warn_of_clients(port, channel, event)
         stem = f"{'srv' if port.kind is PortKind.SERVICE else 'action'}_{sanitise(channel.name)}"
         for client in clients:
             who, number = safe_name(client.automaton.name), channel.users.index(client)
@@ -255,7 +255,7 @@ class PortLinker:
                     yield PortEvent(
                         f"{stem}_goal_reject_client_{who}", constants=(goal, (PortVariableKind.ACCEPTED.value, False))
                     )
-                case ObservedPart.FEEDBACK if channel.sources:
+                case ObservedPart.FEEDBACK if any(ProtocolPart.FEEDBACK in s.use.sends for s in channel.sources):
                     yield PortEvent(f"{stem}_feedback_handle_client_{who}", constants=(goal,))
                 case ObservedPart.RESULT if channel.sources:
                     yield PortEvent(f"{stem}_result_handle_client_{who}", constants=(goal,))
@@ -275,7 +275,10 @@ class PortLinker:
         return chosen
 
     def _warn_of_clients(self, port: Port, channel: Channel, event: ObservedPart) -> None:
+        """Warn if there are several clients to choose from."""
         assert port.name is not None
+        if len(channel.users) < 2:
+            return
         names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
         attribute = "origin" if event in _OF_CLIENTS else "target"
         number = len(channel.users)
@@ -288,10 +291,14 @@ class PortLinker:
         matches = nodes_called(self.system, name.value)
         if len(matches) != 1:
             if matches:
-                paths = ", ".join(f"`{path}`" for path in dict.fromkeys(path_of(self.system, node) for node in matches))
-                message = f"{len(matches)} nodes of the tree have the name `{name.value}`; use the path of one: {paths}"
+                paths = dict.fromkeys(path_of(self.system, node) for node in matches)
+                message = f"{len(matches)} nodes of the tree have the name `{name.value}`; "
                 shorter = short_paths(self.system)
                 close = tuple(dict.fromkeys(shorter[node.number] for node in matches))
+                if len(paths) > 1:
+                    message += f"use the path of one: {', '.join(f'`{path}`' for path in paths)}"
+                else:  # siblings
+                    message, close = f"{message}give each of them a `name` of its own in the tree", ()
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             elif self._is_complete():
                 names = (text for node in self.system.instances for text in (node.name, node.plugin))

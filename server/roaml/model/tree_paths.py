@@ -86,7 +86,7 @@ def nodes_called(system: System, text: str) -> tuple[Instance, ...]:
     """The nodes that `text` refers to; empty if there are none.
 
     The text is the name of a node, or an ID that is not the name of a node. The names of enclosing nodes and trees may
-    precede it, separated by `/`. A whole path refers only to the node at its end.
+    precede it, separated by `/`. If the text is the whole path of a node, it refers only to this node.
     """
     *path, last = text.split("/")
     instances = _instances(system)

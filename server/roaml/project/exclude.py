@@ -80,8 +80,8 @@ def _matches(patterns: tuple[str, ...], path: str) -> bool:
 
 @functools.lru_cache(maxsize=16)
 def _compiled(patterns: tuple[str, ...]) -> tuple[PathSpec[Pattern], GitIgnoreSpec]:
-    """The matchers for folders and for files. For a folder, the last pattern that matches decides. For a file, a
-    pattern that includes a folder again does not include files that other patterns exclude."""
+    """The matchers for folders and for files. For a folder, the last pattern that matches decides. For a file, as in
+    Git, `!folder/` does not cancel a pattern that matches the file itself."""
     from pathspec import GitIgnoreSpec, PathSpec  # noqa: PLC0415 - most projects exclude nothing
 
     # In pathspec, `a/**` also matches the folder `a/` itself; in Git it does not.

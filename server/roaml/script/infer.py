@@ -7,9 +7,10 @@ Unknown types are not checked: an entry without a declared type may have any val
 from __future__ import annotations
 
 import enum
+import functools
 from collections.abc import Callable, Iterator
 
-from roaml.script.parse import ScriptProblem
+from roaml.script.parse import ScriptProblem, parse
 from roaml.script.tree import (
     Assignment,
     Binary,
@@ -25,6 +26,7 @@ from roaml.script.tree import (
     Unary,
     walk,
 )
+from roaml.text import Decoded
 
 
 class Type(enum.Enum):
@@ -94,6 +96,17 @@ def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[Script
                 yield from _assignment(expr, lookup)
                 if expr.operator == ":=" and lookup(expr.target.name) is Type.UNKNOWN:
                     known[expr.target.name] = type_of(expr.value, lookup)
+
+
+@functools.lru_cache(maxsize=2048)
+def created_in(text: str) -> tuple[tuple[str, Type], ...]:
+    """The names that a script creates, each with the type of its value: a text, a number, or unknown."""
+    script, problems = parse(Decoded(text, 0))
+    if problems:
+        return ()
+    created = (expr for expr in walk(script) if isinstance(expr, Assignment) and expr.operator == ":=")
+    types = ((expr.target.name, type_of(expr.value, lambda _: Type.UNKNOWN)) for expr in created)
+    return tuple((name, Type.REAL if type_ is Type.INTEGER else type_) for name, type_ in types)
 
 
 def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:

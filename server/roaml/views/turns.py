@@ -82,12 +82,6 @@ class Turn:
         return name_of(self.automaton)
 
     @property
-    def protocol(self) -> str:
-        """The prefix of the events between the tree and this node; "" if the automaton is not a node."""
-        node = NODE_AUTOMATON.fullmatch(self.automaton)
-        return f"bt_{node[1]}_" if node else ""
-
-    @property
     def is_ticked(self) -> bool:
         return self._hears(TreeEventKind.TICK)
 
@@ -118,10 +112,16 @@ class Turn:
         return self.heard is not None and not has_moved and not any(self.sent) and not self.status
 
     def _answers(self, message: Message) -> bool:
-        return bool(self.protocol) and message.event in (f"{self.protocol}response", f"{self.protocol}halt_response")
+        return self._is_between_tree_and_node(message.event, *_ANSWERS)
 
     def _hears(self, kind: TreeEventKind) -> bool:
-        return self.heard is not None and bool(self.protocol) and self.heard.event == f"{self.protocol}{kind}"
+        return self.heard is not None and self._is_between_tree_and_node(self.heard.event, kind)
+
+    def _is_between_tree_and_node(self, event: str, *kinds: TreeEventKind) -> bool:
+        """Whether an event is of one of these kinds, and passes between the tree, or the conditions of this node, and
+        this node."""
+        node, read = NODE_AUTOMATON.fullmatch(self.automaton), read_tree_event(event)
+        return node is not None and read is not None and read.number == int(node[1]) and read.kind in kinds
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from roaml.expr.types import type_of_text
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.ide.code_actions.inputs import add_input
@@ -61,21 +62,8 @@ def port_of(system: System | None, setting: PortSetting) -> tuple[Direction, str
     another node writes, is an input; a port with any other variable is an output."""
     variable = setting.variable
     if variable is None:
-        return Direction.IN, setting.key.value, _type_of(setting.value.value)
+        return Direction.IN, setting.key.value, type_of_text(setting.value.value)
     bound = system.blackboard.get(variable.removeprefix("@"), ()) if system else ()
     types = [use.port.type for use in bound if use.port.type != "any"]
     direction = Direction.IN if any(use.port.written for use in bound) else Direction.OUT
     return direction, setting.key.value, types[0] if types else "int32"
-
-
-def _type_of(text: str) -> str:
-    text = text.strip()
-    if text in ("true", "false"):
-        return "bool"
-    for convert, name in ((int, "int32"), (float, "float64")):
-        try:
-            convert(text)
-        except ValueError:
-            continue
-        return name
-    return "string"

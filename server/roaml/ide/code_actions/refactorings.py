@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.edit.elements import after, halts, last_in
-from roaml.ide.code_actions import migrate, new_plugin, node_form
+from roaml.ide.code_actions import migrate, new_mocks, new_plugin, node_form
 from roaml.ide.code_actions.action import EXTRACT, REWRITE, CodeAction, WorkspaceEdit, known
 from roaml.language import HL_SCXML
 from roaml.model.kinds import FileKind
@@ -32,6 +32,7 @@ def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAct
         yield from _results(analysis, path, machine, place)
     if analysis.kind(path) is FileKind.TREE:
         yield from _nodes(analysis, path, place)
+        yield from new_mocks.actions(snapshot, path, _node_at(analysis, path, place), _is_top(analysis, path, place))
     yield from migrate.actions(snapshot, path, place)
 
 
@@ -130,6 +131,14 @@ def _node_at(analysis: Analysis, path: str, place: Span) -> TreeNode | None:
             if _touches(node.element, place):
                 return node
     return None
+
+
+def _is_top(analysis: Analysis, path: str, place: Span) -> bool:
+    """Whether the caret is in the start tag of the file's root or of a tree."""
+    file = analysis.tree(path)
+    return file is not None and any(
+        _touches(element, place) for element in (file.element, *(tree.element for tree in file.trees))
+    )
 
 
 def _touches(element: Element, place: Span) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
+from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.scripts import script_ports
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
@@ -19,6 +20,9 @@ from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.roles import NodeKind
 from roaml.text import Location
+
+EVENT_PROBABILITY = 0.1
+"""The probability that something happens in the world at a tick, unless the tree or a mock gives another one."""
 
 
 def program_of(node: ExecutedNode) -> NodeProgram | None:
@@ -79,6 +83,25 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
 
 def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
     return TreeRefusal(node.origin, f"`{node.type}` needs the port `{port}`", is_reported=True)
+
+
+def event_probability(node: ExecutedNode) -> float | None:
+    """The probability in the tree that something happens in the world at a tick; `None` without one.
+
+    Raises:
+        TreeRefusal: it is not a probability.
+    """
+    attribute = node.node.element.get(EVENT_ATTRIBUTE)
+    if attribute is None:
+        return None
+    try:
+        probability = float(attribute.value)
+    except ValueError:
+        probability = -1.0
+    if not 0 <= probability <= 1:
+        place = Location(node.origin.path, attribute.value_span)
+        raise TreeRefusal(place, f"`{EVENT_ATTRIBUTE}` must be a number from 0 to 1, not `{attribute.value}`")
+    return probability
 
 
 @dataclass(eq=False)

@@ -19,6 +19,8 @@ from roaml.rules.rule import Rule, TreeContext
 def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for node in nodes(tree):
+            if not node.element.complete:
+                continue  # its end is not known
             if node.is_subtree:
                 yield from _subtree(context, node)
             elif node.plugin is None:

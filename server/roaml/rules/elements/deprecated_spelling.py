@@ -11,7 +11,7 @@ from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.edit.elements import removal, rename_tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
 from roaml.language.grammar import ElementType
-from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext
+from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.elements import known_elements
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Attribute, Element
@@ -21,8 +21,19 @@ EXTENSION = ".ascxml"
 
 
 def check(context: FileContext) -> Iterator[Finding]:
+    if context.grammar is not BEHAVIOR_TREE:
+        yield from _spellings(context)
+
+
+def check_tree(context: TreeContext) -> Iterator[Finding]:
+    """For trees without a system, `unknown-node` and others report the names of version 3."""
+    if context.forest is None and _is_newer_tree(context.document.root):
+        yield from _spellings(FileContext(context.source, (), context.document, BEHAVIOR_TREE, older=context.older))
+
+
+def _spellings(context: FileContext) -> Iterator[Finding]:
     grammar, document = context.grammar, context.document
-    if grammar is None or document is None or (grammar is BEHAVIOR_TREE and not _is_newer_tree(document.root)):
+    if grammar is None or document is None:
         return
     for element, type_, parent in known_elements(document, grammar):
         if type_.use:
@@ -103,6 +114,7 @@ RULE = Rule(
     Severity.HINT,
     "An older spelling is used.",
     file=check,
+    tree=check_tree,
     machine=check_machine,
     system=check_system,
 )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
+from roaml.language import BEHAVIOR_TREE
 from roaml.language.validate import UnknownAttribute
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
@@ -25,6 +26,8 @@ def check(context: FileContext) -> Iterator[Finding]:
         if not isinstance(violation, UnknownAttribute):
             continue
         element, attribute, known = violation.element, violation.attribute, violation.type.attributes.values()
+        if context.grammar is BEHAVIOR_TREE and element.name != "root" and attribute.name.startswith("_"):
+            continue  # editors of trees keep their own data in these attributes
         free = [a.name for a in known if a.ignored is None and not a.use and element.get(a.name) is None]
         close = close_names(attribute.name, free) or misspelled.only_missing(element, violation.type, attribute.name)
         remove = Fix("Remove the attribute", (removal(context.source.text, attribute.span),), preferred=not close)

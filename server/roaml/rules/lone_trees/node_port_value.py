@@ -96,7 +96,8 @@ def _without_braces(node: TreeNode, port: Port | None, setting: PortSetting, nam
     text, span = setting.value.value.strip(), setting.value.span
     dollar = _DOLLAR.match(text)
     name = dollar[1] if dollar else text
-    if name not in names or (port is not None and port.direction is Direction.OUT):
+    is_known = name in names or name.removeprefix("@") in names
+    if not is_known or (port is not None and port.direction is Direction.OUT):
         return
     severity = Severity.WARNING
     if dollar is None:

@@ -8,11 +8,13 @@ from collections.abc import Iterator, Mapping
 from roaml.diagnostics import Finding, Severity
 from roaml.forest.cpp_types import ANY, STRING
 from roaml.forest.entries import Entries, Key
+from roaml.forest.forest import Forest
+from roaml.forest.scripts import scripts_of
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import forest_of
 from roaml.rules.support.scripts import fixes, scripts
-from roaml.script.infer import Type, assignments_as_conditions, check_condition, check_types
+from roaml.script.infer import Type, assignments_as_conditions, check_condition, check_types, created_in
 
 _TYPES = {
     STRING: Type.TEXT, "double": Type.REAL, "float": Type.REAL, "bool": Type.REAL,
@@ -25,7 +27,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     entries = entries_of(forest)
-    types = _types(entries)
+    types = {**_assigned(forest, entries), **_types(entries)}
     for tree, use, script, problems in scripts(context):
         own = tree.id.value if tree.id else ""
 
@@ -51,6 +53,18 @@ def _types(entries: Entries) -> dict[Key, Type]:
     }
     single = {key: next(iter(types)) for key, types in types_of.items() if len(types) == 1}
     return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}
+
+
+def _assigned(forest: Forest, entries: Entries) -> dict[Key, Type]:
+    """The types of the entries to which only scripts refer, if all that create them assign a text, or all a number."""
+    others = {key for key, uses in entries.by_entry.items() if not all(use.script for use in uses)}
+    types: dict[Key, set[Type]] = {}
+    for _, tree, node in forest.all_nodes:
+        own = tree.id.value if tree.id else ""
+        for use in scripts_of(forest, node):
+            for name, type_ in created_in(use.attribute.value):
+                types.setdefault(entries.entry(own, name), set()).add(type_)
+    return {key: given.pop() for key, given in types.items() if len(given) == 1 and key not in others}
 
 
 RULE = Rule("script-type", Severity.ERROR, "An operation of a script always fails.", tree=check)

@@ -47,6 +47,13 @@ def _like_a_node(forest: Forest, name: Name) -> Iterator[Finding]:
     known = CPP.nodes.get(name.value)
     if (known is not None and not known.until) or name.value in forest.models:
         yield RULE.at(name.span, f"there is a node `{name.value}`; a tree needs another name")
+        return
+    for library in forest.libraries:
+        if name.value in library.nodes:
+            title = library.nodes[name.value].library
+            message = f"{title} has a node `{name.value}`; a tree needs another name"
+            severity = Severity.ERROR if library.name in forest.settings.libraries else Severity.WARNING
+            yield RULE.at(name.span, message, severity=severity)
 
 
 def _instances(tree: Tree) -> Iterator[Finding]:

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.libraries import LIBRARIES, library
 from roaml.model.gaps import GapAct
 from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
@@ -21,6 +23,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         entry = context.system.entries.get(variable)
         if variable in set_ or (entry is not None and entry.written) or context.system.may(GapAct.VARIABLE, variable):
             continue
+        if variable in _hosted() and not any(bound.automaton.path for bound in ports):
+            continue
         close = close_names(variable, set_)
         for bound, span, written in places(context, variable, ports):
             if bound.port.direction is Direction.OUT:
@@ -28,6 +32,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
             else:
                 message = f"no node writes {described(variable, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, variable, close))
+
+
+@functools.cache
+def _hosted() -> frozenset[str]:
+    """The entries that programs which execute the nodes of libraries set."""
+    return frozenset(entry for name in LIBRARIES for entry in library(name).entries)
 
 
 RULE = Rule("blackboard-never-written", Severity.ERROR, "A blackboard variable is read but never written.", tree=check)

@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.forest.forest import Forest
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import NodeOutline, TreeOutline, main_tree
 from roaml.model.syntax import Name
@@ -16,9 +17,13 @@ from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listi
 from roaml.rules.support import misspelled
 from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
+from roaml.xml_syntax.escapes import escape
 
 MAIN = "MainTree"
 """The conventional name of the executed tree."""
+
+REFUSED_NAMES = ("", "Root", "root")
+"""Names of trees that BehaviorTree.CPP refuses."""
 
 MAX_EXECUTABLE_FIXES = 5
 """The maximum number of trees for which a fix offers to execute them."""
@@ -122,7 +127,7 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
         return
     if forest is None or close:
         yield RULE.at(name.span, message, *replacements(name.span, close))
-    elif name.value not in forest.trees and name.value not in forest.beside:
+    elif name.value not in (*forest.trees, *forest.beside, *forest.subtree_models):
         elsewhere = "" if close else " in this file, the files that it includes, or its folder"
         yield RULE.at(name.span, f"{message}{elsewhere}", *replacements(name.span, close), severity=Severity.WARNING)
 
@@ -196,7 +201,9 @@ def _subtrees(node: NodeOutline | None) -> Iterator[str]:
 
 def _main(context: TreeContext) -> Iterator[Finding]:
     executed, main = main_tree(context.files), context.file.main
-    if not isinstance(executed, tuple):
+    if context.forest is not None and main is not None:
+        yield from _main_of_forest(context, context.forest, main)
+    elif not isinstance(executed, tuple):
         if main is not None and executed.id and executed.id != main.value:
             yield from _another(context, main, executed.id)
     elif main is not None and executed:
@@ -206,6 +213,19 @@ def _main(context: TreeContext) -> Iterator[Finding]:
             yield from _ambiguous(context, executed)
         elif not _has_misspelled_tree(context):
             yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that can be executed")
+
+
+def _main_of_forest(context: TreeContext, forest: Forest, main: Name) -> Iterator[Finding]:
+    """Report a tree to execute that does not exist. Unlike in a system, BehaviorTree.CPP never executes another one."""
+    if main.value in forest.trees or any(tree.id and tree.id.value in REFUSED_NAMES for tree in context.file.trees):
+        return  # the tree may be one whose name is refused, which is reported
+    trees = context.file.trees
+    if len(trees) == 1 and trees[0].id is None and not context.missing_includes:
+        name = trees[0].element.name_span
+        fix = Fix("Add the `ID`", (TextEdit(Span(name.end, name.end), f' ID="{escape(main.value, chr(34))}"'),))
+        yield RULE.at(name, f"this tree needs the `ID` `{main.value}`: `main_tree_to_execute` names it", fix)
+        return
+    yield from _no_tree(context, main, forest.trees)
 
 
 def _ambiguous(context: TreeContext, candidates: tuple[str, ...]) -> Iterator[Finding]:

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Systems whose trees have leaves without plugins, with mocks for these (docs/spec/mocks.md#systems)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from roaml.api.checking import check
+from roaml.api.jani_files import PathError
+from roaml.model.kinds import FileKind
+from roaml.project.settings import Settings
+
+if TYPE_CHECKING:
+    from roaml.mocks.mock import Mock
+    from roaml.mocks.system_mocks import PlannedMock
+
+
+@dataclass(frozen=True, slots=True)
+class SystemMocks:
+    """Attributes:
+    texts: the system file, and tree files, with the mocks, and the new plugins, by path: for `load` and `target`.
+    planned: the plugins.
+    missing: the types of the leaves without a plugin that no mock fits.
+    events: how many nodes have a mock for what they ask about the world.
+    unused: the mocks that fit nothing.
+    """
+
+    texts: Mapping[str, str]
+    planned: tuple[PlannedMock, ...]
+    missing: tuple[str, ...]
+    events: int
+    unused: tuple[Mock, ...]
+
+
+def mock_system(
+    path: str, mocks: Sequence[Mock], ros_paths: Iterable[str] = (), settings: Settings | None = None
+) -> SystemMocks:
+    """Mocks for a system, without writing any file.
+
+    Raises:
+        PathError: the path is not a system file.
+    """
+    from roaml.mocks.mock import unused  # noqa: PLC0415 - a check starts faster without these
+    from roaml.mocks.system_mocks import defaults, event_edits, listing, plan  # noqa: PLC0415
+    from roaml.project.system_leaves import missing_leaves, plugin_paths  # noqa: PLC0415
+    from roaml.text import apply_edits  # noqa: PLC0415
+
+    analysis = check([path], ros_paths, settings).snapshot.analysis
+    main = os.path.abspath(path)
+    system, document = analysis.system(main), analysis.document(main)
+    if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
+        raise PathError(f"{path}: not a system file")
+    leaves = missing_leaves(analysis, system)
+    paths = plugin_paths(analysis, main, [leaf.type for leaf in leaves])
+    planned, missing = plan(leaves, mocks, Fraction(str(system.parameters.tick_rate)), paths)
+    texts = {mock.path: mock.text for mock in planned}
+    edits = event_edits(system, {p: tree for p in system.tree_paths if (tree := analysis.tree(p))}, mocks)
+    section = document.root.find("behavior_tree")
+    if planned and section is not None:
+        edits.setdefault(main, []).append(listing(section, [os.path.basename(mock.path) for mock in planned]))
+    events = sum(map(len, edits.values())) - (main in edits)
+    tree = analysis.tree(system.tree_paths[0]) if system.tree_paths else None
+    given = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None
+    if given is not None:
+        edits.setdefault(system.tree_paths[0], []).append(given)
+    for file, changes in edits.items():
+        source = analysis.source(file)
+        assert source is not None
+        texts[file] = apply_edits(source.text, tuple(changes))
+    nodes = [(name, leaf.type) for leaf in leaves for name in leaf.names]
+    nodes += [(instance.name, instance.plugin) for instance in system.instances]
+    return SystemMocks(texts, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))

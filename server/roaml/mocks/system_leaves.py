@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The leaves of a system's tree that have no plugin, with the ports that their mocks need
+(docs/spec/mocks.md#systems)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+from roaml.expr.types import BASE_TYPES, type_of_text
+from roaml.forest.forest import port_type
+from roaml.libraries import LIBRARIES, Node, library
+from roaml.mocks.plugin import MockPort
+from roaml.model.expand import Instance, PortConstant, Reference
+from roaml.model.system import System
+from roaml.roles import NodeKind
+from roaml.scxml.names import safe_name
+
+OPAQUE = "int32"
+"""The type of ports of C++ types that a model does not have, and to which the tree gives no constant."""
+_VALUES = {"bool": ("false", "true"), "string": ("''",), "float64": ("0.0", "1.0")}
+_TYPES = {"double": "float64", "float": "float32", "bool": "bool", "string": "string", "int": "int32",
+          "unsigned": "uint32"}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class SystemLeaf:
+    """A type of leaves without a plugin.
+
+    Attributes:
+        names: of its nodes, those without a name have that of the type.
+        ports: all that nodes of the type set.
+        optional: the ports that some of the nodes do not set.
+    """
+
+    type: str
+    names: tuple[str, ...]
+    is_condition: bool
+    succeeds: bool
+    ports: tuple[MockPort, ...]
+    optional: frozenset[str]
+
+
+_Slot: TypeAlias = tuple[str, str]
+"""A type of nodes and a port, or "" and a variable of the blackboard."""
+
+
+def declared_in_libraries(name: str) -> Node | None:
+    """The declaration of a node in one of the libraries."""
+    return next((library(known).nodes[name] for known in LIBRARIES if name in library(known).nodes), None)
+
+
+def leaves_without_plugins(system: System, declared: Callable[[str], Node | None]) -> tuple[SystemLeaf, ...]:
+    """The leaves without a plugin, by type in the order of the tree; without those whose names no machine can have.
+
+    Args:
+        declared: the declaration of a type of nodes in models, if there is one.
+    """
+    by_type: dict[str, list[Instance]] = {}
+    for instance in system.instances:
+        if system.plugin(instance.plugin)[1] is None and safe_name(instance.plugin) == instance.plugin:
+            by_type.setdefault(instance.plugin, []).append(instance)
+    leaves = {name: nodes for name, nodes in by_type.items() if not any(node.children for node in nodes)}
+    known = {name: declared(name) or declared_in_libraries(name) for name in leaves}
+    types = _Types(system, leaves, known)
+    return tuple(
+        SystemLeaf(
+            name,
+            tuple(dict.fromkeys(node.name for node in nodes)),
+            _is_condition(nodes, known[name]),
+            bool((declaration := known[name]) and declaration.succeeds),
+            tuple(types.ports(name)),
+            frozenset(key for node in nodes for key, _ in node.ports if not all(other.port(key) for other in nodes)),
+        )
+        for name, nodes in leaves.items()
+    )
+
+
+def _is_condition(nodes: list[Instance], known: Node | None) -> bool:
+    if known is not None and (known.kind is NodeKind.CONDITION or known.running is False):
+        return True
+    return all(node.condition for node in nodes)
+
+
+@dataclass
+class _Types:
+    """Finds the types of ports: all ports that are bound to one variable have the same type."""
+
+    system: System
+    leaves: Mapping[str, list[Instance]]
+    known: Mapping[str, Node | None]
+    parents: dict[_Slot, _Slot] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.types: dict[_Slot, str] = {}
+        slots: dict[_Slot, list[str]] = {}
+        for name, nodes in self.leaves.items():
+            for key, value in (setting for node in nodes for setting in node.ports):
+                slot = (name, key)
+                slots.setdefault(slot, [])
+                if isinstance(value, Reference):
+                    self.join(slot, ("", value.variable))
+                    slots.setdefault(("", value.variable), [])
+                elif isinstance(value, PortConstant):
+                    slots[slot].append(type_of_text(value.text))
+        ranks: dict[_Slot, list[tuple[int, str]]] = {}
+        for slot, literals in slots.items():
+            ranks.setdefault(self.top(slot), []).extend(self.candidates(slot, literals))
+        self.types = {top: min(found)[1] for top, found in ranks.items() if found}
+
+    def candidates(self, slot: _Slot, literals: list[str]) -> Iterator[tuple[int, str]]:
+        """Possible types of a slot, each with its rank: plugins first, then declarations, then constants."""
+        owner, key = slot
+        if not owner:
+            if any(bound.port.type in BASE_TYPES for bound in self.system.blackboard.get(key, ())):
+                yield 0, self.system.variable_type(key)
+            return
+        known = self.known[owner]
+        port = known.port(key) if known is not None else None
+        declared = _simple(port_type(port)) if port is not None else None
+        if declared is not None:
+            yield 1, declared
+        elif port is not None and port_type(port) != "any":
+            yield 3, OPAQUE
+        if literals:
+            yield 2, literals[0] if len(set(literals)) == 1 else "string"
+
+    def ports(self, name: str) -> Iterator[MockPort]:
+        known = self.known[name]
+        keys = dict.fromkeys(key for node in self.leaves[name] for key, _ in node.ports)
+        for key in keys:
+            port = known.port(key) if known is not None else None
+            type_ = self.types.get(self.top((name, key)), "int32")
+            bound = [value for node in self.leaves[name] for own, value in node.ports if own == key]
+            is_output = port.direction.writes if port is not None else self.is_written(bound)
+            variables = [value.variable for value in bound if isinstance(value, Reference)]
+            if len(variables) < len(bound):
+                is_output = False  # a constant can be given to an input only
+            elif not is_output and not all(map(self.has_writer, variables)):
+                # The program that runs the tree sets it. Mocks read nothing, so any value will do.
+                yield MockPort(key, type_, is_output=True, values=_values(type_)[:1])
+                continue
+            yield MockPort(key, type_, is_output, _values(type_) if is_output else ())
+
+    def is_written(self, bound: list[PortConstant | Reference]) -> bool:
+        """Whether a port that no model describes is an output: if nothing else writes its variable."""
+        variables = [value.variable for value in bound if isinstance(value, Reference)]
+        return bool(variables) and not any(map(self.has_writer, variables))
+
+    def has_writer(self, variable: str) -> bool:
+        """Whether the tree or a leaf writes a variable."""
+        return variable in self.written or self.system.writes_variable(variable)
+
+    @cached_property
+    def written(self) -> frozenset[str]:
+        """The variables that leaves write, as far as their ports are declared."""
+        variables = set()
+        for name, nodes in self.leaves.items():
+            known = self.known[name]
+            for key, value in (setting for node in nodes for setting in node.ports):
+                port = known.port(key) if known is not None else None
+                if isinstance(value, Reference) and port is not None and port.direction.writes:
+                    variables.add(value.variable)
+        return frozenset(variables)
+
+    def join(self, left: _Slot, right: _Slot) -> None:
+        first, second = self.top(left), self.top(right)
+        if first != second:
+            self.parents[first] = second
+
+    def top(self, slot: _Slot) -> _Slot:
+        while slot in self.parents:
+            slot = self.parents[slot]
+        return slot
+
+
+def _simple(type_: str) -> str | None:
+    """The type in a model of a C++ type by its normal name; `None` if there is none."""
+    if type_ in _TYPES:
+        return _TYPES[type_]
+    return type_ if type_ in BASE_TYPES else None
+
+
+def _values(type_: str) -> tuple[str, ...]:
+    return _VALUES.get(type_, ("0.0", "1.0") if type_.startswith("float") else ("0", "1"))

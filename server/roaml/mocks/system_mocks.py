@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mocks for a system: plugins for the leaves of its tree that have none (docs/spec/mocks.md#systems)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from xml.sax.saxutils import quoteattr
+
+from roaml.libraries.node import EVENT_ATTRIBUTE, WORLD_NODES
+from roaml.mocks.mock import ALL, Mock, mock_for
+from roaml.mocks.plugin import mock_plugin
+from roaml.mocks.system_leaves import SystemLeaf
+from roaml.model.expand import node_at
+from roaml.model.system import System
+from roaml.model.tree import TreeFile
+from roaml.text import Span, TextEdit
+from roaml.xml_syntax import Element
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedMock:
+    """A plugin for a type of leaves. `path` is where its file is, or would be."""
+
+    leaf: SystemLeaf
+    mock: Mock
+    path: str
+    text: str
+
+
+def plan(
+    leaves: Iterable[SystemLeaf], mocks: Sequence[Mock], rate: Fraction, paths: Mapping[str, str]
+) -> tuple[list[PlannedMock], list[SystemLeaf]]:
+    """The plugins for leaves, and the leaves that no mock fits.
+
+    Args:
+        rate: ticks of the tree in a second.
+        paths: of the new plugins, by type of leaf.
+    """
+    planned: list[PlannedMock] = []
+    missing: list[SystemLeaf] = []
+    for leaf in leaves:
+        name = leaf.names[0] if len(leaf.names) == 1 else leaf.type
+        mock = mock_for(mocks, name, leaf.type, leaf.succeeds)
+        if mock is None:
+            missing.append(leaf)
+            continue
+        text = mock_plugin(leaf.type, mock, rate, leaf.ports, is_condition=leaf.is_condition)
+        planned.append(PlannedMock(leaf, mock, paths[leaf.type], text))
+    return planned, missing
+
+
+def listing(section: Element, sources: Iterable[str]) -> TextEdit:
+    """The edit that lists plugins at the end of a section on the line of its end, so that all lines keep their
+    numbers."""
+    close = section.close_name_span
+    at = section.open_span.end if close is None else close.start - len("</")
+    entries = "".join(f'<input type="bt-plugin-ascxml" src={quoteattr(source)} />' for source in sources)
+    return TextEdit(Span(at, at), entries)
+
+
+def defaults(root: Element, leaves: Iterable[SystemLeaf]) -> TextEdit | None:
+    """The edit of a tree file that gives ports of mocks which not all nodes set a default, on the line of its end;
+    `None` if there are none."""
+    models = "".join(f"<Action ID={quoteattr(leaf.type)}>{_ports(leaf)}</Action>" for leaf in leaves if leaf.optional)
+    close = root.close_name_span
+    if not models or close is None:
+        return None
+    at = close.start - len("</")
+    return TextEdit(Span(at, at), f"<TreeNodesModel>{models}</TreeNodesModel>")
+
+
+def _ports(leaf: SystemLeaf) -> str:
+    return "".join(
+        f'<output_port name={quoteattr(port.key)} default="{{=}}" />'
+        if port.is_output
+        else f'<input_port name={quoteattr(port.key)} default="{_DEFAULTS.get(port.type, "0")}" />'
+        for port in leaf.ports
+        if port.key in leaf.optional
+    )
+
+
+_DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
+
+
+def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
+    """The edits that give nodes which ask about the world the probabilities of their mocks, by file."""
+    exact = [mock for mock in mocks if mock.pattern != ALL]
+    edits: dict[str, dict[int, TextEdit]] = {}
+    for instance in system.instances:
+        mock = mock_for(exact, instance.name, instance.plugin)
+        if mock is None or instance.plugin not in WORLD_NODES or system.plugin(instance.plugin)[0]:
+            continue
+        node = node_at(files[instance.source.path], instance.source)
+        if node is None:
+            continue
+        given = node.element.get(EVENT_ATTRIBUTE)
+        at = node.element.name_span.end
+        edit = TextEdit(Span(at, at), f' {EVENT_ATTRIBUTE}="{mock.probability!r}"')
+        if given is not None:
+            edit = TextEdit(given.value_span, repr(mock.probability))
+        edits.setdefault(instance.source.path, {})[edit.span.start] = edit
+    return {path: list(changes.values()) for path, changes in edits.items()}

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The leaves of a system's tree that have no plugin, and paths for their mocks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from roaml.forest.forest import node_of
+from roaml.libraries import Node
+from roaml.mocks.system_leaves import SystemLeaf, leaves_without_plugins
+from roaml.model.system import System
+from roaml.project.analysis import Analysis
+from roaml.project.paths import folder_of, full
+from roaml.text import SourceFile
+
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def missing_leaves(analysis: Analysis, system: System) -> tuple[SystemLeaf, ...]:
+    """The leaves without a plugin, with the ports that models in the tree files and libraries declare."""
+    models: dict[str, Node] = {}
+    for path in system.tree_paths:
+        file = analysis.tree(path)
+        for model in file.models if file else ():
+            if model.id is not None and model.kind != "SubTree":
+                models.setdefault(model.id.value, node_of(model))
+    return leaves_without_plugins(system, models.get)
+
+
+def plugin_paths(analysis: Analysis, system: str, types: Iterable[str]) -> dict[str, str]:
+    """Type of node -> a path beside the system file at which there is no file."""
+    paths: dict[str, str] = {}
+    for name in types:
+        stem, number = f"mock_{_CAMEL.sub('_', name).lower()}", 1
+        path = full(folder_of(system), f"{stem}.ascxml")
+        while isinstance(analysis.files.read(path), SourceFile) or path in paths.values():
+            number += 1
+            path = full(folder_of(system), f"{stem}_{number}.ascxml")
+        paths[name] = path
+    return paths

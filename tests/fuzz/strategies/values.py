@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Random JANI networks: the exact values over all states, and the traces of the same networks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from random import Random
+
+from scipy.stats import binom
+
+from fuzz.networks import Json, bounded
+from fuzz.strategy import Failure, Strategy
+from roaml import api
+from roaml.explicit.space import LimitError, StateLimits, explore
+from roaml.explicit.values import NoValueError, values_of
+from roaml.jani.reader import read_model
+from roaml.json_syntax import parse
+from roaml.smc.fault import FaultError
+from roaml.smc.pool import Alone
+from roaml.smc.run import FIXED, Options
+
+MAX_STATES = 20_000
+TRACES = 2_000
+STEPS = 2_000
+ERROR = 1e-9
+"""The probability with which a correct answer is a failure: once in a billion cases."""
+TOLERANCE = 1e-9
+"""Of the bounds of exact values, which are rounded."""
+
+
+@dataclass
+class Network:
+    """Attributes:
+    written: the model.
+    """
+
+    seed: int
+    written: Json
+
+    def description(self) -> Iterator[str]:
+        yield f"a network of {len(self.written['automata'])} automata"
+
+    def files(self) -> dict[str, str | bytes]:
+        return {"model.jani": json.dumps(self.written, indent=1, ensure_ascii=False)}
+
+    def run(self) -> Iterator[Failure]:
+        value, _ = parse(json.dumps(self.written))
+        model, _ = read_model(value, "model.jani")
+        assert model is not None
+        try:
+            checker = api.checker(model)
+            asked = checker.asked[0]
+            space = explore(checker, asked, StateLimits(states=MAX_STATES))
+            if space.problem is not None:
+                return
+            exact = values_of(space)
+        except (FaultError, LimitError, NoValueError):
+            return
+        options = Options(method=FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
+        try:
+            tally = checker.answer(asked, options, Alone(checker.compiled(asked))).tally
+        except FaultError as error:
+            yield Failure("a trace has an error, and no state has", str(error))
+            return
+        lower, upper = exact.uniform
+        # Each interval contains its value. So those of ordered values may overlap.
+        ordered = exact.minimum.lower - TOLERANCE <= upper and lower <= exact.maximum.upper + TOLERANCE
+        if not ordered or any(low > high for low, high in (exact.minimum, exact.uniform, exact.maximum)):
+            yield Failure("the exact values are not in order", f"{exact}")
+        successes, possible = tally.successes, tally.successes + tally.undecided
+        too_many = binom.sf(successes - 1, TRACES, min(1.0, upper + TOLERANCE))
+        too_few = binom.cdf(possible, TRACES, max(0.0, lower - TOLERANCE))
+        if min(too_many, too_few) < ERROR:
+            details = f"{successes} to {possible} of {TRACES} traces; the exact value is in [{lower!r}, {upper!r}]"
+            yield Failure("the exact value contradicts the traces", details)
+
+
+def make(seed: int) -> Network:
+    return Network(seed, bounded(Random(seed)))
+
+
+STRATEGY = Strategy("values", "compares exact values of random JANI networks with their traces", make)
