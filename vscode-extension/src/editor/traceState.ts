@@ -31,6 +31,8 @@ export class TraceStateView implements vscode.Disposable, vscode.TreeDataProvide
         const { Collapsed, Expanded, None } = vscode.TreeItemCollapsibleState;
         const isOpen = this.open.get(row.name) ?? row.hasChanged;
         const item = new vscode.TreeItem(row.name, row.rows.length === 0 ? None : isOpen ? Expanded : Collapsed);
+        // A group that opens or closes is another entry: VS Code keeps the state of entries that it knows.
+        if (row.rows.length > 0) item.id = `${row.name}:${isOpen}`;
         const was = row.before === null ? "" : vscode.l10n.t("was {0}", row.before === "" ? "–" : row.before);
         item.description = [row.value, was].filter((text) => text !== "").join("  ← ");
         item.tooltip = [row.name, item.description].join(": ");
