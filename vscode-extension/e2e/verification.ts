@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Locator } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
@@ -8,6 +9,27 @@ import { write } from "./support/workbench";
 
 export function verification(stage: Stage): void {
     stage.use();
+
+    stage.test(
+        "a sentence becomes a verified property",
+        () => sample(MEND),
+        async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: New Property…");
+            const choice = window.page.locator(".quick-input-widget .monaco-list-row");
+            await choice.filter({ hasText: "A happens at some time" }).first().waitFor();
+            await window.screenshot("new-property");
+            await choice.filter({ hasText: "A happens at some time" }).first().click();
+            await choice.filter({ hasText: "a message is published on" }).first().click();
+            await window.page.locator(".quick-input-title", { hasText: "within how many seconds" }).waitFor();
+            await window.press("Enter");
+            await lens(window, "Verify").first().waitFor();
+            await window.until(() => fs.readFileSync(path.join(window.folder, "main.xml"), "utf8").includes('"xml"'));
+            await lens(window, "Verify").first().click();
+            await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor({ timeout: TIMEOUT_MS });
+        },
+    );
 
     stage.test(
         "a lens verifies a property and shows the result",
