@@ -26,7 +26,7 @@ export function verification(stage: Stage): void {
             await window.press("Enter");
             await lens(window, "Verify").first().waitFor();
             await window.until(() => fs.readFileSync(path.join(window.folder, "main.xml"), "utf8").includes('"xml"'));
-            await lens(window, "Verify").first().click();
+            await lens(window, "Verify").last().click();
             await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor({ timeout: TIMEOUT_MS });
         },
     );
@@ -91,6 +91,9 @@ export function verification(stage: Stage): void {
         await selected(window)
             .filter({ hasText: end ?? "" })
             .waitFor();
+        // The list has only rows that are visible, so it is scrolled to its start.
+        await selected(window).first().click();
+        await window.press("Home");
         await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
         await state(window, "battery").filter({ hasText: "40  ← was 100" }).first().waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
