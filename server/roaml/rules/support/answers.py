@@ -33,7 +33,7 @@ SENT = {
     DutyKind.REQUEST: ProtocolPart.RESPONSE,
     DutyKind.RESULT: ProtocolPart.RESULT,
 }
-"""The events that answer a duty; a goal is accepted or rejected."""
+"""The kind of duty -> the event that answers it. The decision on a goal is missing: it has two events."""
 _HANDLED_BY = {DutyKind.TICK: (ProtocolPart.BT_TICK, "bt_tick"), DutyKind.HALT: (ProtocolPart.BT_HALT, "bt_halt")}
 ELEMENTS = {
     ProtocolPart.BT_STATUS: ("bt_return_status",),
