@@ -36,7 +36,7 @@ class Sentences(TypedDict):
     hasClock: bool
 
 
-class CreatedProperty(TypedDict):
+class NewPropertyEdit(TypedDict):
     """`uri` is the property file, `name` the name of the property."""
 
     edit: types.WorkspaceEdit
@@ -67,7 +67,7 @@ def register(context: Context) -> None:
         }
 
     @context.feature(NEW_PROPERTY)
-    def create_property(params: Any) -> CreatedProperty:
+    def create_property(params: Any) -> NewPropertyEdit:
         context.trust.require(NEW_PROPERTY)
         path, within = session.convert.path(document_uri(params)), string(params, "within")
         snapshot = session.moment().snapshot(path)

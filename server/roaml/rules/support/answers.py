@@ -90,7 +90,7 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     missing on all paths.
 
     Steps are left out if another finding explains them: an element that cannot be read may be the answer, and a
-    condition that never decides (shadowed-transition) is probably wrong.
+    condition that has no effect because of earlier conditions (shadowed-transition) is probably wrong.
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):
