@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `pyproject.toml` cannot say: the wheel carries the top-level `schemas/` as `roaml/schemas`, and the kernel of
-the model checker is compiled where there is a C compiler.
+"""The parts of the build that `pyproject.toml` cannot describe: the wheel contains the top-level folder `schemas/` as
+`roaml/schemas`, and the kernel of the model checker is compiled if there is a C compiler.
 
-Without one, or with AS2FM_PURE_PYTHON=1, the installation has the same kernel as plain Python: slower, same results.
-With it the wheel carries the kernel's C text, too, which `python -m as2fm_lsp.cli.build_kernel` compiles where it is.
+Without a C compiler, or with AS2FM_PURE_PYTHON=1, the same kernel is installed as plain Python: it is slower and has
+the same results. With AS2FM_PURE_PYTHON=1, the wheel also contains the kernel as C source, which
+`python -m as2fm_lsp.cli.build_kernel` compiles in the installation.
 """
 
 import os
@@ -20,7 +21,7 @@ DIRECTIVES = {
     "annotation_typing": False,
     "boundscheck": False,
     "cdivision": True,
-    "emit_code_comments": False,  # They would make the C text that a wheel carries 40 percent larger.
+    "emit_code_comments": False,  # Comments would make the C source in a wheel 40 % larger.
     "initializedcheck": False,
     "language_level": 3,
     "wraparound": False,
@@ -28,31 +29,31 @@ DIRECTIVES = {
 
 
 def extensions() -> list[Extension]:
-    """The compiled modules, unless they are not wanted or Cython is missing. If they do not compile, the build goes on
-    without."""
+    """The modules to compile; none with AS2FM_PURE_PYTHON=1 or without Cython. The build leaves out a module that
+    does not compile."""
     return [] if IS_PURE else translated_modules()
 
 
 def translated_modules() -> list[Extension]:
-    """The modules as C; none if Cython is missing."""
+    """The modules, translated to C; none without Cython."""
     try:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    # Without contraction: multiplying and adding in one instruction would round otherwise than Python does.
+    # No contraction: one instruction that multiplies and adds would round differently from Python.
     flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv", "-ffp-contract=off"]
-    wanted = [Extension(name, [f"server/{name.replace('.', '/')}.py"], extra_compile_args=flags) for name in COMPILED]
-    made: list[Extension] = cythonize(
-        wanted, compiler_directives=DIRECTIVES, include_path=["server"], build_dir="build/cython", quiet=True
+    modules = [Extension(name, [f"server/{name.replace('.', '/')}.py"], extra_compile_args=flags) for name in COMPILED]
+    translated: list[Extension] = cythonize(
+        modules, compiler_directives=DIRECTIVES, include_path=["server"], build_dir="build/cython", quiet=True
     )
-    for module in made:
-        module.optional = True  # Cython does not keep that of `wanted`.
-    return made
+    for module in translated:
+        module.optional = True  # Cython does not copy this attribute from `modules`.
+    return translated
 
 
 class BuildWithMore(build_py):
-    """Copies the schemas beside the package that reads them; an editable install reads them where they are. A wheel
-    without the compiled kernel gets its C text."""
+    """Also copies the schemas into the package that reads them; an editable installation reads the original files. A
+    wheel without the compiled kernel also contains the kernel as C source."""
 
     def run(self) -> None:
         super().run()
@@ -67,12 +68,12 @@ class BuildWithMore(build_py):
         if self.editable_mode:
             return []
         package = Path(self.build_lib) / "roaml"
-        found = [(schema, package / "schemas" / schema.name) for schema in sorted(SCHEMAS.iterdir())]
+        copies = [(schema, package / "schemas" / schema.name) for schema in sorted(SCHEMAS.iterdir())]
         if IS_PURE:
             for module in translated_modules():
                 _, *folders, name = module.name.split(".")
-                found.append((Path(module.sources[0]), package.joinpath(*folders, f"{name}.c")))
-        return found
+                copies.append((Path(module.sources[0]), package.joinpath(*folders, f"{name}.c")))
+        return copies
 
 
 setup(cmdclass={"build_py": BuildWithMore}, ext_modules=extensions())

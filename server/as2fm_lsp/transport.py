@@ -221,7 +221,7 @@ class Endpoint(LanguageServer):
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         self.has_parent = True
-        # A separate reader: Python's own is locked while a thread reads it, and the process could not end.
+        # Open a second reader: a thread that reads `sys.stdin` keeps it locked, so the process could not end.
         source = stdin or open(sys.stdin.fileno(), "rb", closefd=False)  # noqa: SIM115 - read until the process ends
         self.serve(source, stdout or sys.stdout.buffer)
 

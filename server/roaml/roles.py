@@ -15,8 +15,8 @@ class RoleValue(Vocabulary):
 
 
 class SymbolKind(RoleValue):
-    """The kind of a symbol. Values of attributes define or name symbols of most kinds; symbols of the kinds in
-    `ELSEWHERE` appear only in the features of the editor."""
+    """The kind of a symbol. Values of attributes define or name symbols of most kinds. No attribute defines or names
+    symbols of the kinds in `ELSEWHERE`, which only features of the editor use."""
 
     ACTION = "action"
     ACTION_CLIENT = "action-client"

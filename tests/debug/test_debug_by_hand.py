@@ -66,9 +66,9 @@ def test_the_console_publishes_and_completes(client: Client) -> None:
 @pytest.mark.parametrize(
     ("fields", "reason"),
     [
-        ({"data": 300}, "`data` is between 0 and 255, not 300"),
-        ({"data": 0.5}, "`data` is an integer"),
-        ({"data": True}, "`data` is a number, not true"),
+        ({"data": 300}, "`data` must be between 0 and 255, not 300"),
+        ({"data": 0.5}, "`data` must be an integer"),
+        ({"data": True}, "`data` must be a number, not true"),
         ({"x": 1}, "there is no field `x`; there are data"),
         ([1], "must be an object"),
         ("{data: ", "a value"),

@@ -61,7 +61,7 @@ export interface Migration {
     readonly problem: string;
 }
 
-/** A sentence of which a property is made. `letters` are the names of its events in `text`. */
+/** A property as a sentence. `letters` are the names of its events in `text`. */
 export interface PropertySentence {
     readonly id: string;
     readonly text: string;
@@ -69,7 +69,7 @@ export interface PropertySentence {
     readonly needsTime: boolean;
 }
 
-/** What properties of a system can say. `events` are the events that it sends, in words. */
+/** The sentences for properties of a system. `events` are the events that it sends, in words. */
 export interface PropertySentences {
     readonly sentences: readonly PropertySentence[];
     readonly events: readonly string[];

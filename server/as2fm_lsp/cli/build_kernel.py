@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m as2fm_lsp.cli.build_kernel`: compile the model checkers in their installation.
 
-A universal wheel contains their inner loops as Python and as C code that Cython has generated from it. If there is a C
-compiler, as on most machines with ROS, this makes verification about a hundred times as fast. If the compilation of one
-module fails, no module is replaced.
+A universal wheel contains their inner loops as Python and as C code (0.2 MB) that Cython has generated from it. VS Code
+runs this command in the private environment of the extension. If there is a C compiler, as on most machines with ROS,
+this makes verification about a hundred times as fast. If the compilation of one module fails, no module is replaced.
 """
 
 from __future__ import annotations

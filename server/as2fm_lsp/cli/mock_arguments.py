@@ -14,7 +14,7 @@ MAX_NAMES = 8
 
 
 def mocks_in(options: argparse.Namespace) -> tuple[Mock, ...]:
-    """The mocks of the arguments, those in a file last.
+    """The mocks given with `--mock`, followed by those in the file given with `--mocks`.
 
     Raises:
         MockError: one is not valid, or the file cannot be read as text.

@@ -94,7 +94,7 @@ def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
         raise _UsageError(f"--tcp needs HOST:PORT, not {tcp}")
     token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe()
     if len(token) < MIN_TOKEN_CHARACTERS:
-        raise _UsageError(f"{TOKEN} is too short to be a secret; it takes {MIN_TOKEN_CHARACTERS} characters or more")
+        raise _UsageError(f"{TOKEN} is too short to be a secret; use at least {MIN_TOKEN_CHARACTERS} characters")
     host = host.removeprefix("[").removesuffix("]") or "127.0.0.1"
     try:
         with sockets.listening_on(host, int(port), allow_remote) as listeners:

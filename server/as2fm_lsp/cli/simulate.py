@@ -107,9 +107,10 @@ def _property(options: argparse.Namespace, target: VerificationTarget) -> str | 
     if options.until not in names:
         return options.property  # type: ignore[no-any-return]
     if options.property not in (None, options.until):
-        raise UsageError(f"--until {options.until} and --property {options.property} name two properties; name one")
+        both = f"--until {options.until} and --property {options.property}"
+        raise UsageError(f"{both} name two properties; give only one of them")
     if options.script is not None:
-        raise UsageError(f"--until {options.until}: with --script, the property is the one of the saved run")
+        raise UsageError(f"--until {options.until}: the saved run determines the property; omit --until or --script")
     return str(options.until)
 
 

@@ -20,7 +20,8 @@ NEW_PROPERTY = "as2fm/newProperty"
 
 
 class Sentence(TypedDict):
-    """`text` names its conditions by the `letters`; `id` is sent back with the events in their order."""
+    """A property as a sentence. `letters` are the names of its conditions in `text`. The client sends `id` back, with
+    one event for each letter, in their order."""
 
     id: str
     text: str

@@ -74,7 +74,7 @@ def _is_internal(event: str) -> bool:
 
 
 def sending(session: Session, sources: Sources, name: str, fields: Value) -> Intervention:
-    """The change of the state that sends an event.
+    """The change of the state of the model by which an event is sent.
 
     Args:
         name: the event; or the topic, service or action, if only one of its events can be sent.
@@ -237,16 +237,16 @@ class _Cells:
         if isinstance(old, bool):
             _expect(value, bool, path, "a boolean")
         elif isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise WatchError(f"`{path}` is a number, not {shown(value)}")
+            raise WatchError(f"`{path}` must be a number, not {shown(value)}")
         elif isinstance(old, float):
             value = float(value)
         else:
             if value != int(value):
-                raise WatchError(f"`{path}` is an integer, not {shown(value)}")
+                raise WatchError(f"`{path}` must be an integer, not {shown(value)}")
             value = int(value)
             low, high = INTEGER_RANGES.get(str(type_), (-(2**63), 2**63 - 1))
             if not low <= value <= high:
-                raise WatchError(f"`{path}` is between {low} and {high}, not {value}")
+                raise WatchError(f"`{path}` must be between {low} and {high}, not {value}")
         assert isinstance(value, (bool, int, float))
         self._put(name, index, value)
 
@@ -283,5 +283,5 @@ def _replaced(whole: Plain, index: tuple[int, ...], value: Plain) -> Plain:
 
 def _expect(value: Value, type_: type, path: str, what: str) -> Any:
     if not isinstance(value, type_):
-        raise WatchError(f"`{path}` is {what}, not {shown(value)} ({type_of(value)})")
+        raise WatchError(f"`{path}` must be {what}, not {shown(value)} ({type_of(value)})")
     return value

@@ -188,7 +188,7 @@ class Debugger:
         return self._stop(StopReason.PAUSE)
 
     def _settle(self) -> None:
-        """Move the session to the position of the movement."""
+        """End the movement. After a backward movement, go to the position that it has reached."""
         movement, self._movement = self._movement, None
         if movement is not None and not movement.forwards:
             self.session.jump(movement.position)

@@ -211,7 +211,7 @@ def _call(expr: Call, scope: Scope) -> Value:
 def _power(arguments: Sequence[float]) -> float:
     power = arguments[0] ** arguments[1]
     if isinstance(power, complex):
-        raise WatchError("the power of a negative number with a fraction is not a number")
+        raise WatchError("a negative number to the power of a fraction is not a real number")
     return float(power)
 
 

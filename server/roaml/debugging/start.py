@@ -87,6 +87,6 @@ def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[],
         if is_cancelled():
             raise StartError("the search for a trace was cancelled")
     count = begin.nth - missing
-    what = "in which `{}` does not hold" if verdict == FALSE else "in which `{}` holds"
-    raise StartError(f"{count} of {MAX_TRACES:,} traces with seed {begin.seed} are traces {what.format(name)}; "
-        f"there is no number {begin.nth}; use another seed")  # fmt: skip
+    holds = "does not hold" if verdict == FALSE else "holds"
+    counted = f"`{name}` {holds} in only {count} of {MAX_TRACES:,} traces with seed {begin.seed}"
+    raise StartError(f"{counted}, but trace {begin.nth} of these is requested; use another seed")

@@ -538,15 +538,15 @@ class Solver:
         return 0
 
     def _keep_finite(self, first: int, last: int) -> None:
-        """Fix the values of states from which no scheduler reaches the goal almost surely. The other states stay in one
-        set."""
+        """Fix the values of the states from which no scheduler reaches the goal almost surely: they are infinite. The
+        other states stay in one set."""
         own = self.sets
         self.sets += 1
         for i in range(first, last):
             self.set_of[self.order[i]] = own
         while True:
-            # Find the states from which the outside of the set or the goal can be reached without leaving the finite
-            # states.
+            # Find the states from which the goal, or a state outside the set, can be reached through finite states
+            # only.
             reaching = self.sets
             self.sets += 1
             grows = 1
@@ -882,7 +882,8 @@ class Solver:
         return leaves
 
     def _lower_is_proven(self, first: int, last: int) -> int:
-        """Whether lower bounds are proved although rewards may be negative: no step decreases the values."""
+        """Whether the values are proved to be lower bounds although rewards may be negative: a step decreases none of
+        them."""
         for i in range(first, last):
             own = self.group[self.order[i]]
             if own == self.order[i] and self.fixed[own] == 0:

@@ -3,8 +3,9 @@
 
 - Reading raises no exception: parts that cannot be read are reported and left out, and the other parts are read. A
   model that is read without errors can be written, checked and run.
-- The findings have the codes `jani-syntax` (JANI does not allow the shape), `jani-name` (undefined or declared twice)
-  and `jani-type`. Errors in the JSON itself are not reported again; `roaml.json_syntax.parse` reports them.
+- The findings have the codes `jani-syntax` (the structure is not that of JANI), `jani-name` (a name is undefined or
+  declared twice) and `jani-type` (the type of an expression does not fit). Errors in the JSON itself are not reported
+  again; `roaml.json_syntax.parse` reports them.
 - Every origin is a position in the file.
 """
 

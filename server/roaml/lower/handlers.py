@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Common parts of the handlers of services and actions. A handler stores the fields of an event in its own variables,
-and sends them on."""
+and forwards them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from roaml.text import Location
 
 
 def copied(fields: Iterable[str], sent: Set[str], origin: Location) -> Body:
-    """The assignments that store the fields of the received event that its sender sends."""
+    """Assignments that store `fields` of the received event, except those that its sender does not send."""
     return tuple(Assign(name(field), event_data(field), origin) for field in fields if field in sent)
 
 

@@ -53,8 +53,8 @@ class _Reader:
         self.object(schema, Name(title.value, title.content_span))
 
     def unread(self) -> None:
-        """After findings, declare the definitions that are not reached as incomplete structs, because an unreadable
-        part may use them."""
+        """If there are findings, declare the definitions that are not reached as incomplete structs, because an
+        unreadable part may use them."""
         if not self.findings or not isinstance(self.value, JsonObject):
             return
         for section in _DEFINITIONS:

@@ -27,7 +27,7 @@ def variable_problem(name: str) -> str:
         return f"`{name}` is a reserved word of ECMAScript and cannot be the name of a variable"
     if not VARIABLE.match(name):
         return (
-            f"`{name}` is not a valid variable name: it must begin with a letter and contain only letters, "
+            f"`{name}` is not a valid variable name: it must begin with a letter or `_` and contain only letters, "
             "digits and `_`"
         )
     if name.endswith("_"):

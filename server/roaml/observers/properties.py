@@ -74,7 +74,7 @@ class Window:
 
     def __post_init__(self) -> None:
         if self.lower < 0 or (self.upper is not None and self.upper < self.lower):
-            raise ValueError(f"there is no time from {self.lower} to {self.upper}")
+            raise ValueError(f"invalid range of times: from {self.lower} to {self.upper}")
 
     @property
     def is_unbounded(self) -> bool:

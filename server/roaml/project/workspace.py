@@ -163,8 +163,8 @@ class Workspace:
         return Snapshot(analysis, RuleRunner(analysis, self.settings), self.roots, self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:
-        """A new view of the disk. The folder of each named system is part of the workspace, also its folder after links
-        are resolved."""
+        """A new view of the disk. The folder of each named system is part of the workspace, and so is the folder
+        to which its symbolic links lead."""
         settings = self.settings
         named = (folder for path in self._named for folder in (os.path.dirname(path), _real_folder(path)))
         return DiskFiles(

@@ -284,7 +284,7 @@ class Run:
         )
 
     def _first_ways(self, slot: int) -> list[int]:
-        """The first way of each enabled edge of a slot, in the order in which the kernel numbers them."""
+        """For each enabled edge of a slot the number of its first destination, in the order of the kernel."""
         program = self._program
         instance = program.slot_instance[slot]
         location = self._kernel.location(instance)

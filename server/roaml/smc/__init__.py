@@ -3,7 +3,11 @@
 
 - Depends on `roaml.jani`, not on SCXML, XML, robots or the disk.
 - `compile` turns a model into flat arrays once; `kernel` simulates them. `kernel.py` is plain Python and is compiled by
-  Cython, with the types in `kernel.pxd`, if there is a compiler. Both generate the same traces.
+  Cython, with the types in `kernel.pxd`, if there is a compiler. Both generate the same traces. A step takes 0.07 to
+  0.11 µs compiled, and 10 µs as Python. Numba was measured as an alternative: it takes 0.5 s to import, 0.3 s to load a
+  cached function and 305 MB (two cores of an AMD EPYC), while a whole verification takes 0.8 s.
+- The kernel caches no states. A step evaluates again only what it changes: the actions of the locations that are left
+  and entered, and the guards that read a changed variable.
 - A trace is a pure function of the compiled model, the seed and its number; neither the number of workers nor the order
   of work influences it.
 - An undefined operation of a model (an index outside of an array, a division by zero) is a `Fault` with its position.

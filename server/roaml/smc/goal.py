@@ -74,7 +74,7 @@ class Threshold:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """The question about all traces.
+    """What a property asks about all traces, such as the minimum of a probability.
 
     Attributes:
         name: the name of the property.

@@ -86,8 +86,9 @@ def candidates(
 
     Args:
         automata: the number of automata of the system.
-        per_automaton: the number of schedulers of both kinds for per_automaton automaton.
-        memoryless, memory: the numbers of schedulers of these kinds.
+        per_automaton: the number of schedulers that starve an automaton, for each automaton; as many favour it.
+        memoryless, memory: the number of schedulers that decide by the state alone, and of those that also decide by
+            the last step.
     """
     biased = [
         kind | (automaton << _AUTOMATON_SHIFT) | number

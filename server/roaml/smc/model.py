@@ -108,7 +108,7 @@ class ModelChecker:
         return self._compilation.legend
 
     def compiled(self, asked: CompiledProperty) -> Compiled:
-        """The model with the goal of a question, without its assumptions."""
+        """The compiled model with the goal of `asked`. Assumptions are left out."""
         return Compiled(self.program, asked.goal)
 
     def reduced(self, asked: CompiledProperty) -> ModelChecker:

@@ -41,8 +41,8 @@ class ObservedValues:
     """The values that the observer of one property reads.
 
     Attributes:
-        values: id of a variable -> its value as an expression over global variables; without event variables.
-        copies: id of a variable -> its copy; without variables that have none.
+        values: id of a variable -> its value as an expression over global variables. Event variables are left out.
+        copies: id of a variable -> its copy in the observer. Variables without a copy are left out.
         shapes: the shapes of the global variables, including the copies.
         declared: the declarations of the copies.
     """

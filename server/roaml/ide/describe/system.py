@@ -40,7 +40,7 @@ def _system(analysis: Analysis, symbol: Symbol) -> System | None:
 
 
 def _who(automata: Iterable[SystemAutomaton]) -> str:
-    """The names of automata: of a ROS node its name, of a node of the tree that of its plugin."""
+    """The names of automata: for a node of the tree the name of its plugin, for others their own name."""
     return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
 
 

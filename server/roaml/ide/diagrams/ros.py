@@ -53,7 +53,7 @@ def _id(automaton: SystemAutomaton) -> str:
 
 
 def machine_node_ids(system: System) -> Mapping[str, tuple[str, ...]]:
-    """The ids of the nodes that show a machine or plugin, by its file."""
+    """The file of a machine or plugin -> the ids of the nodes that show it."""
     ids: dict[str, tuple[str, ...]] = {}
     for automaton in system.automata:
         if automaton.path:

@@ -98,8 +98,8 @@ def _message(value: TypedValue, name: str) -> str:
 
 def _severity(value: TypedValue) -> Severity | None:
     """The severity of a finding: hint if the data are unlikely to be overwritten, otherwise `None` (the default). Data
-    of the tree protocol cannot be overwritten, because a node answers once per tick. Data that are only sent on seldom
-    are."""
+    of the tree protocol cannot be overwritten, because a node answers once per tick. Data that the machine only
+    forwards in a message are seldom overwritten."""
     handler = value.place.handler
     if handler is not None and handler.trigger in (
         ProtocolPart.CHILD_STATUS,

@@ -47,8 +47,8 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
         handle.span,
         f"`{handle.value}` is declared twice; give one of them another `name`",
         _rename(context, declaration, handle),
-        # With two kinds, each use is still resolved here; the reference translator uses the first declaration
-        # (docs/spec/ros.md#handles).
+        # If the declarations are of different kinds, each use still has one meaning here; the reference translator
+        # uses the first declaration (docs/spec/ros.md#handles).
         severity=Severity.ERROR if before.kind == declaration.kind else Severity.WARNING,
         related=related,
     )

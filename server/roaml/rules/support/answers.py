@@ -33,7 +33,7 @@ SENT = {
     DutyKind.REQUEST: ProtocolPart.RESPONSE,
     DutyKind.RESULT: ProtocolPart.RESULT,
 }
-"""The events that answer a duty; a goal is accepted or rejected."""
+"""The kind of duty -> the event that answers it. The decision on a goal is missing: it has two events."""
 _HANDLED_BY = {DutyKind.TICK: (ProtocolPart.BT_TICK, "bt_tick"), DutyKind.HALT: (ProtocolPart.BT_HALT, "bt_halt")}
 ELEMENTS = {
     ProtocolPart.BT_STATUS: ("bt_return_status",),
@@ -90,7 +90,7 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     missing on all paths.
 
     Steps are left out if another finding explains them: an element that cannot be read may be the answer, and a
-    condition that never decides (shadowed-transition) is probably wrong.
+    condition that has no effect because of earlier conditions (shadowed-transition) is probably wrong.
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
     for step in dead_ends(behavior, duty):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds conditions that have no effect. Conditions are tested in order, and the first that holds decides; a condition
-never decides if an earlier condition holds whenever it does."""
+"""Finds conditions that have no effect. Conditions are tested in order, and the first that holds selects
+the handler or branch. So a condition has no effect if an earlier one holds whenever it holds."""
 
 from __future__ import annotations
 

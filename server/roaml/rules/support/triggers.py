@@ -29,7 +29,8 @@ def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
 
 
 def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
-    """Whether a handler with the same trigger in the state of `handler` has a condition that never decides."""
+    """Whether a handler with the same trigger in the state of `handler` has a condition that has no effect because of
+    earlier conditions (shadowed-transition)."""
     state = next((state for state in chart.states if handler in state.handlers), None)
     groups = conditional(machine, state) if state is not None else ()
     return any(

@@ -69,7 +69,7 @@ def _name(value: Name) -> Iterator[Finding]:
             value.span, f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"
         )
     elif not is_variable_name(variable) and variable != "=":
-        rule = "only letters, digits, `_` and `$`, and no digit at the beginning"
+        rule = "it must contain only letters, digits, `_` and `$`, and not begin with a digit"
         message = f"`{variable}` is not a valid name of a blackboard variable: {rule}"
         yield RULE.at(value.span, message)
     elif (plain := f"{{{variable}}}") != value.value.strip():

@@ -30,8 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield _wrong(
                         statement.event,
                         f"`{statement.event.value}` is not a valid event name: it must begin with a letter or `_` "
-                        "and contain only "
-                        "letters, digits, `.`, `-` and `_`",
+                        "and contain only letters, digits, `.`, `-` and `_`",
                     )
                 for param in statement.params:
                     if param.name:
@@ -50,8 +49,8 @@ def _variable(name: Name) -> Iterator[Finding]:
 
 def _parameter(name: Name) -> Iterator[Finding]:
     if not all(VARIABLE.match(part) for part in name.value.split(".")) or name.value.endswith("_"):
-        message = f"`{name.value}` is not a valid parameter name: only letters, digits and `_`, and no `_` at the end"
-        yield _wrong(name, message)
+        rule = "it must begin with a letter or `_`, contain only letters, digits and `_`, and not end in `_`"
+        yield _wrong(name, f"`{name.value}` is not a valid parameter name: {rule}")
 
 
 def _interface(declaration: Declaration) -> Iterator[Finding]:

@@ -26,7 +26,8 @@ def check(context: StructsContext) -> Iterator[Finding]:
         if name.value in BASE_TYPES:
             yield RULE.at(name.span, f"`{name.value}` is a base type and cannot be the name of a struct")
         elif not VARIABLE.match(name.value):
-            yield RULE.at(name.span, f"`{name.value}` is not a valid struct name: only letters, digits and `_`")
+            rule = "it must begin with a letter or `_` and contain only letters, digits and `_`"
+            yield RULE.at(name.span, f"`{name.value}` is not a valid struct name: {rule}")
         else:
             yield from _other(context, declaration, first.setdefault(name.value, name))
         if outlines.get(name.value) == declaration.outline:
@@ -88,10 +89,8 @@ def _members(declaration: StructDeclaration) -> Iterator[Finding]:
             if name.value == "length":
                 yield RULE.at(name.span, "`length` has a special meaning and cannot be the name of a member")
             elif not VARIABLE.match(name.value) or name.value.endswith("_"):
-                yield RULE.at(
-                    name.span,
-                    f"`{name.value}` is not a valid member name: only letters, digits and `_`, and no `_` at the end",
-                )
+                rule = "it must begin with a letter or `_`, contain only letters, digits and `_`, and not end in `_`"
+                yield RULE.at(name.span, f"`{name.value}` is not a valid member name: {rule}")
             elif first.setdefault(name.value, name) is not name:
                 related = (Related(first[name.value].span, "the first member with this name"),)
                 message = f"there are two members `{name.value}`; rename one of them"
