@@ -83,8 +83,11 @@ def observe_system(drawn: Drawn, ticks: int, seed: int) -> Observed:
     recorder = Recorder(checker, checker.asked[0], seed, 40_000)
     status = {storage.name: storage for storage in recorder.shared if storage.name.endswith("_response__status")}
     leaves = leaves_of(drawn)
-    # A leaf with conditions is behind them.
-    inner = {name.partition("_inner_")[0] for name in status if "_inner_" in name}
+    # A leaf is behind its conditions and those of the subtrees whose top it is.
+    innermost: dict[int, str] = {}
+    for name in sorted(status, key=len):
+        if (responding := _EVENT.fullmatch(name.removesuffix("__status"))) is not None:
+            innermost[int(responding[1])] = responding[2]
     state = dict.fromkeys(leaves, "IDLE")
     seen = Observed([], [], {name: [] for name, _ in leaves.values()}, False)
     for step in recorder.walk(Recording(0)):
@@ -97,7 +100,7 @@ def observe_system(drawn: Drawn, ticks: int, seed: int) -> Observed:
             code = recorder.values([status[f"bt_{number}_{where}response__status"]])[0]
             assert isinstance(code, int)
             answer = CODES[code]
-        if number in leaves and bool(where) == (f"bt_{number}" in inner):
+        if number in leaves and where == innermost[number]:
             name, type_ = leaves[number]
             if what == "halt":
                 if state[number] == "RUNNING":
