@@ -438,7 +438,7 @@ def test_progress_bar_of_a_search() -> None:
     state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
     text = search_line(question, state, Options())
     assert text == "p, least probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
-    state.found[LEAST] = Side(7, Tally(traces=250, successes=100))
+    state.selected[LEAST] = Side(7, Tally(traces=250, successes=100))
     text = search_line(question, state, Options(method=FIXED, max_traces=1000))
     assert text.startswith("p, least probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
     state.side = GREATEST

@@ -136,7 +136,7 @@ async def test_a_new_plugin(tmp_path: Path) -> None:
     async with connect(tmp_path, capabilities=LAZY) as client:
         client.open(tree, language="xml")
         actions = await ask(client, tree, text, "<Go|Home", "refactor.extract")
-        assert [action.title for action in actions] == [title]
+        assert [action.title for action in actions] == [title, "Create a mock of `GoHome`"]
         edit = (await client.code_action_resolve_async(actions[0])).edit
         assert edit is not None
         create, content, listing = edit.document_changes or ()

@@ -21,7 +21,7 @@ from roaml.smc.batch import BatchOutcome, Task, kernel_of, run
 from roaml.smc.fault import FaultError
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
-from roaml.smc.pool import ATTEMPTS, Pool, WorkersLostError
+from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import ADAPTIVE, FIXED, OKAMOTO, SPRT, Answer, Options, Tally
 from roaml.smc.statistics import okamoto
@@ -150,7 +150,7 @@ class Hopeless(Executor):
 def test_workers_that_are_always_lost_are_reported() -> None:
     with pytest.raises(WorkersLostError, match="the machine is gone"):
         ask(Options(), pool=Pool(2, Hopeless()))
-    assert ATTEMPTS > 1
+    assert MAX_CONSECUTIVE_LOSSES > 1
 
 
 def test_workers_end_with_the_run() -> None:

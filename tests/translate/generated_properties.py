@@ -16,6 +16,7 @@ from roaml.expr.types import BASE_TYPES, Scalar, ScalarKind, Struct, leaves
 from roaml.ide.code_actions.inputs import add_input
 from roaml.model.property_links import clock_step
 from roaml.model.system import Channel, System
+from roaml.model.system_file import SystemSection
 from roaml.model.tree_paths import short_paths
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.project.analysis import Analysis
@@ -50,7 +51,7 @@ def with_properties(path: Path, interfaces: Iterable[str], count: int) -> api.Lo
     plain = api.load(str(path), interfaces)
     analysis = plain.analysis
     added = str(path.with_name(FILE_NAME))
-    edits = add_input(analysis, plain.path, "properties", "xml", added)
+    edits = add_input(analysis, plain.path, SystemSection.PROPERTIES, "xml", added)
     source = analysis.source(plain.path)
     assert source is not None
     texts = {plain.path: apply_edits(source.text, edits), added: property_file(plain, path.parent.name, count)}

@@ -25,7 +25,7 @@ def add_input(analysis: Analysis, system: str, section: SystemSection, type_: st
     if parent is not None:
         edit = last_in(document, parent, entry)
     else:
-        lines = (f"<{section}>", f"    {entry}", f"</{section}>")
+        lines = (f"<{section.value}>", f"    {entry}", f"</{section.value}>")
         before = ("parameters", "mc_parameters", *SECTION_NAMES[: SECTION_NAMES.index(section.value)])
         earlier = [child for child in file.element.elements if child.name in before]
         edit = after(document, earlier[-1], *lines) if earlier else first_in(document, file.element, *lines)
