@@ -168,8 +168,9 @@ class InTurn(Node):
                     self.index = 0
                 return answer
         self.reset_children()
-        self.index = 0
-        return SKIP if self.skipped == len(self.children) else self.goes_on
+        all_skipped = self.skipped == len(self.children)
+        self.index = self.skipped = 0  # the node may stay RUNNING
+        return SKIP if all_skipped else self.goes_on
 
     def halt(self) -> None:
         if not self.remembers:

@@ -11,6 +11,7 @@ import copy
 from importlib import util
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import CONTROLS, DECORATORS, ENTRIES, LEAVES, Drawn, Kinds, Table, as_xml, trees
@@ -111,3 +112,11 @@ else:
         import behaviortreepy  # noqa: PLC0415 - not everywhere
 
         compare(behaviortreepy, drawn, seed)
+
+    @pytest.mark.parametrize("control", ["Sequence", "Fallback", "AsyncFallback", "SequenceWithMemory"])
+    def test_a_node_whose_children_are_skipped_again(control: str) -> None:
+        """It stays RUNNING, and is skipped at the next tick, too."""
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        skipped = Drawn("AlwaysSuccess", (("_while", "x == 1"),))
+        compare(behaviortreepy, Drawn("KeepRunningUntilFailure", (), (Drawn(control, (), (skipped, skipped)),)), 1)
