@@ -68,46 +68,6 @@ export function debugging(stage: Stage): void {
         await button(window, "Stop").click();
         await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
     });
-
-    stage.test("a timeline and lit pictures follow the run", robot, async (window) => {
-        const { page } = window;
-        await window.openFile("main_with_bug.xml");
-        await window.running();
-        await page.keyboard.press("F5");
-        await page.locator(".debug-toolbar").waitFor();
-        await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
-
-        // At the end all is lit, side by side.
-        await window.run("AS2FM: Show Whole System");
-        const machines = await window.picture('.node[data-look][data-label="still"]');
-        await (
-            await window.picture('.node[data-look="success"]')
-        )
-            .locator('.node[data-look="running"]')
-            .first()
-            .waitFor();
-        await window.picture('.node[data-label="/arm/command"]');
-        await window.screenshot("debugging-system");
-
-        // The timeline shows the whole run; a click in it goes to another step.
-        await page.keyboard.press("F1");
-        await page.locator(".quick-input-widget input").fill(">Focus on Timeline of the Run");
-        await page.locator(".quick-input-list .focused", { hasText: "Focus on Timeline of the Run" }).first().waitFor();
-        await page.keyboard.press("Enter");
-        const timeline = await window.picture(".rows .drawing .state");
-        const step = async () => Number(await timeline.locator("body").getAttribute("data-step"));
-        const end = await window.until(step);
-        await window.screenshot("debugging-timeline");
-        await timeline.getByRole("button", { name: "Steps", exact: true }).click();
-        await timeline.locator(".event[data-step]").first().click();
-        await window.until(async () => (await step()) < end);
-        await machines.locator('.node[data-look="next"]').first().waitFor();
-        await timeline.locator(".rows").press("ArrowRight");
-        await window.screenshot("debugging-timeline-steps");
-        await button(window, "Stop").click();
-        await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
-        await machines.locator(".node:not([data-look])").first().waitFor();
-    });
 }
 
 function button(window: Window, name: string) {
