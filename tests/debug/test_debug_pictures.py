@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client shows beside the source: the timeline of the run, and the lit parts of pictures."""
+"""What a client shows beside the source: the timeline of the run, and the active parts of pictures."""
 
 from __future__ import annotations
 
@@ -68,35 +68,37 @@ def test_a_stretch_is_exported(client: Client) -> None:
     assert client.step() == 200
 
 
-def test_pictures_are_lit_as_the_run_goes_on(client: Client) -> None:
+def test_pictures_follow_the_run(client: Client) -> None:
     analysis = api.load(str(BUG)).analysis
     _begin(client, BUG, 40)
-    lit = client.ask("pictures")
-    looks = {(node["kind"], node["source"]["name"], node["node"]): node["look"] for node in lit["nodes"]}
+    activity = client.ask("pictures")
+    looks = {(node["kind"], node["source"]["name"], node["node"]): node["look"] for node in activity["nodes"]}
     # The command to the arm has been sent; the arm is the next to act, and the node of the tree is running.
     assert looks["machine", "arm.ascxml", "/still"] == "next"
     assert looks["system", "main_with_bug.xml", f"{ROBOT / 'arm.ascxml'}#/still"] == "next"
     assert looks["tree", "main_with_bug.xml", "1003"] == "running"
     assert looks["tree", "main_with_bug.xml", "1007"] == "idle"
-    (topic,) = (node["node"] for node in lit["nodes"] if node["kind"] == "ros")
+    (topic,) = (node["node"] for node in activity["nodes"] if node["kind"] == "ros")
     drawn = picture_of(DiagramKind.ROS, analysis, str(BUG))
     assert drawn is not None
     labels = {node.id: node.label for node in drawn.nodes}
     assert labels[topic] == "/arm/command"
-    edges = [(labels[edge["from"]], labels[edge["to"]]) for edge in lit["edges"]]
+    edges = [(labels[edge["from"]], labels[edge["to"]]) for edge in activity["edges"]]
     assert edges == [("PickUp", "/arm/command"), ("/arm/command", "Arm")]
-    assert {(edge["from"], edge["to"]) for edge in lit["edges"]} <= {(edge.source, edge.target) for edge in drawn.edges}
+    assert {(edge["from"], edge["to"]) for edge in activity["edges"]} <= {
+        (edge.source, edge.target) for edge in drawn.edges
+    }
 
 
-def test_all_that_is_lit_is_in_the_pictures(client: Client) -> None:
+def test_all_active_parts_are_in_the_pictures(client: Client) -> None:
     analysis = api.load(str(CASE_STUDY)).analysis
     ids: dict[tuple[str, str], set[str]] = {}
     looks = set()
     _begin(client, CASE_STUDY, 0)
     for step in range(0, 400, 7):
         _go(client, step)
-        lit = client.ask("pictures")
-        for node in lit["nodes"]:
+        activity = client.ask("pictures")
+        for node in activity["nodes"]:
             kind, path = node["kind"], node["source"]["path"]
             if (kind, path) not in ids:
                 picture = picture_of(DiagramKind(kind), analysis, path)

@@ -17,7 +17,7 @@ import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
-import { LitPictures } from "./editor/litPictures";
+import { PictureActivity } from "./editor/pictureActivity";
 import { TimelineView } from "./editor/timeline";
 import { modelsExist } from "./editor/activation";
 import { offerSchemas } from "./editor/xmlExtension";
@@ -56,7 +56,7 @@ export function activate(context: vscode.ExtensionContext): void {
         sessions,
         new ChoicesView(sessions, log),
         new TimelineView(context, sessions),
-        new LitPictures(sessions, pictures),
+        new PictureActivity(sessions, pictures),
         ...debugging.register(),
         watchErrors(),
     );

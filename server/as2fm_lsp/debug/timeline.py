@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests for what a client shows beside the source: the timeline of the run, and the lit parts of pictures."""
+"""Requests for what a client shows beside the source: the timeline of the run, and the active parts of pictures."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TypeVar
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
+from roaml.debugging.activity import active_edges, active_nodes
 from roaml.debugging.debugger import Debugger
-from roaml.debugging.lit import lit_edges, lit_nodes
 from roaml.figures.svg import svg_scene
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
@@ -111,9 +111,9 @@ class TimelineRequests:
                     "node": node.node,
                     "look": node.look,
                 }
-                for node in lit_nodes(debugger)
+                for node in active_nodes(debugger)
             ],
-            "edges": [{"from": edge.source, "to": edge.target} for edge in lit_edges(debugger)],
+            "edges": [{"from": edge.source, "to": edge.target} for edge in active_edges(debugger)],
         }
 
 

@@ -3,7 +3,7 @@
 
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
-import type { FromView, Lit, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
+import type { FromView, Activity, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
 import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
@@ -15,8 +15,8 @@ export class PicturePanels implements vscode.Disposable {
     private readonly subscriptions: vscode.Disposable[];
     private timer: NodeJS.Timeout | undefined;
     private highlights: readonly Highlight[] = [];
-    private lit: readonly LitNode[] = [];
-    private litEdges: Lit["edges"] = [];
+    private activeNodes: readonly ActiveNode[] = [];
+    private activeEdges: Activity["edges"] = [];
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -43,7 +43,7 @@ export class PicturePanels implements vscode.Disposable {
         let panel = this.panels.get(kind);
         if (!panel) {
             panel = new PicturePanel(kind, this.context, this.server, this.log, column);
-            panel.light(this.lit, this.litEdges);
+            panel.showActivity(this.activeNodes, this.activeEdges);
             panel.highlighted = this.highlights.find((highlight) => highlight.kind === kind);
             this.panels.set(kind, panel);
             panel.onDispose(() => this.panels.delete(kind));
@@ -58,11 +58,11 @@ export class PicturePanels implements vscode.Disposable {
             await panel.highlight(highlights.find((highlight) => highlight.kind === kind));
     }
 
-    /** Light what a run does in all open pictures and in those that are opened later, instead of what was lit. */
-    light(nodes: readonly LitNode[], edges: Lit["edges"]): void {
-        this.lit = nodes;
-        this.litEdges = edges;
-        for (const panel of this.panels.values()) panel.light(nodes, edges);
+    /** Show what a run does in all open pictures and in those that are opened later, instead of what was shown. */
+    showActivity(nodes: readonly ActiveNode[], edges: Activity["edges"]): void {
+        this.activeNodes = nodes;
+        this.activeEdges = edges;
+        for (const panel of this.panels.values()) panel.showActivity(nodes, edges);
     }
 
     dispose(): void {
@@ -84,7 +84,7 @@ export class PicturePanels implements vscode.Disposable {
 }
 
 /** A node of a picture that a run lights; `path` is the file of the picture. */
-export interface LitNode {
+export interface ActiveNode {
     readonly kind: PictureKind;
     readonly path: string;
     readonly node: string;
@@ -98,8 +98,8 @@ class PicturePanel implements vscode.Disposable {
     private here: Part | null = null;
     /** The highlighted nodes of the step that was selected last, in all files. */
     highlighted: Highlight | undefined;
-    private lit: readonly LitNode[] = [];
-    private litEdges: Lit["edges"] = [];
+    private activeNodes: readonly ActiveNode[] = [];
+    private activeEdges: Activity["edges"] = [];
     private shownUri = "";
     private ready = false;
     private asked = 0;
@@ -178,17 +178,17 @@ class PicturePanel implements vscode.Disposable {
             : "";
     }
 
-    light(nodes: readonly LitNode[], edges: Lit["edges"]): void {
-        this.lit = nodes.filter(({ kind }) => kind === this.kind);
-        this.litEdges = this.kind === "ros" ? edges : [];
+    showActivity(nodes: readonly ActiveNode[], edges: Activity["edges"]): void {
+        this.activeNodes = nodes.filter(({ kind }) => kind === this.kind);
+        this.activeEdges = this.kind === "ros" ? edges : [];
         this.postLit();
     }
 
-    /** A picture of a machine shows only what is lit in its file. */
+    /** A picture of a machine shows only the activity in its file. */
     private postLit(): void {
-        const nodes = this.lit.filter(({ path }) => this.kind !== "machine" || path === this.uri?.fsPath);
+        const nodes = this.activeNodes.filter(({ path }) => this.kind !== "machine" || path === this.uri?.fsPath);
         const looks = Object.fromEntries(nodes.map(({ node, look }) => [node, look]));
-        this.post({ type: "light", lit: { nodes: looks, edges: this.litEdges } });
+        this.post({ type: "activity", activity: { nodes: looks, edges: this.activeEdges } });
     }
 
     dispose(): void {

@@ -132,8 +132,8 @@ export interface Words {
     readonly byChance: string;
 }
 
-/** How nodes are lit, by their ids, and the lit edges with the ids of their ends. */
-export interface Lit {
+/** The looks of active nodes, by their ids, and the active edges with the ids of their ends. */
+export interface Activity {
     readonly nodes: Readonly<Record<string, string>>;
     readonly edges: readonly { readonly from: string; readonly to: string }[];
 }
@@ -144,8 +144,8 @@ export type ToView =
     | { readonly type: "here"; readonly here: Part | null }
     /** Highlight the node with an id; "" removes the highlight. */
     | { readonly type: "highlight"; readonly node: string }
-    /** Light what a run does, instead of what was lit before. */
-    | { readonly type: "light"; readonly lit: Lit }
+    /** Show what a run does, instead of what was shown before. */
+    | { readonly type: "activity"; readonly activity: Activity }
     /** Convert the text of an SVG file to PNG. */
     | { readonly type: "rasterize"; readonly svg: string }
     | { readonly type: "none"; readonly reason: string };

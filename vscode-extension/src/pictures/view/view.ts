@@ -5,7 +5,7 @@ import {
     DIRECTIONS,
     type Drawing,
     type FromView,
-    type Lit,
+    type Activity,
     type Part,
     type Picture,
     type PictureEdge,
@@ -40,7 +40,7 @@ class View {
     private selected = -1;
     private here: Part | null = null;
     private highlighted = "";
-    private lit: Lit = { nodes: {}, edges: [] };
+    private activity: Activity = { nodes: {}, edges: [] };
 
     constructor() {
         this.bar.className = "bar";
@@ -73,8 +73,8 @@ class View {
             case "highlight":
                 this.highlight(message.node);
                 break;
-            case "light":
-                this.light(message.lit);
+            case "activity":
+                this.showActivity(message.activity);
                 break;
             case "rasterize":
                 void pngData(message.svg).then((data) => {
@@ -117,7 +117,7 @@ class View {
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
         this.legend.replaceChildren(...legendOf(picture, words).map(entry));
         this.look(this.sight);
-        this.light(this.lit);
+        this.showActivity(this.activity);
         if (this.input.value !== "") this.search();
     }
 
@@ -216,21 +216,23 @@ class View {
     }
 
     /** Show where a run is: active states, statuses of nodes, messages. */
-    private light(lit: Lit): void {
+    private showActivity(activity: Activity): void {
         const { picture, scene } = this;
-        this.lit = lit;
+        this.activity = activity;
         if (!picture || !scene) return;
         for (const [index, group] of scene.nodes) {
-            const look = lit.nodes[picture.nodes[index]?.id ?? ""];
+            const look = activity.nodes[picture.nodes[index]?.id ?? ""];
             if (look === undefined) delete group.dataset["look"];
             else group.dataset["look"] = look;
         }
         for (const [index, groups] of scene.edges) {
             const edge = picture.edges[index];
-            const isLit = lit.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
-            for (const group of groups) group.classList.toggle("lit", isLit);
+            const isActive = activity.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
+            for (const group of groups) group.classList.toggle("active", isActive);
         }
-        const next = picture.nodes.findIndex(({ id }) => lit.nodes[id] === "next" || lit.nodes[id] === "message");
+        const next = picture.nodes.findIndex(
+            ({ id }) => activity.nodes[id] === "next" || activity.nodes[id] === "message",
+        );
         if (next >= 0) this.reveal(next);
     }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of pictures that are lit while a run is stopped: active states, statuses of tree nodes, messages that have
-been sent and not been received yet."""
+"""The active parts of pictures while a run is stopped: active states, statuses of tree nodes, messages that have been
+sent and not been received yet."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from roaml.scxml.names import CANCEL_PREFIX, received_by
 from roaml.simulation.state import MachineState, SystemState
 
 ACTIVE, NEXT, MESSAGE = "active", "next", "message"
-"""How a part is lit: a state that is active, one of a machine that does the next step, a message; nodes of the tree are
-lit as their status, in lower case."""
+"""How a part looks: an active state, one of a machine that does the next step, a message. The look of a tree node
+is its status in lower case."""
 
 
 @dataclass(frozen=True, slots=True)
-class LitNode:
+class ActiveNode:
     """
     Attributes:
         path: the file of the picture: of a machine, or of the system.
@@ -40,15 +40,15 @@ class LitNode:
 
 
 @dataclass(frozen=True, slots=True)
-class LitEdge:
+class ActiveEdge:
     """An edge of the ROS graph between the sender or receiver of a message and its topic, service or action."""
 
     source: str
     target: str
 
 
-def lit_nodes(debugger: Debugger) -> Iterator[LitNode]:
-    """The lit nodes of all pictures of the system; none for a JANI model."""
+def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
+    """The active nodes of all pictures of the system; none for a JANI model."""
     analysis, system = _sources(debugger)
     if analysis is None or system is None:
         return
@@ -61,15 +61,15 @@ def lit_nodes(debugger: Debugger) -> Iterator[LitNode]:
         chart = _chart(analysis, machine, origin)
         if chart is not None and origin is not None:
             node, look = state_id(chart, machine.state), NEXT if machine.automaton in actors else ACTIVE
-            yield LitNode(DiagramKind.MACHINE, origin.path, node, look)
-            yield LitNode(DiagramKind.SYSTEM, path, id_in_system(origin.path, node), look)
+            yield ActiveNode(DiagramKind.MACHINE, origin.path, node, look)
+            yield ActiveNode(DiagramKind.SYSTEM, path, id_in_system(origin.path, node), look)
     for tree_node in state.nodes:
-        yield LitNode(DiagramKind.TREE, path, str(tree_node.number), tree_node.status.value.lower())
+        yield ActiveNode(DiagramKind.TREE, path, str(tree_node.number), tree_node.status.value.lower())
     for channel in dict.fromkeys(channel for channel, _, _ in _in_flight(state, system)):
-        yield LitNode(DiagramKind.ROS, path, channel, MESSAGE)
+        yield ActiveNode(DiagramKind.ROS, path, channel, MESSAGE)
 
 
-def lit_edges(debugger: Debugger) -> Iterator[LitEdge]:
+def active_edges(debugger: Debugger) -> Iterator[ActiveEdge]:
     """The edges of the ROS graph with a message: from its sender, and to the receivers of the next step."""
     analysis, system = _sources(debugger)
     if analysis is None or system is None:
@@ -86,10 +86,10 @@ def lit_edges(debugger: Debugger) -> Iterator[LitEdge]:
     received = received_by(upcoming.action or "") if upcoming is not None else ""
     for channel, event, sender in _in_flight(state, system):
         for node in senders.get(sender, ()):
-            yield LitEdge(node, channel)
+            yield ActiveEdge(node, channel)
         if event == received:
             for actor in actors:
-                yield from (LitEdge(channel, node) for node in machines.get(actor, ()))
+                yield from (ActiveEdge(channel, node) for node in machines.get(actor, ()))
 
 
 def _sources(debugger: Debugger) -> tuple[Analysis | None, System | None]:

@@ -2,14 +2,14 @@
 /** While a run is stopped, the open pictures show where it is. A command shows all of them side by side. */
 
 import * as vscode from "vscode";
-import type { Lit } from "../pictures/contract";
+import type { Activity } from "../pictures/contract";
 import type { DebugSessions } from "./debugSessions";
-import type { LitNode, PicturePanels } from "./picturePanels";
+import type { ActiveNode, PicturePanels } from "./picturePanels";
 
 /** The answer to the request `pictures` (docs/debugging.md). */
 interface Answer {
-    readonly nodes: readonly (Omit<LitNode, "path"> & { readonly source: { readonly path: string } })[];
-    readonly edges: Lit["edges"];
+    readonly nodes: readonly (Omit<ActiveNode, "path"> & { readonly source: { readonly path: string } })[];
+    readonly edges: Activity["edges"];
 }
 
 /** The source on the left; on the right all machines above the tree and the ROS graph. */
@@ -18,7 +18,7 @@ const LAYOUT = {
     groups: [{ size: 0.35 }, { size: 0.65, groups: [{ size: 0.55 }, { size: 0.45, groups: [{}, {}] }] }],
 };
 
-export class LitPictures implements vscode.Disposable {
+export class PictureActivity implements vscode.Disposable {
     private readonly subscriptions: vscode.Disposable[];
 
     constructor(
@@ -26,9 +26,9 @@ export class LitPictures implements vscode.Disposable {
         private readonly pictures: PicturePanels,
     ) {
         this.subscriptions = [
-            sessions.onStopped((session) => void this.light(session)),
+            sessions.onStopped((session) => void this.update(session)),
             sessions.onEnded(() => {
-                pictures.light([], []);
+                pictures.showActivity([], []);
             }),
             vscode.commands.registerCommand("as2fm.showRun", () => this.showAll()),
         ];
@@ -38,15 +38,15 @@ export class LitPictures implements vscode.Disposable {
         for (const part of this.subscriptions) part.dispose();
     }
 
-    private async light(session: vscode.DebugSession): Promise<void> {
+    private async update(session: vscode.DebugSession): Promise<void> {
         try {
             const { nodes, edges } = (await session.customRequest("pictures")) as Answer;
-            this.pictures.light(
+            this.pictures.showActivity(
                 nodes.map(({ source, ...node }) => ({ ...node, path: source.path })),
                 edges,
             );
         } catch {
-            // The run is moving again; it is lit where it stops.
+            // The run is moving again; its activity is shown where it stops.
         }
     }
 
