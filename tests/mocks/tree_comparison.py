@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 
 import library_model
 from random_trees import ENTRIES, Drawn, as_nodes, as_xml
 from translated_trees import Observed, observe, with_mocks
-from trees_in_systems import observe_system
+from trees_in_systems import observe_system, translated
 
 from roaml import api
 
@@ -20,17 +21,24 @@ def difference_with_mocks(drawn: Drawn, ticks: int, seed: int, *, happens: bool 
     return _difference(drawn, seen, happens=happens)
 
 
-def difference_in_system(drawn: Drawn, ticks: int, seed: int) -> str:
-    """The same for the tree of a system whose leaves are plugins."""
+def difference_in_system(
+    drawn: Drawn, ticks: int, seed: int, when_translated: Callable[[], None] = lambda: None
+) -> str:
+    """The same for the tree of a system whose leaves are plugins.
+
+    Args:
+        when_translated: called between the translation and the run.
+    """
     # A script that nothing skips makes every tree one that is executed as by the library.
     tree = Drawn("Sequence", (("_onHalted", "k := k"),), (drawn,))
     try:
-        seen = observe_system(tree, ticks, seed)
+        model = translated(tree, ticks)
     except api.ModelError as error:
         if all(finding.code == "node-configuration" for finding in error.result.diagnostics):
             return ""  # counts with which the library throws an exception
         raise
-    return _difference(tree, seen)
+    when_translated()
+    return _difference(tree, observe_system(tree, model, seed))
 
 
 def modelled(drawn: Drawn, seen: Observed, *, happens: bool = False) -> Observed:

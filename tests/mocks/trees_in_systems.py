@@ -75,9 +75,8 @@ def leaves_of(drawn: Drawn) -> dict[int, tuple[str, str]]:
     return dict(walk(drawn))
 
 
-def observe_system(drawn: Drawn, ticks: int, seed: int) -> Observed:
+def observe_system(drawn: Drawn, model: Model, seed: int) -> Observed:
     """One run of the translated system."""
-    model = translated(drawn, ticks)
     model = replace(model, properties=tree_properties(model))
     checker = ModelChecker(model, model.properties[:1])
     recorder = Recorder(checker, checker.asked[0], seed, 40_000)

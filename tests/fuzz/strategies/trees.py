@@ -39,7 +39,7 @@ class RandomTree:
         if difference:
             yield Failure("a tree with mocks differs from the library", difference)
         restart()
-        difference = difference_in_system(self.in_system, TICKS, self.seed)
+        difference = difference_in_system(self.in_system, TICKS, self.seed, restart)
         if difference:
             yield Failure("a tree of a system differs from the library", difference)
 
