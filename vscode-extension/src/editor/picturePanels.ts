@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The panels with pictures: one for each kind, which follows the active document and the caret. */
 
-import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import type { FromView, Activity, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
 import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
+import { webviewPage } from "./webviewPage";
 
 const DELAY_MS = 200;
 
@@ -121,7 +121,7 @@ class PicturePanel implements vscode.Disposable {
             localResourceRoots: [dist],
         });
         this.panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
-        this.panel.webview.html = page(this.panel.webview, dist);
+        this.panel.webview.html = webviewPage(this.panel.webview, dist, "view.js", ["view.css"]);
         this.panel.webview.onDidReceiveMessage((message: FromView) => void this.receive(message));
     }
 
@@ -343,28 +343,4 @@ function words(): Words {
             sends: vscode.l10n.t("sends"),
         },
     };
-}
-
-function page(webview: vscode.Webview, dist: vscode.Uri): string {
-    const nonce = randomBytes(16).toString("base64");
-    const uri = (name: string) => webview.asWebviewUri(vscode.Uri.joinPath(dist, name)).toString();
-    const policy = [
-        "default-src 'none'",
-        `script-src 'nonce-${nonce}'`,
-        `style-src ${webview.cspSource}`,
-        "img-src blob: data:",
-        "base-uri 'none'",
-        "form-action 'none'",
-    ].join("; ");
-    return `<!DOCTYPE html>
-<html lang="${vscode.env.language}">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="${policy}">
-<link rel="stylesheet" href="${uri("view.css")}">
-</head>
-<body>
-<script nonce="${nonce}" src="${uri("view.js")}"></script>
-</body>
-</html>`;
 }

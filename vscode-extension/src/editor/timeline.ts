@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The view with the timeline of the run that is debugged. */
 
-import { randomBytes } from "node:crypto";
 import * as path from "node:path";
 import * as vscode from "vscode";
 import type { FromTimeline, Tile, TileRequest, TimelineWords, ToTimeline } from "../timeline/contract";
 import type { DebugSessions } from "./debugSessions";
+import { webviewPage } from "./webviewPage";
 
 const VIEW = "as2fm.timeline";
 
@@ -34,7 +34,7 @@ export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvid
         this.view = view;
         const dist = vscode.Uri.joinPath(this.context.extensionUri, "dist");
         view.webview.options = { enableScripts: true, enableForms: false, localResourceRoots: [dist] };
-        view.webview.html = page(view.webview, dist);
+        view.webview.html = webviewPage(view.webview, dist, "timeline.js", ["view.css", "timeline.css"]);
         view.webview.onDidReceiveMessage((message: FromTimeline) => void this.receive(message));
         view.onDidDispose(() => (this.view = undefined));
     }
@@ -115,29 +115,4 @@ function words(): TimelineWords {
         ),
         nothing: vscode.l10n.t("No run is being debugged."),
     };
-}
-
-function page(webview: vscode.Webview, dist: vscode.Uri): string {
-    const nonce = randomBytes(16).toString("base64");
-    const uri = (name: string) => webview.asWebviewUri(vscode.Uri.joinPath(dist, name)).toString();
-    // Scripts of the view set the places of its parts.
-    const policy = [
-        "default-src 'none'",
-        `script-src 'nonce-${nonce}'`,
-        `style-src ${webview.cspSource}`,
-        "base-uri 'none'",
-        "form-action 'none'",
-    ].join("; ");
-    return `<!DOCTYPE html>
-<html lang="${vscode.env.language}">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="${policy}">
-<link rel="stylesheet" href="${uri("view.css")}">
-<link rel="stylesheet" href="${uri("timeline.css")}">
-</head>
-<body>
-<script nonce="${nonce}" src="${uri("timeline.js")}"></script>
-</body>
-</html>`;
 }

@@ -10,13 +10,13 @@ import {
     type Picture,
     type PictureEdge,
     type PictureNode,
-    type Theme,
     type ToView,
     type Words,
 } from "../contract";
 import { bestDrawing, fit, fitLegibly, isArrow, neighbour, pan, reveal, search, zoom, type Sight } from "./find";
 import { element, pngData, sceneOf, type Scene } from "./scene";
 import { legendOf, type LegendEntry } from "./words";
+import { theme } from "./theme";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
 
@@ -390,14 +390,6 @@ function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
     sample.append(group);
     made.append(sample, text);
     return made;
-}
-
-/** The kind of the theme of the editor. */
-function theme(): Theme {
-    const { classList } = document.body;
-    if (classList.contains("vscode-high-contrast-light")) return "high-contrast-light";
-    if (classList.contains("vscode-high-contrast")) return "high-contrast";
-    return classList.contains("vscode-dark") ? "dark" : "light";
 }
 
 const view = new View();

@@ -4,10 +4,10 @@
  * that drawing at once, and a new one replaces it as soon as it comes.
  */
 
-import type { Theme } from "../../pictures/contract";
 import { EXPORTS, type Axis, type FromTimeline, type Tile, type TileRequest, type TimelineWords } from "../contract";
 import type { ToTimeline } from "../contract";
 import { covers, pan, reveal, withMargins, zoom, type Stretch } from "./window";
+import { theme } from "../../pictures/view/theme";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromTimeline): void };
 
@@ -307,14 +307,6 @@ function sceneOf(scene: string, width: number, height: number): SVGSVGElement {
     const text = `<svg xmlns="${SVG}" width="${width}" height="${height}">${scene}</svg>`;
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     return document.importNode(parsed, true) as unknown as SVGSVGElement;
-}
-
-/** The kind of the theme of the editor. */
-function theme(): Theme {
-    const { classList } = document.body;
-    if (classList.contains("vscode-high-contrast-light")) return "high-contrast-light";
-    if (classList.contains("vscode-high-contrast")) return "high-contrast";
-    return classList.contains("vscode-dark") ? "dark" : "light";
 }
 
 const view = new TimelineView();
