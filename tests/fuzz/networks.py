@@ -4,6 +4,8 @@ can represent."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator
 from random import Random
 from typing import Any
 
@@ -14,6 +16,19 @@ SHARED = ("x", "y", "z")
 LARGE = (1 << 63) - 1
 OPERATORS = ("+", "-", "*", "%", "max", "min")
 COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
+
+
+class NetworkCase:
+    """A case of a strategy: a random network."""
+
+    def __init__(self, seed: int, written: Json) -> None:
+        self.seed, self.written = seed, written
+
+    def description(self) -> Iterator[str]:
+        yield f"a network of {len(self.written['automata'])} automata"
+
+    def files(self) -> dict[str, str | bytes]:
+        return {"model.jani": json.dumps(self.written, indent=1, ensure_ascii=False)}
 
 
 def network(random: Random) -> Json:

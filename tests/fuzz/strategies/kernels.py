@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from random import Random
 
-from fuzz.networks import Json, network
+from fuzz.networks import NetworkCase, network
 from fuzz.strategy import Failure, Strategy
 from roaml import api
 from roaml.jani.reader import read_model
@@ -20,21 +19,7 @@ TRACES = 3
 STEPS = 25
 
 
-@dataclass
-class Network:
-    """Attributes:
-    written: the model.
-    """
-
-    seed: int
-    written: Json
-
-    def description(self) -> Iterator[str]:
-        yield f"a network of {len(self.written['automata'])} automata"
-
-    def files(self) -> dict[str, str | bytes]:
-        return {"model.jani": json.dumps(self.written, indent=1, ensure_ascii=False)}
-
+class Network(NetworkCase):
     def run(self) -> Iterator[Failure]:
         value, syntax = parse(json.dumps(self.written))
         model, findings = read_model(value, "model.jani")

@@ -5,12 +5,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from random import Random
 
 from scipy.stats import binom
 
-from fuzz.networks import Json, bounded
+from fuzz.networks import NetworkCase, bounded
 from fuzz.strategy import Failure, Strategy
 from roaml import api
 from roaml.explicit.space import LimitError, StateLimits, explore
@@ -30,21 +29,7 @@ TOLERANCE = 1e-9
 """Of the bounds of exact values, which are rounded."""
 
 
-@dataclass
-class Network:
-    """Attributes:
-    written: the model.
-    """
-
-    seed: int
-    written: Json
-
-    def description(self) -> Iterator[str]:
-        yield f"a network of {len(self.written['automata'])} automata"
-
-    def files(self) -> dict[str, str | bytes]:
-        return {"model.jani": json.dumps(self.written, indent=1, ensure_ascii=False)}
-
+class Network(NetworkCase):
     def run(self) -> Iterator[Failure]:
         value, _ = parse(json.dumps(self.written))
         model, _ = read_model(value, "model.jani")
