@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from roaml.debugging.scopes import ScopeEntry, Values
@@ -34,23 +34,19 @@ def overview(session: Session, sources: Sources, step: int, earlier: int) -> tup
 
     Both states are in the run already.
     """
-    texts_before = {path: text for path, text, _ in _texts(_values(session, sources, earlier))}
-    rows: dict[str, StateRow] = {}
-    children: dict[str, list[StateRow]] = {}
-    for path, text, group in _texts(_values(session, sources, step)):
-        old = texts_before.get(path)
+    before = _texts(_values(session, sources, earlier))
+    after = _texts(_values(session, sources, step))
+
+    def row(path: tuple[str, ...], rows: tuple[StateRow, ...]) -> StateRow:
+        text, old = after[path], before.get(path)
         is_new = text != old and (old is not None or bool(text))
-        row = StateRow(path[-1], text, old if is_new else None, is_new)
-        if len(path) == 1:
-            rows[group] = row
-            children[group] = []
-        else:
-            children[group].append(row)
-    return tuple(
-        StateRow(row.name, row.value, row.before, row.has_changed or any(r.has_changed for r in children[group]),
-            tuple(children[group]))
-        for group, row in rows.items()
-    )  # fmt: skip
+        return StateRow(path[-1], text, old if is_new else None, is_new or any(r.has_changed for r in rows), rows)
+
+    children: dict[str, list[StateRow]] = {path[0]: [] for path in after}
+    for path in after:
+        if len(path) > 1:
+            children[path[0]].append(row(path, ()))
+    return tuple(row((group,), tuple(rows)) for group, rows in children.items())
 
 
 def _values(session: Session, sources: Sources, step: int) -> Values:
@@ -58,13 +54,14 @@ def _values(session: Session, sources: Sources, step: int) -> Values:
     return Values(session, sources, session.state(), None, {})
 
 
-def _texts(values: Values) -> Iterator[tuple[tuple[str, ...], str, str]]:
-    """The path of each row, its text, and the name of its group: first the row of a group, then those below it."""
+def _texts(values: Values) -> dict[tuple[str, ...], str]:
+    """Path of each row -> its text: `(group,)` for the row of a group, `(group, name)` for those below it."""
     groups: Mapping[str, tuple[str, tuple[ScopeEntry, ...]]] = {
         **{machine.name: (machine.state, entries) for machine, entries in values.machines()},
         **{scope.name: ("", scope.entries) for scope in values.shared_scopes() if scope.entries},
     }
+    texts: dict[tuple[str, ...], str] = {}
     for group, (text, entries) in groups.items():
-        yield (group,), text, group
-        for entry in entries:
-            yield (group, entry.name), shown(entry.value), group
+        texts[group,] = text
+        texts |= {(group, entry.name): shown(entry.value) for entry in entries}
+    return texts
