@@ -59,10 +59,10 @@ def mock_system(
     planned, missing = plan(leaves, mocks, Fraction(str(system.parameters.tick_rate)), paths)
     texts = {mock.path: mock.text for mock in planned}
     edits = event_edits(system, {p: tree for p in system.tree_paths if (tree := analysis.tree(p))}, mocks)
+    events = sum(map(len, edits.values()))
     section = document.root.find("behavior_tree")
     if planned and section is not None:
         edits.setdefault(main, []).append(listing(section, [os.path.basename(mock.path) for mock in planned]))
-    events = sum(map(len, edits.values())) - (main in edits)
     tree = analysis.tree(system.tree_paths[0]) if system.tree_paths else None
     given = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None
     if given is not None:

@@ -22,6 +22,7 @@ __all__ = [
     "Port",
     "Renamed",
     "library",
+    "node_in_libraries",
 ]
 
 BEHAVIORTREE_CPP = "behaviortree_cpp"
@@ -40,6 +41,11 @@ def library(name: str) -> Library:
     from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
 
     return _read(etree.fromstring(data))
+
+
+def node_in_libraries(name: str) -> Node | None:
+    """The declaration of a node in one of `LIBRARIES`, used or not; `None` if there is none."""
+    return next((library(known).nodes[name] for known in LIBRARIES if name in library(known).nodes), None)
 
 
 def _read(root: Any) -> Library:

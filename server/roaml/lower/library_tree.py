@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from roaml.forest.scripts import script_attributes
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, Node, Port, library, node_in_libraries
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board
@@ -347,7 +347,9 @@ def _declared(automaton: SystemAutomaton) -> Node:
     current = renamed.now if renamed else name
     if current in cpp.nodes:
         return cpp.nodes[current]
-    return next(library(other).nodes[name] for other in LIBRARIES if name in library(other).nodes)
+    node = node_in_libraries(name)
+    assert node is not None, name
+    return node
 
 
 def _of_machine(outline: MachineOutline) -> Node:

@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from roaml.expr.types import BASE_TYPES, type_of_text
 from roaml.forest.forest import port_type
-from roaml.libraries import LIBRARIES, Node, library
+from roaml.libraries import Node, node_in_libraries
 from roaml.mocks.plugin import MockPort
 from roaml.model.expand import Instance, PortConstant, Reference
 from roaml.model.system import System
@@ -47,11 +47,6 @@ _Slot: TypeAlias = tuple[str, str]
 """A type of nodes and a port, or "" and a variable of the blackboard."""
 
 
-def declared_in_libraries(name: str) -> Node | None:
-    """The declaration of a node in one of the libraries."""
-    return next((library(known).nodes[name] for known in LIBRARIES if name in library(known).nodes), None)
-
-
 def leaves_without_plugins(system: System, declared: Callable[[str], Node | None]) -> tuple[SystemLeaf, ...]:
     """The leaves without a plugin, by type in the order of the tree; without those whose names no machine can have.
 
@@ -63,7 +58,7 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
         if system.plugin(instance.plugin)[1] is None and safe_name(instance.plugin) == instance.plugin:
             by_type.setdefault(instance.plugin, []).append(instance)
     leaves = {name: nodes for name, nodes in by_type.items() if not any(node.children for node in nodes)}
-    known = {name: declared(name) or declared_in_libraries(name) for name in leaves}
+    known = {name: declared(name) or node_in_libraries(name) for name in leaves}
     types = _Types(system, leaves, known)
     return tuple(
         SystemLeaf(
@@ -94,7 +89,6 @@ class _Types:
     parents: dict[_Slot, _Slot] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.types: dict[_Slot, str] = {}
         slots: dict[_Slot, list[str]] = {}
         for name, nodes in self.leaves.items():
             for key, value in (setting for node in nodes for setting in node.ports):
@@ -108,7 +102,7 @@ class _Types:
         ranks: dict[_Slot, list[tuple[int, str]]] = {}
         for slot, literals in slots.items():
             ranks.setdefault(self.top(slot), []).extend(self.candidates(slot, literals))
-        self.types = {top: min(found)[1] for top, found in ranks.items() if found}
+        self.types = {top: min(ranked)[1] for top, ranked in ranks.items() if ranked}
 
     def candidates(self, slot: _Slot, literals: list[str]) -> Iterator[tuple[int, str]]:
         """Possible types of a slot, each with its rank: plugins first, then declarations, then constants."""
