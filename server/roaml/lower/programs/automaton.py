@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
-from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
+from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs import assembly
