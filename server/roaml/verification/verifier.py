@@ -13,17 +13,17 @@ from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
-from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
+from roaml.smc.lss import Search, Side, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch, summary
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
 from roaml.verification.expectations import Expectation, Verdict, check_range, is_possible, judge
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
-from roaml.verification.stuck import Look
+from roaml.verification.stuck import Look, StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
 
@@ -152,7 +152,7 @@ class Verifier:
         if name in self.checker.refused:
             raise self.checker.refused[name]
         asked = next(asked for asked in self.checker.asked if asked.question.name == name)
-        if self.options.method == SPRT and asked.question.threshold is None:
+        if self.options.method is EstimationMethod.SPRT and asked.question.threshold is None:
             for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
                     return replace(asked, question=with_threshold(asked.question, expectation.threshold))
@@ -285,7 +285,7 @@ class Verifier:
             NoThresholdError: it has no such number.
         """
         question = asked.question
-        if self.options.method == SPRT and (question.threshold is None or question.is_reward):
+        if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
     def interrupted(self, asked: CompiledProperty, tally: Tally, seconds: float) -> Result:
@@ -310,8 +310,8 @@ class Verifier:
                 words = described(scheduler, self.checker.automata)
                 got_stuck = stuck.stuck_in(self.target, self.checker, asked, answer, scheduler)
                 sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
-        asked_side = LEAST if asks_for_minimum(asked.question) else GREATEST
-        own = next((result for result in sampled if result.side == asked_side), None)
+        asked_side = Side.LEAST if asks_for_minimum(asked.question) else Side.GREATEST
+        own = next((result for result in sampled if result.side is asked_side), None)
         verdicts = [
             Verdict(expectation, False, False, under="so far") if own is None else judge(expectation, own.answer)
             for expectation in self.expected(asked)
@@ -350,7 +350,7 @@ class Verifier:
         verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in expectations)
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
-    def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:
+    def look_for_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> Look:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
         return stuck.look(self.target, self.checker, self.options, level, pulse)
 
