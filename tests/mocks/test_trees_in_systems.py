@@ -7,7 +7,8 @@ import itertools
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_trees import ANY, Drawn, as_xml, trees
+from random_trees import ANY, ENTRIES, Drawn, as_xml, trees
+from translated_trees import observe, with_mocks
 from tree_comparison import difference_in_system, difference_with_mocks
 from trees_in_systems import FOLDER, files
 
@@ -78,6 +79,27 @@ def test_a_write_after_the_check_for_writes() -> None:
     for seed in range(4):
         compare(tree, seed)
         assert difference_with_mocks(tree, TICKS, seed) == ""
+
+
+def test_a_real_number_in_a_port_that_needs_an_integer() -> None:
+    """The library throws an exception if the number is not an integer."""
+    for value, is_stuck in (("1.0 + y", False), ("y / 2", True)):
+        change = Drawn("Script", (("code", f"x := {value}"),))
+        ports = (("success_count", "{x}"), ("failure_count", "3"))
+        counted = Drawn("Parallel", ports, (Drawn("Act0"), Drawn("Act1"), Drawn("Act3")))
+        tree = Drawn("Sequence", (), (Drawn("Script", (("code", "x := 0.5"),)), change, counted))
+        seen = observe(with_mocks(as_xml(tree), {key: str(start) for key, start in ENTRIES.items()}, TICKS), 1)
+        assert seen.is_stuck is is_stuck
+        if not is_stuck:
+            compare(tree, 1)
+
+
+def test_a_switch_without_its_ports() -> None:
+    """A missing port is an error in the tree, not one of the tool."""
+    for ports in ((), (("variable", "{x}"),), (("case_1", "1"),)):
+        tree = Drawn("Switch2", ports, (Drawn("Check"), Drawn("Act1"), Drawn("Act2", (("_skipIf", "x == 1"),))))
+        diagnostics = api.check([f"{FOLDER}/main.xml"], texts=files(tree, TICKS)).diagnostics
+        assert {d.code for d in diagnostics if d.severity is api.Severity.ERROR} == {"missing-port"}, diagnostics
 
 
 def test_a_constant_that_two_subtrees_share() -> None:

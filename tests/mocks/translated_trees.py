@@ -11,6 +11,7 @@ from random_trees import WORLD_CONTROLS, WORLD_DECORATORS
 
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST
+from roaml.jani.typecheck import check_model
 from roaml.mocks.mock import Mock
 from roaml.mocks.network import MockedTree, MockOptions, mocked
 from roaml.model.tree import build_tree_file
@@ -60,6 +61,7 @@ def with_mocks(text: str, entries: dict[str, str], ticks: int, *, happens: bool 
 def observe(tree: MockedTree, seed: int) -> Observed:
     """One run of the translated tree."""
     model = translate(tree.network)
+    assert list(check_model(model)) == []
     model = replace(model, properties=tree_properties(model))
     never = model.properties[:1]
     checker = ModelChecker(model, never)

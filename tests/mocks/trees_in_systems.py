@@ -14,6 +14,7 @@ from translated_trees import CODES, Observed
 
 from roaml import api
 from roaml.jani.model import Model
+from roaml.jani.typecheck import check_model
 from roaml.mocks.mock import Mock
 from roaml.mocks.plugin import mock_plugin
 from roaml.scxml.names import sent_by
@@ -57,7 +58,9 @@ def files(drawn: Drawn, ticks: int) -> dict[str, str]:
 
 
 def translated(drawn: Drawn, ticks: int) -> Model:
-    return api.to_jani(api.load(f"{FOLDER}/main.xml", texts=files(drawn, ticks)))
+    model = api.to_jani(api.load(f"{FOLDER}/main.xml", texts=files(drawn, ticks)))
+    assert list(check_model(model)) == []
+    return model
 
 
 def leaves_of(drawn: Drawn) -> dict[int, tuple[str, str]]:

@@ -29,6 +29,10 @@ def random_number(span: Span = NO_SPAN) -> Expr:
     return Call(span, Member(span, Name(span, "Math"), "random", span), ())
 
 
+def floor(value: Expr) -> Expr:
+    return Call(NO_SPAN, Member(NO_SPAN, name("Math"), "floor", NO_SPAN), (value,))
+
+
 def length(array: Expr, span: Span = NO_SPAN) -> Expr:
     return Member(span, array, "length", span)
 

@@ -318,6 +318,7 @@ class LibraryTreeBuilder:
             counts=False,
             origin=node.origin,
             is_halted_always=True,
+            whole=values.whole,
         )
 
 

@@ -188,6 +188,7 @@ class _Builder:
             self.options.rate,
             self.options.counts,
             node.origin,
+            whole=values.whole,
         )
 
     def find_mock(self, node: ExecutedNode) -> Mock | None:

@@ -119,9 +119,16 @@ class ExpressionAssembler:
                 raise FaultError(unsupported(node), node.origin)
 
     def stored(self, node: Expression, kind: str, names: StorageNames, into: int = -1) -> Operand:
-        """Like `value`, with the result converted to `kind`."""
+        """Like `value`, with the result converted to `kind`.
+
+        Raises:
+            FaultError: a real number is stored as an integer, which JANI does not allow.
+        """
         if kind != REAL:
-            return self.value(node, names, into)
+            operand = self.value(node, names, into)
+            if operand.kind == REAL:
+                raise FaultError("a real number cannot be assigned to an integer; use `floor` or `ceil`", node.origin)
+            return operand
         if shapes.kind(node, names) == REAL:
             return self.value(node, names, into)
         return self.cells.as_real(self.value(node, names), into)

@@ -42,6 +42,7 @@ from roaml.lower.programs.steps import (
     Step,
     Update,
     output_steps,
+    port_steps,
     script_steps,
     update_steps,
 )
@@ -409,9 +410,7 @@ class _Explorer:
                 way.fixed[RESULT] = int(self.values.number(status, way.fixed))
                 following = ("after", 0)
             case assembly.Read(ports):
-                entries = tuple(self.code.bound[port] for port in ports if port in self.code.bound)
-                if entries:
-                    return self.ask(entries, following, way)
+                following = self.read_ports(ports, following)
             case assembly.Write(port, expression):
                 self.write_port(port, self.values.value(expression, way.fixed), way)
             case assembly.Evaluate(script, label):
@@ -480,6 +479,13 @@ class _Explorer:
 
     def ask_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
         return self.added(f"*updated*{following}", lambda key: update_steps(key, flag, following, otherwise))
+
+    def read_ports(self, ports: Sequence[str], following: Place) -> Place:
+        entries = tuple(self.code.bound[port] for port in ports if port in self.code.bound)
+        whole = tuple(self.code.bound[port] for port in ports if port in self.code.whole)
+        if not entries:
+            return following
+        return self.added(f"*ports*{following}", lambda key: port_steps(key, entries, whole, following))
 
     def write_outputs(self, following: Place) -> Place:
         return self.added(f"*outputs*{following}", lambda key: output_steps(key, self.code.outputs, following))

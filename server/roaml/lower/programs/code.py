@@ -60,6 +60,7 @@ class NodeCode:
         address: the address of the node in names of events: its number, or another word.
         known: port or parameter with a constant value -> the value.
         bound: port that is bound to an entry of the blackboard -> the entry.
+        whole: the ports that need an integer and are bound to an entry of real numbers.
         scripts: attribute or port -> its script.
         updated: the flag that states whether the observed entry was written; `None` if no node or script writes it.
         outputs: the entries that a mock writes when it succeeds, each with its possible values.
@@ -85,6 +86,7 @@ class NodeCode:
     counts: bool
     origin: Location
     is_halted_always: bool = False
+    whole: frozenset[str] = frozenset()
 
     @property
     def shape(self) -> Hashable:
@@ -106,6 +108,7 @@ class NodeCode:
             tuple((child.answers, child.is_stateless) for child in self.children),
             tuple((name, type(value), value) for name, value in sorted(self.known.items())),
             tuple((port, entry(bound)) for port, bound in sorted(self.bound.items())),
+            self.whole,
             tuple(script(name, used) for name, used in sorted(self.scripts.items())),
             entry(self.updated),
             tuple((entry(output), len(values)) for output, values in self.outputs),

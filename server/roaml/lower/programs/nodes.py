@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
@@ -14,7 +14,7 @@ from roaml.libraries.scripts import script_ports
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
 from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
-from roaml.lower.programs.entries import BoardEntry, EntryKind, read_literal
+from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
@@ -112,11 +112,13 @@ class PortValues:
         known: port with a constant value -> the value.
         bound: port that is bound to an entry -> the entry.
         elements: the elements of the queue of a loop.
+        whole: the ports that need an integer and are bound to an entry of real numbers.
     """
 
     known: dict[str, Known] = field(default_factory=dict)
     bound: dict[str, BoardEntry] = field(default_factory=dict)
     elements: tuple[Known, ...] = ()
+    whole: frozenset[str] = frozenset()
 
 
 def port_values(node: ExecutedNode, program: NodeProgram, board: Board) -> PortValues:
@@ -139,7 +141,19 @@ class _Reader:
         self.set_ports(self.node, self.program, self.board, result.known, result.bound)
         if self.program.name.startswith("Loop"):
             result.elements = self.elements(self.node, result.known)
+        result.whole = frozenset(
+            port
+            for port, entry in result.bound.items()
+            if entry.kind is EntryKind.REAL and self.needs_integer(port, result.bound)
+        )
         return result
+
+    def needs_integer(self, port: str, bound: Mapping[str, BoardEntry]) -> bool:
+        """Whether the node reads an integer from a port, or copies its value to an entry of integers."""
+        if self.program.name == "SetBlackboard":
+            return port == "value" and bound["output_key"].kind is EntryKind.INTEGER
+        declared = self.node.known.port(port) if self.node.known else None
+        return not self.program.name.startswith("Switch") and kind_of_cpp(port_type(declared)) is EntryKind.INTEGER
 
     def set_ports(
         self,
@@ -177,8 +191,11 @@ class _Reader:
                 known[port.name] = _case(text, kinds)
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
-        missing = [port for port in program.needed_ports if port not in known and port not in bound]
-        if missing and not program.name.startswith("Switch"):
+        needed: Sequence[str] = program.needed_ports
+        if program.name.startswith("Switch"):
+            needed = ("variable", *(f"case_{number}" for number in range(1, len(node.children))))
+        missing = [port for port in needed if port not in known and port not in bound]
+        if missing:
             raise _missing(node, missing[0])
         if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
             program.name.startswith("Switch")

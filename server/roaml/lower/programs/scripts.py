@@ -13,10 +13,10 @@ from typing import NoReturn
 
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean as BooleanExpr
-from roaml.expr.tree import Call, Expr, Member
 from roaml.expr.tree import Conditional as ConditionalExpr
+from roaml.expr.tree import Expr
 from roaml.expr.tree import Unary as UnaryExpr
-from roaml.lower.build import binary, both, equal, integer, name
+from roaml.lower.build import binary, both, equal, floor, integer, name
 from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.lower.programs.refusal import INVALID_SCRIPT
 from roaml.script import tree as syntax
@@ -254,12 +254,12 @@ class _Compiler:
             self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the value has another type")
         number = self.number(value, expr.value)
         if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
-            floor = Call(NO_SPAN, Member(NO_SPAN, name("Math"), "floor", NO_SPAN), (number.expr,))
             if self.assignments:
                 reason = f"a real number is assigned to the integer `{expr.target.name}` after another assignment"
                 self.refuse(expr, f"{reason}; use separate scripts")
-            self.conditions.append(equal(floor, number.expr))
-            return floor
+            whole = floor(number.expr)
+            self.conditions.append(equal(whole, number.expr))
+            return whole
         return number.expr
 
     def number(self, value: _Value, expr: syntax.Expr) -> _Value:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from roaml.expr.tree import Expr
-from roaml.lower.build import equal, integer, name
+from roaml.lower.build import equal, floor, integer, name
 from roaml.lower.programs.code import Known
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.scripts import CompiledScript
@@ -65,6 +65,18 @@ def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Pl
         Ask((flag,)),
         Decide(True, following, otherwise),
     )
+
+
+def port_steps(
+    segment: str, entries: tuple[BoardEntry, ...], whole: Sequence[BoardEntry], following: Place
+) -> tuple[Step, ...]:
+    """The steps that read the entries of ports. If the value of an entry in `whole` is not an integer, the library
+    throws an exception."""
+    steps: list[Step] = [Ask(entries)]
+    for entry in whole:
+        value = name(entry.local)
+        steps.append(Decide(equal(floor(value), value), (segment, len(steps) + 1), EXCEPTION))
+    return (*steps, Decide(True, following, following))
 
 
 def output_steps(

@@ -14,7 +14,7 @@ from typing import Any
 
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Call, Conditional, Expr, Member, Number, String, Unary
-from roaml.lower.build import binary, equal, integer, name
+from roaml.lower.build import binary, equal, floor, integer, name
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
 from roaml.text import NO_SPAN
 
@@ -86,7 +86,8 @@ class ProgramValues:
         if key == "LENGTH":
             return len(self.code.elements)
         if key in self.code.bound:
-            return name(self.code.bound[key].local)
+            value = name(self.code.bound[key].local)
+            return floor(value) if key in self.code.whole else value
         return self.code.known[key]
 
     def call(self, function: str, arguments: Sequence[Value]) -> Value:
