@@ -32,6 +32,11 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
         system = api.loaded(snapshot, path)
     except (api.ModelError, api.PathError):
         return
+    unknown = [placed.gap for _, placed in system.analysis.gaps(path)]
+    linked = system.analysis.system(path)
+    unknown += [gap for automaton in linked.automata for gap in automaton.outline.gaps] if linked else []
+    if unknown:
+        yield f"a part of the system is unknown, but there is no error: {unknown}"
     restart()
     model = api.to_jani(system)
     restart()

@@ -179,9 +179,18 @@ def _unread(root: Element) -> frozenset[SystemSection]:
     for child in root.elements:
         section = _section(child)
         hidden = [element for part in child.elements if not (section and _is_input(part)) for element in part.walk()]
-        if any(element.get("src") for element in (hidden if section else (child, *hidden))):
+        parameters = {id(part) for part in child.elements if _is_parameter(child, part)}
+        candidates = hidden if section else (child, *hidden)
+        if any(element.get("src") and id(element) not in parameters for element in candidates):
             sections |= {section} if section else set(SystemSection)  # the intended parent may be any section
     return frozenset(sections)
+
+
+def _is_parameter(section: Element, element: Element) -> bool:
+    """Whether an element is a parameter in its place. Such an element lists no file; its `src` is an unknown
+    attribute, which is only a warning."""
+    known = SYSTEM.find(section.name)
+    return known is not None and section_named(section.name) is None and element.name in known.children
 
 
 def _parameters(root: Element) -> Parameters:
