@@ -25,13 +25,13 @@ def told(folder: Path, files: dict[str, str]) -> str:
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
     subject = api.as_target(api.load(str(folder / "main.xml")))
-    look = stuck.look(subject, api.checker(subject.model), Options(), stuck.WARNING)
+    result = stuck.check_stuck(subject, api.checker(subject.model), Options(), stuck.WARNING)
 
     def place_of(origin: object) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)  # type: ignore[arg-type]
         return f"{Path(path).name}:{line}"
 
-    lines = stuck_report.as_text(look, place_of).splitlines()[2:]
+    lines = stuck_report.as_text(result, place_of).splitlines()[2:]
     # The rule stands on a line of its own here, which would be too long otherwise.
     return "".join(f"{line.strip()}\n" for line in lines).replace(" [", "\n[")
 

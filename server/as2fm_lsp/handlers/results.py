@@ -80,9 +80,9 @@ def register(context: Context) -> None:
         if known is None or known.result.traces is None:
             return None
         result, target = known.result, known.result.traces.target
-        tell = witness if getattr(params, "witness", False) is True else counterexample
+        explain_trace = witness if getattr(params, "witness", False) is True else counterexample
         why = await background.in_thread(
-            lambda _: tell(result, partial(place_in_words, target)), context.requests.checkpoint
+            lambda _: explain_trace(result, partial(place_in_words, target)), context.requests.checkpoint
         )
         if why is None:
             return None
@@ -130,7 +130,7 @@ class CurrentResults:
             return None
         if self._expected is None:
             self._expected = expected_now(self._snapshot, self.system, self.context.session.client_settings)
-        return self._expected.judge(known)
+        return self._expected.with_expectations(known)
 
     def is_stale(self, known: KnownResult) -> bool:
         return self.context.results.is_stale(known, self.analysis, self.system)

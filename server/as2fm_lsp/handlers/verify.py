@@ -78,7 +78,7 @@ def register(context: Context) -> None:
                     return None
                 raise
             finally:
-                context.refresh.look()
+                context.refresh.update()
 
 
 class _VerifyCommand:
@@ -102,12 +102,12 @@ class _VerifyCommand:
             snapshot = context.session.moment().snapshot(path)
             system = api.loaded(snapshot, path)
         except api.ModelError as error:
-            self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
+            self.show_error(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
             if not self.settings.is_silent:
                 await show(context, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
-            self.say_wrong(str(error))
+            self.show_error(str(error))
             return {"results": [], "errors": [{"message": str(error)}]}
         texts = fingerprint(system.analysis, path)
         target = context.results.target(texts)
@@ -137,8 +137,8 @@ class _VerifyCommand:
             else:
                 results.append(result)
                 self.publish(result, target, system.analysis, texts)
-        look = None if verifier is None else await self.look(verifier, system.analysis, results, texts)
-        return {"results": [self.rows[name] for name in names], "errors": [], "stuck": look}
+        stuck_row = None if verifier is None else await self.check_stuck(verifier, system.analysis, results, texts)
+        return {"results": [self.rows[name] for name in names], "errors": [], "stuck": stuck_row}
 
     def compiled(
         self, target: VerificationTarget, names: Sequence[str], analysis: Analysis
@@ -189,7 +189,7 @@ class _VerifyCommand:
         began = time.monotonic()
 
         def show_estimate(tally: Tally) -> None:
-            self.bar.say(f"{name}: {_so_far(verifier, asked, tally)}")
+            self.bar.set_message(f"{name}: {_so_far(verifier, asked, tally)}")
 
         result = await background.answer(verifier, asked, self.context.requests.checkpoint, show_estimate)
         return replace(result, seconds=time.monotonic() - began)
@@ -208,9 +208,9 @@ class _VerifyCommand:
             done = f"{count - len(open_)} of {count} properties"
             if open_:
                 first, tally = open_[0]
-                self.bar.say(f"{done}, {first.question.name}: {_so_far(verifier, first, tally)}")
+                self.bar.set_message(f"{done}, {first.question.name}: {_so_far(verifier, first, tally)}")
             else:
-                self.bar.say(f"{done}; trying other schedulers")
+                self.bar.set_message(f"{done}; trying other schedulers")
 
         def keep(result: Result) -> None:
             if result.fault is not None:
@@ -232,22 +232,22 @@ class _VerifyCommand:
     def publish(self, result: Result, target: VerificationTarget, analysis: Analysis, texts: Texts) -> None:
         """Store a complete result, and send it to the client."""
         self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
-        self.tell(result.name, verified_row(result))
-        self.context.refresh.look()
+        self.report_row(result.name, verified_row(result))
+        self.context.refresh.update()
         if not self.settings.is_silent:
             self.context.client.show_message(types.MessageType.Info, self.text(result, target))
 
     def refuse(self, name: str, fault: FaultError, analysis: Analysis) -> None:
         """Report that a property cannot be decided."""
-        self.tell(name, {"property": name, "error": self.fault(fault, analysis)})
-        self.say_wrong(f"{name}: {fault.message}")
+        self.report_row(name, {"property": name, "error": self.fault(fault, analysis)})
+        self.show_error(f"{name}: {fault.message}")
 
     def reject(self, name: str, message: str) -> None:
         """Report that a property is unknown or cannot be compiled."""
-        self.tell(name, {"property": name, "error": {"message": message}})
-        self.say_wrong(message)
+        self.report_row(name, {"property": name, "error": {"message": message}})
+        self.show_error(message)
 
-    def tell(self, name: str, row: Json) -> None:
+    def report_row(self, name: str, row: Json) -> None:
         self.rows[name] = row
         if self.settings.partial_result_token is not None:
             self.context.client.send_partial_result(self.settings.partial_result_token, row)
@@ -257,20 +257,20 @@ class _VerifyCommand:
         shown = "in a separate message"
         return one_as_text(result, partial(place_in_words, target), self.settings.stuck, shown)
 
-    async def look(
+    async def check_stuck(
         self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
         """Whether the system gets stuck. Traces are generated to find out, unless this was requested as a property."""
         target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None
-        known = stuck.Look(None, None, level)
+        known = stuck.StuckResult(None, None, level)
         if not any(result.asks_stuck for result in results):
             asked = checker.stuck
             await self.bar.step(asked.question.name)
             began = time.monotonic()
             known = await background.in_thread(
-                lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
+                lambda checked: verifier.check_stuck(level, lambda _, __: checked()),
                 self.context.requests.checkpoint,
             )
             is_free = all(property_.name != asked.question.name for property_ in target.properties)
@@ -279,7 +279,7 @@ class _VerifyCommand:
                 seconds = time.monotonic() - began
                 result = Result(asked.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces)
                 self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
-            self.context.refresh.look()
+            self.context.refresh.update()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
         place_of = partial(place_in_words, target)
         text = stuck_report.as_text(known, place_of)
@@ -298,7 +298,7 @@ class _VerifyCommand:
         where = {} if fault.origin is None else place(self.context, analysis, fault.origin)
         return {"message": fault.message, "code": fault.code, "trace": fault.trace, **where}
 
-    def say_wrong(self, text: str) -> None:
+    def show_error(self, text: str) -> None:
         if not self.settings.is_silent:
             self.context.client.show_message(types.MessageType.Error, text)
 

@@ -112,7 +112,7 @@ def _refusal_row(refusal: Refusal) -> dict[str, Any]:
 
 
 def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> list[str]:
-    return [f"  {line}" for line in stuck_report.told(stuck, place_of, level, shown)]
+    return [f"  {line}" for line in stuck_report.stuck_lines(stuck, place_of, level, shown)]
 
 
 def _estimate(answer: Answer) -> str:

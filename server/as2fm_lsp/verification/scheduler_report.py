@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.choices import EXPLORATION, SAMPLING, Choices, Extreme
 from roaml.smc.goal import Question
-from roaml.verification.schedulers import extreme_asked, interval_text
+from roaml.verification.schedulers import extreme_of, interval_text
 
 
 def remark(question: Question, choices: Choices | None) -> str:
@@ -19,7 +19,7 @@ def remark(question: Question, choices: Choices | None) -> str:
     if choices.agreement:
         return f"all schedulers agree: {choices.agreement}"
     head = "warning: this is the value under uniform choices"
-    head += f", and the property asks for the {extreme_asked(question)} over all schedulers"
+    head += f", and the property asks for the {extreme_of(question)} over all schedulers"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
         return f"{head}; schedulers range from {_reached(least)} to {_reached(greatest)}"

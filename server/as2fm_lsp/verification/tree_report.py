@@ -92,10 +92,10 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     """The status that each leaf returned where chance decided it, in the order of the trace."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
-    told = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
+    leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
     ticks = [step.number for step in story.steps if sent_by(step.action or "") == f"bt_{ROOT_NUMBER}_tick"]
     rows = []
-    for turn in told:
+    for turn in leaf_turns:
         node = leaves[turn.automaton]
         seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
         rows.append((f"{seconds:.1f} s", node.name, turn.status, place_of(node.origin)))

@@ -82,7 +82,7 @@ class Question:
         is_reward: whether it is about an expected reward, not a probability.
         threshold: the comparison of the value, if there is one.
         variables: the variables that the property reads.
-        is_stuck: whether it is about stuck traces (`ask_stuck`).
+        is_stuck: whether it is about stuck traces (`compile_stuck`).
         can_be_vacuous: whether it may not apply to a trace (`Activity`).
         can_be_late: see `ObserverOutputs`.
         is_conditional: whether it is only about traces that satisfy assumptions.
@@ -144,7 +144,9 @@ class ObserverOutputs:
 NO_OUTPUTS = ObserverOutputs()
 
 
-def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs = NO_OUTPUTS) -> CompiledProperty:
+def compile_property(
+    compilation: Compilation, property_: Property, outputs: ObserverOutputs = NO_OUTPUTS
+) -> CompiledProperty:
     """Compile a property.
 
     Args:
@@ -158,7 +160,7 @@ def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs 
     return _Writer(compilation, property_, outputs).asked()
 
 
-def given(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
+def conditional(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
     """The question `asked`, restricted to traces that satisfy `assumptions`."""
     return replace(asked, question=replace(asked.question, is_conditional=True), assumptions=assumptions.goal)
 
@@ -167,7 +169,7 @@ STUCK_PROPERTY = "stuck"
 """The name of the property that every model has: the probability that a trace gets stuck."""
 
 
-def ask_stuck(compilation: Compilation) -> CompiledProperty:
+def compile_stuck(compilation: Compilation) -> CompiledProperty:
     """The question about the probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another,
     and nothing can ever change. Every trace runs to its end."""
     # JANI has no predicate for this; `deadlock` is the closest one.

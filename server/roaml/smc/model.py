@@ -12,12 +12,12 @@ from roaml.jani.model import Model
 from roaml.jani.passive import unread_variables, without_passive
 from roaml.jani.properties import Formula, Property
 from roaml.smc.batch import Payload, TraceProblem, pack
-from roaml.smc.choices import Choices, look_at_choices
+from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.explore import Registers
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, ask, ask_stuck, given
+from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, compile_property, compile_stuck, conditional
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
@@ -85,12 +85,12 @@ class ModelChecker:
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    asked = self._ask(property_)
+                    asked = self._compile(property_)
                     assumed = assumptions.get(property_.name)
-                    self.asked += (asked if assumed is None else given(asked, self._ask(assumed)),)
+                    self.asked += (asked if assumed is None else conditional(asked, self._compile(assumed)),)
                 except FaultError as fault:
                     self.refused[property_.name] = fault
-            self.stuck: CompiledProperty = ask_stuck(self._compilation)
+            self.stuck: CompiledProperty = compile_stuck(self._compilation)
             if asks_stuck:
                 self.asked += (self.stuck,)
                 self._names += (self.stuck.question.name,)
@@ -100,8 +100,8 @@ class ModelChecker:
         finally:
             sys.setrecursionlimit(depth)
 
-    def _ask(self, property_: Property) -> CompiledProperty:
-        return ask(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
+    def _compile(self, property_: Property) -> CompiledProperty:
+        return compile_property(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
 
     @property
     def legend(self) -> Legend:
@@ -229,7 +229,7 @@ class ModelChecker:
         """
         compiled, payload, ignored = self.compiled(asked), self.payload(asked), self._ignored(asked)
         try:
-            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse, ignored)
+            return check_choices(self.model, compiled, payload, answer, self.automata, pool, pulse, ignored)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

@@ -44,7 +44,7 @@ class Story:
     comment: str = ""
 
 
-def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
+def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
     """The story of a trace.
 
     Args:

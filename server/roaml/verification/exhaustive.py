@@ -13,7 +13,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.results import ALL, NONE, Exact, ShortestTrace
-from roaml.verification.schedulers import asks_for_minimum
+from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
 """The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
@@ -77,11 +77,11 @@ def _proof(space: Space, values: GoalValues) -> str:
     return ALL if values.minimum.lower == 1.0 and is_negated else ""
 
 
-def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
+def check_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
     """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation."""
     threshold = expectation.threshold
     what, bounds, value = ("least", exact.minimum, exact.least)
-    if not asks_for_minimum(question):
+    if not is_minimised(question):
         what, bounds, value = ("greatest", exact.maximum, exact.greatest)
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
 

@@ -16,7 +16,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
-from roaml.smc.story import Story, tell
+from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
 from roaml.verification.stuck import Stuck
@@ -43,11 +43,11 @@ class ShortestTrace:
         """The whole trace, with the steps that are relevant for the property.
 
         Args:
-            clock: see `roaml.smc.story.tell`.
+            clock: see `roaml.smc.story.build_story`.
         """
         recorder = PathRecorder(self.space, self.path)
         names = {storage.name for storage in recorder.shared}
-        return tell(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
+        return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
 ALL, NONE = "all", "none"
@@ -142,7 +142,7 @@ class Traces:
 
     def story(self, trace: int) -> Story:
         """A whole trace, with the steps that are relevant for the property."""
-        return tell(self.recorder(), trace, self.target.clock)
+        return build_story(self.recorder(), trace, self.target.clock)
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,7 +90,7 @@ def chain_of(waiting: Sequence[Wait]) -> Chain:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class StuckResult:
     """The result of the check for stuck traces.
 
     Attributes:
@@ -110,15 +110,15 @@ class Look:
         return self.stuck is None or self.level != ERROR
 
 
-def look(
+def check_stuck(
     target: VerificationTarget, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None
-) -> Look:
+) -> StuckResult:
     """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
     except FaultError as fault:
-        return Look(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
-    return Look(answer, stuck_in(target, checker, checker.stuck, answer), level)
+        return StuckResult(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
+    return StuckResult(answer, stuck_in(target, checker, checker.stuck, answer), level)
 
 
 def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Answer:

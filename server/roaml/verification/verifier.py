@@ -18,12 +18,12 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
-from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
-from roaml.verification.expectations import Expectation, Verdict, check_range, is_possible, judge
+from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
+from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
-from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
-from roaml.verification.stuck import Look
+from roaml.verification.schedulers import is_minimised, under_all_schedulers
+from roaml.verification.stuck import StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
 
@@ -111,7 +111,7 @@ def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tu
     return (Expectation(name, threshold, is_own=True), *about_it)
 
 
-def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
+def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
     """The result of traces with uniform choices, compared with other expectations, without new traces.
 
     Args:
@@ -125,7 +125,9 @@ def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
 
 
 def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
-    return tuple(under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in expectations)
+    return tuple(
+        under_all_schedulers(check_expectation(expectation, answer), answer, choices) for expectation in expectations
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +221,7 @@ class Verifier:
         began = time.monotonic()
         answer = self.checker.answer(asked, self.options, pool, tally, watch, pulse)
         choices = self._choices(asked, answer, pool, pulse)
-        return self._judged(asked, answer, choices, time.monotonic() - began)
+        return self._with_verdicts(asked, answer, choices, time.monotonic() - began)
 
     def can_share(self, asked: CompiledProperty) -> bool:
         """Whether the traces of other properties can answer a property: it must be about a probability, and not about
@@ -269,7 +271,7 @@ class Verifier:
             choices = self._choices(asked, answer, pool, pulse)
         except FaultError as fault:
             return self.refused(asked.question.name, fault)
-        return self._judged(asked, answer, choices, seconds + time.monotonic() - began)
+        return self._with_verdicts(asked, answer, choices, seconds + time.monotonic() - began)
 
     def _choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
         """What is known about other schedulers; `None` if the question is only about uniform choices."""
@@ -292,7 +294,7 @@ class Verifier:
         """The result of a property so far, after an interruption."""
         answer = summary(asked.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
-        return replace(self._judged(asked, answer, choices, seconds), is_interrupted=True)
+        return replace(self._with_verdicts(asked, answer, choices, seconds), is_interrupted=True)
 
     def refused(self, name: str, fault: FaultError) -> Result:
         """The result of a property that cannot be answered."""
@@ -310,10 +312,12 @@ class Verifier:
                 words = described(scheduler, self.checker.automata)
                 got_stuck = stuck.stuck_in(self.target, self.checker, asked, answer, scheduler)
                 sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
-        asked_side = LEAST if asks_for_minimum(asked.question) else GREATEST
-        own = next((result for result in sampled if result.side == asked_side), None)
+        required_side = LEAST if is_minimised(asked.question) else GREATEST
+        own = next((result for result in sampled if result.side == required_side), None)
         verdicts = [
-            Verdict(expectation, False, False, under="so far") if own is None else judge(expectation, own.answer)
+            Verdict(expectation, False, False, under="so far")
+            if own is None
+            else check_expectation(expectation, own.answer)
             for expectation in self.expected(asked)
         ]
         if own is not None:
@@ -347,14 +351,16 @@ class Verifier:
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
             return Result(asked.question.name, None, open_, time.monotonic() - began, undecided=str(error))
-        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in expectations)
+        verdicts = tuple(check_exactly(expectation, exact, asked.question) for expectation in expectations)
         return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
-    def look_for_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> Look:
+    def check_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
-        return stuck.look(self.target, self.checker, self.options, level, pulse)
+        return stuck.check_stuck(self.target, self.checker, self.options, level, pulse)
 
-    def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:
+    def _with_verdicts(
+        self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float
+    ) -> Result:
         return Result(
             asked.question.name,
             answer,

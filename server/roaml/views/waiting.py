@@ -88,7 +88,7 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     Args:
         time: the time of the model, in s.
     """
-    return tuple(_Chain(standstill, time).told())
+    return tuple(_Chain(standstill, time).waits())
 
 
 NEEDS_TIME = "answer-needs-time"
@@ -136,7 +136,7 @@ class _Chain:
 
     # ------------------------------------------------------------------ the search
 
-    def told(self) -> Iterator[Wait]:
+    def waits(self) -> Iterator[Wait]:
         clock = self.index.get(CLOCK)
         if clock is not None:
             self.follow(clock, "")
