@@ -155,9 +155,12 @@ def test_thresholds() -> None:
     ):
         found = path_model([0, 1], False, {"p": written})
         found["constants"] = [{"name": "c", "type": "real", "value": 0.75}]
-        (asked,) = ModelChecker(model(found)).asked
-        assert asked.question.threshold is not None
-        assert (asked.question.threshold.relation.symbol, asked.question.threshold.number) == (relation, number)
+        (property_,) = ModelChecker(model(found)).compiled_properties
+        assert property_.question.threshold is not None
+        assert (property_.question.threshold.relation.symbol, property_.question.threshold.number) == (
+            relation,
+            number,
+        )
 
 
 def expectation(reward: Any, accumulate: list[str], reach: Any = A) -> Json:
@@ -217,7 +220,7 @@ def test_properties_that_cannot_be_answered(expression: Json, message: str) -> N
     """Each is rejected for a different reason, and the other properties are still answered."""
     found = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
     checker = ModelChecker(model(path_model([0, 1], False, found)))
-    assert [asked.question.name for asked in checker.asked] == ["before", "after"]
+    assert [property_.question.name for property_ in checker.compiled_properties] == ["before", "after"]
     assert checker.names == ("before", "p", "after")
     (refused,) = checker.refused.values()
     assert message in refused.message
@@ -226,4 +229,4 @@ def test_properties_that_cannot_be_answered(expression: Json, message: str) -> N
     assert refused.origin is not None
     with Pool() as pool:
         options = Options(method=FIXED, max_traces=1)
-        assert [checker.answer(asked, options, pool).value for asked in checker.asked] == [1, 0]
+        assert [checker.answer(property_, options, pool).value for property_ in checker.compiled_properties] == [1, 0]

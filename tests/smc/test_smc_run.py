@@ -41,7 +41,7 @@ def coin(p: float = 0.3, extra: int = 0) -> Json:
 def ask(options: Options, written: Json | None = None, pool: Pool | None = None, **more: Any) -> Answer:
     checker = ModelChecker(model(written or coin()))
     with pool or Pool() as used:
-        return checker.answer(checker.asked[0], options, used, **more)
+        return checker.answer(checker.compiled_properties[0], options, used, **more)
 
 
 def numbers(answer: Answer) -> tuple[Any, ...]:
@@ -91,7 +91,7 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
 def test_threads_do_not_share_a_kernel() -> None:
     """With a shared kernel, one thread would continue the trace of another."""
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     together = Barrier(2)
 
     def kernel(_: int) -> Kernel:
@@ -222,7 +222,7 @@ def test_memory_does_not_grow_with_the_number_of_traces() -> None:
 
 def tasks() -> Iterator[Task]:
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     first = 0
     while True:
         yield Task(payload, 1, first, 10, 1000)

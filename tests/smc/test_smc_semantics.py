@@ -142,7 +142,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
     assume(not isinstance(expected, float) or not math.isnan(expected))
     assume(isinstance(expected, (str, float)) or abs(expected) < 1 << 62)  # type: ignore[arg-type]
     checker = ModelChecker(actual_model)
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     try:
         ((_, (branch,)),) = explorer.choices(explorer.initial)
     except StateFaultError:
@@ -163,7 +163,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
 def states_of(actual_model: Model, limit: int) -> set[tuple[Any, ...]]:
     """All reachable states of the model checker, in the form of the slow explorer."""
     checker = ModelChecker(actual_model)
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     layout = checker.legend.layout
     states = set()
     for place, integers, real_numbers in explorer.reachable(limit):

@@ -280,13 +280,13 @@ def test_random_formulas_in_traces(draw: Callable[[random.Random], object]) -> N
     assert {fault.code for fault in checker.refused.values()} <= {"unsupported-property"}
     states = traces(checker, 15)
     verdicts = set()
-    for asked in checker.asked:
-        recorder = Recorder(checker, asked, 5, 100_000)
+    for property_ in checker.compiled_properties:
+        recorder = Recorder(checker, property_, 5, 100_000)
         for number, seen in enumerate(states):
             recording = Recording(number)
             recorder.rush(recording)
-            expected = holds(formulas[asked.question.name], seen)
-            assert recording.verdict == (TRUE if expected else FALSE), formulas[asked.question.name]
+            expected = holds(formulas[property_.question.name], seen)
+            assert recording.verdict == (TRUE if expected else FALSE), formulas[property_.question.name]
             verdicts.add(expected)
     assert verdicts == {True, False}
     assert bool(checker.refused) == (draw is drawn_formula)
@@ -315,8 +315,8 @@ def test_all_states_give_what_storm_computes_for_the_nested_formula(name: str) -
 
 
 def all_states(verifier: api.Verifier) -> Exact:
-    (asked,) = verifier.checker.asked
-    values = verifier.exhaustive(asked, StateLimits()).exact
+    (property_,) = verifier.checker.compiled_properties
+    values = verifier.exhaustive(property_, StateLimits()).exact
     assert values is not None
     return values
 

@@ -290,7 +290,7 @@ def test_storm_and_the_search_give_the_values_of_the_twin(key: tuple[str, str]) 
     assert observed.least == pytest.approx(by_hand.least, abs=1e-6)
     assert observed.greatest == pytest.approx(by_hand.greatest, abs=1e-6)
     verifier = api.verifier(source, ["p"])
-    values = verifier.exhaustive(verifier.checker.asked[0], StateLimits()).exact
+    values = verifier.exhaustive(verifier.checker.compiled_properties[0], StateLimits()).exact
     assert values is not None
     assert values.minimum.lower == pytest.approx(by_hand.least, abs=1e-5)
     assert values.maximum.upper == pytest.approx(by_hand.greatest, abs=1e-5)

@@ -31,7 +31,7 @@ PlaceOf = Callable[[Location], str]
 def bug() -> tuple[Story, PlaceOf]:
     subject = api.as_target(api.load(str(ROBOT / "main_with_bug.xml")))
     ready = api.checker(subject.model, ["never_placed_empty"])
-    story = build_story(Recorder(ready, ready.asked[0], 0, 10_000), DROPPED, subject.clock)
+    story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), DROPPED, subject.clock)
 
     def place_of(origin: Location) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)
@@ -59,7 +59,7 @@ def test_forwarding_steps_are_omitted() -> None:
     texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
     subject = api.as_target(api.load(str(folder / "main.xml"), texts=texts))
     ready = api.checker(subject.model, ["never_empty"])
-    story = build_story(Recorder(ready, ready.asked[0], 0, 10_000), EMPTY, subject.clock)
+    story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), EMPTY, subject.clock)
     told = lines(story, lambda _: "")
     assert {line.who for line in told} == {
         "Battery",
@@ -75,7 +75,7 @@ def test_forwarding_steps_are_omitted() -> None:
 
 def walked(written: Json) -> Story:
     ready = ModelChecker(model(written))
-    return build_story(Recorder(ready, ready.asked[0], 0, 1000), 0)
+    return build_story(Recorder(ready, ready.compiled_properties[0], 0, 1000), 0)
 
 
 def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:

@@ -191,8 +191,8 @@ class _Verification:
                     interrupted = self.results[-1].is_interrupted
             can_check = self.tree is None and not interrupted and not self.options.exhaustive
             if can_check and stuck.can_be_stuck(checker):
-                asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
-                self.stuck_result = self._check_stuck(None if asks_stuck or self.faults else bar)
+                includes_stuck = any(property_.question.is_stuck for property_ in checker.compiled_properties)
+                self.stuck_result = self._check_stuck(None if includes_stuck or self.faults else bar)
         self._print()
         self._print_faults()
         is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
@@ -206,33 +206,33 @@ class _Verification:
         options, verifier = self.options, self.verifier
         if options.separate or options.exhaustive or options.scheduler == "lss":
             return {}
-        asked = verifier.sharing()
-        if not asked:
+        properties = verifier.sharing()
+        if not properties:
             return {}
-        payloads = [verifier.checker.payload(property_) for property_ in asked] if self.state is not None else []
-        tallies = [Tally() for _ in asked]
+        payloads = [verifier.checker.payload(property_) for property_ in properties] if self.state is not None else []
+        tallies = [Tally() for _ in properties]
         if self.state is not None:
-            tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
-        by_name = {property_.question.name: payload for property_, payload in zip(asked, payloads, strict=False)}
+            tallies = [self.state.tally(e.question, payload) for e, payload in zip(properties, payloads, strict=True)]
+        by_name = {property_.question.name: payload for property_, payload in zip(properties, payloads, strict=False)}
 
         def watch(property_: CompiledProperty, so_far: Tally) -> None:
-            shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
+            shown = next((e for e, tally in zip(properties, tallies, strict=True) if not tally.is_finished), None)
             if property_ is shown:
-                bar.together(property_.question, so_far, len(asked))
+                bar.together(property_.question, so_far, len(properties))
             if self.state is not None:
                 self.state.keep(property_.question.name, by_name[property_.question.name], so_far)
 
         began = time.monotonic()
-        bar.begin(asked[0].question, self.limits, tallies[0])
+        bar.begin(properties[0].question, self.limits, tallies[0])
         try:
-            results = verifier.answer_together(asked, pool, tallies, watch, bar.pulse)
+            results = verifier.answer_together(properties, pool, tallies, watch, bar.pulse)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         except KeyboardInterrupt:
             seconds = time.monotonic() - began
-            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
+            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(properties, tallies, strict=True)]
         if self.state is not None:
-            for property_, tally in zip(asked, tallies, strict=True):
+            for property_, tally in zip(properties, tallies, strict=True):
                 self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
         self.faults += [result.fault for result in results if result.fault is not None]
         return {result.name: self._with_shown_path(result) for result in results}
@@ -252,20 +252,20 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
-        name = asked.question.name
+        name = property_.question.name
         if self.options.exhaustive:
-            return self._exhaustive(asked, bar, began)
+            return self._exhaustive(property_, bar, began)
         try:
-            self.verifier.check_method(asked)
+            self.verifier.check_method(property_)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         tally = Tally()
-        payload = self.verifier.checker.payload(asked)
+        payload = self.verifier.checker.payload(property_)
         if self.state is not None:
-            tally = self.state.tally(asked.question, payload)
-        bar.begin(asked.question, self.limits, tally)
+            tally = self.state.tally(property_.question, payload)
+        bar.begin(property_.question, self.limits, tally)
 
         def watch(so_far: Tally) -> None:
             bar.watch(so_far)
@@ -273,23 +273,23 @@ class _Verification:
                 self.state.keep(name, payload, so_far)
 
         if self.options.scheduler == "lss":
-            return self._search(asked, pool, bar, began)
+            return self._search(property_, pool, bar, began)
         try:
-            result = self.verifier.answer(asked, pool, tally, watch, bar.pulse)
+            result = self.verifier.answer(property_, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
-            result = self.verifier.interrupted(asked, tally, time.monotonic() - began)
+            result = self.verifier.interrupted(property_, tally, time.monotonic() - began)
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
         search, interrupted = Search(), False
         try:
-            self.verifier.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
+            self.verifier.checker.search(property_, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
             interrupted = True
-        return self.verifier.sampled(asked, search, time.monotonic() - began, is_interrupted=interrupted)
+        return self.verifier.sampled(property_, search, time.monotonic() - began, is_interrupted=interrupted)
 
     def _check_stuck(self, bar: ProgressBar | None) -> stuck.StuckResult:
         """The result of a check for stuck systems; with a progress bar, traces are generated for it."""
@@ -297,15 +297,15 @@ class _Verification:
         own = stuck.StuckResult(None, None, level) if bar is None else self.verifier.check_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exhaustive(self, asked: CompiledProperty, bar: ProgressBar, began: float) -> Result:
+    def _exhaustive(self, property_: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
         limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
         try:
             return self.verifier.exhaustive(
-                asked, limits, lambda states, done: bar.states(asked.question, states, done)
+                property_, limits, lambda states, done: bar.states(property_.question, states, done)
             )
         except KeyboardInterrupt:
-            return Result(asked.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            return Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
 
     def _print(self) -> None:
         text = self._text()
@@ -364,7 +364,7 @@ class _Verification:
         ]
         if same and has_story:
             return "in the trace below"
-        named = next((result.name for result in same if not result.asks_stuck), None)
+        named = next((result.name for result in same if not result.includes_stuck), None)
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:

@@ -166,7 +166,9 @@ class Adapter:
         self._session.has_begun = True
         run = debugger.session
         program = os.path.basename(launch.program)
-        self._session.log(f"{program}: seed {run.seed}, trace {run.trace}, property {run.asked.question.name}")
+        self._session.log(
+            f"{program}: seed {run.seed}, trace {run.trace}, property {run.compiled_property.question.name}"
+        )
         if launch.stops_on_entry:
             self._session.report(debugger.entry())
         else:

@@ -34,7 +34,7 @@ class ChoiceRequests:
             "time": session.time,
             "seed": session.seed,
             "trace": session.trace,
-            "property": session.asked.question.name,
+            "property": session.compiled_property.question.name,
             "verdicts": debugger.verdicts,
             "isByHand": session.is_by_hand,
             "isChanged": session.is_changed,

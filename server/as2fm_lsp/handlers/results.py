@@ -107,7 +107,7 @@ def register(context: Context) -> None:
         traces, sources = known.result.traces, Sources(known.result.traces.target, known.analysis)
         trace = natural(params, "trace")
         step, earlier = (min(natural(params, name), traces.options.max_steps) for name in ("step", "earlier"))
-        run = Session(traces.checker, traces.asked, traces.options.seed, trace, traces.target.clock)
+        run = Session(traces.checker, traces.compiled_property, traces.options.seed, trace, traces.target.clock)
         with suppress(FaultError):  # the trace ends where the model fails
             await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
         last = len(run.steps)

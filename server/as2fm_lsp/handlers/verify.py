@@ -120,16 +120,18 @@ class _VerifyCommand:
         target = target.expecting(context.session.settings_of(path).expectations)
         await self.bar.step("compiling")
         names = list(dict.fromkeys(names or [property_.name for property_ in target.properties]))
-        verifier, asked = self.compiled(target, names, system.analysis)
+        verifier, properties = self.compiled(target, names, system.analysis)
         results: list[Result] = []
-        together = [property_ for property_ in asked.values() if verifier is not None and verifier.can_share(property_)]
+        together = [
+            property_ for property_ in properties.values() if verifier is not None and verifier.can_share(property_)
+        ]
         if verifier is not None and len(together) > 1:
             results += await self.together(verifier, together, system.analysis, texts)
         for property_name in names:
             if verifier is None or property_name in self.rows:
                 continue
             try:
-                result = await self.alone(verifier, asked[property_name])
+                result = await self.alone(verifier, properties[property_name])
             except FaultError as fault:
                 self.refuse(property_name, fault, system.analysis)
             except WorkersLostError as error:
@@ -169,41 +171,43 @@ class _VerifyCommand:
                     self.reject(name, str(error))
             return None, {}
         verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform)
-        asked = {}
+        properties = {}
         for name in usable:
             try:
                 question = verifier.question(name)
                 for expectation in verifier.expected(question):
                     check_range(expectation, question.question)
-                asked[name] = question
+                properties[name] = question
             except FaultError as fault:
                 self.refuse(name, fault, analysis)
             except RangeError as error:
                 self.reject(name, str(error))
-        return verifier, asked
+        return verifier, properties
 
-    async def alone(self, verifier: Verifier, asked: CompiledProperty) -> Result:
+    async def alone(self, verifier: Verifier, property_: CompiledProperty) -> Result:
         """The result of a property, from traces that it does not share."""
-        name = asked.question.name
+        name = property_.question.name
         await self.bar.step(name)
         began = time.monotonic()
 
         def show_estimate(tally: Tally) -> None:
-            self.bar.set_message(f"{name}: {_so_far(verifier, asked, tally)}")
+            self.bar.set_message(f"{name}: {_so_far(verifier, property_, tally)}")
 
-        result = await background.answer(verifier, asked, self.context.requests.checkpoint, show_estimate)
+        result = await background.answer(verifier, property_, self.context.requests.checkpoint, show_estimate)
         return replace(result, seconds=time.monotonic() - began)
 
     async def together(
-        self, verifier: Verifier, asked: Sequence[CompiledProperty], analysis: Analysis, texts: Texts
+        self, verifier: Verifier, properties: Sequence[CompiledProperty], analysis: Analysis, texts: Texts
     ) -> list[Result]:
         """The results of properties that share traces. If the user cancels, those that are complete are kept."""
-        count = len(asked)
+        count = len(properties)
         await self.bar.step(f"{count} properties from the same traces")
 
         def show_estimates(tallies: Sequence[Tally]) -> None:
             open_ = [
-                (property_, tally) for property_, tally in zip(asked, tallies, strict=True) if not tally.is_finished
+                (property_, tally)
+                for property_, tally in zip(properties, tallies, strict=True)
+                if not tally.is_finished
             ]
             done = f"{count - len(open_)} of {count} properties"
             if open_:
@@ -222,9 +226,9 @@ class _VerifyCommand:
         results: list[Result] = []
         checkpoint = self.context.requests.checkpoint
         try:
-            await background.answer_together(verifier, asked, checkpoint, show_estimates, keep)
+            await background.answer_together(verifier, properties, checkpoint, show_estimates, keep)
         except WorkersLostError as error:
-            for property_ in asked:
+            for property_ in properties:
                 if property_.question.name not in self.rows:
                     self.reject(property_.question.name, str(error))
         return results
@@ -265,19 +269,21 @@ class _VerifyCommand:
         if not stuck.can_be_stuck(checker):
             return None
         known = stuck.StuckResult(None, None, level)
-        if not any(result.asks_stuck for result in results):
-            asked = checker.stuck
-            await self.bar.step(asked.question.name)
+        if not any(result.includes_stuck for result in results):
+            stuck_property = checker.stuck
+            await self.bar.step(stuck_property.question.name)
             began = time.monotonic()
             known = await background.in_thread(
                 lambda checked: verifier.check_stuck(level, lambda _, __: checked()),
                 self.context.requests.checkpoint,
             )
-            is_free = all(property_.name != asked.question.name for property_ in target.properties)
+            is_free = all(property_.name != stuck_property.question.name for property_ in target.properties)
             if known.answer is not None and is_free:
-                traces = Traces(target, checker, asked, known.answer.options)
+                traces = Traces(target, checker, stuck_property, known.answer.options)
                 seconds = time.monotonic() - began
-                result = Result(asked.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces)
+                result = Result(
+                    stuck_property.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces
+                )
                 self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
             self.context.refresh.update()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
@@ -303,9 +309,9 @@ class _VerifyCommand:
             self.context.client.show_message(types.MessageType.Error, text)
 
 
-def _so_far(verifier: Verifier, asked: CompiledProperty, tally: Tally) -> str:
+def _so_far(verifier: Verifier, property_: CompiledProperty, tally: Tally) -> str:
     """The estimate of a property whose verification is not complete."""
-    result = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
+    result = Result(property_.question.name, summary(property_.question, verifier.options, tally), (), 0)
     return f"{short(result)}, {tally.traces:,} traces"
 
 

@@ -32,17 +32,17 @@ def warning(question: Question, choices: Choices | None) -> str:
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
 
-def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
+def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
     """A note about all properties whose minimum or maximum may differ from their values, and what to do.
 
     Args:
-        asked: these properties, with their choices.
+        entries: these properties, with their choices.
     """
-    if not asked:
+    if not entries:
         return []
     names: dict[tuple[str, str], list[str]] = {}
     tried: dict[tuple[str, str], int] = {}
-    for question, choices in asked:
+    for question, choices in entries:
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)

@@ -106,7 +106,7 @@ class Activity(enum.IntEnum):
     """The scope of the property was never evaluated, so the trace says nothing about the property."""
     IDLE = 1
     """The scope was evaluated, but the event that triggers the property never occurred in it, such as a request."""
-    ASKED = 2
+    TRIGGERED = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,19 +125,19 @@ class ObserverOutputs:
 
     Attributes:
         open: (x, e): if e holds at the end of the model's time, `F G x` is undecided.
-        asked: whether the event that triggers the property has occurred.
+        triggered: whether the event that triggers the property has occurred.
         opened: whether the scope of the property has been evaluated.
         can_be_late: whether the property fails if the time ends before an event that it still requires.
     """
 
     open: tuple[tuple[str, Name], ...] = ()
-    asked: Expression | None = None
+    triggered: Expression | None = None
     opened: Expression | None = None
     can_be_late: bool = False
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
-        activity = tuple(expression for expression in (self.asked, self.opened) if expression is not None)
+        activity = tuple(expression for expression in (self.triggered, self.opened) if expression is not None)
         return (*(expression for _, expression in self.open), *activity)
 
 
@@ -157,12 +157,16 @@ def compile_property(
             number.
     """
     check_form(property_)
-    return _Writer(compilation, property_, outputs).asked()
+    return _Writer(compilation, property_, outputs).compiled_property()
 
 
-def conditional(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
-    """The question `asked`, restricted to traces that satisfy `assumptions`."""
-    return replace(asked, question=replace(asked.question, is_conditional=True), assumptions=assumptions.goal)
+def conditional(property_: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
+    """The question `property_`, restricted to traces that satisfy `assumptions`."""
+    return replace(
+        property_,
+        question=replace(property_.question, is_conditional=True),
+        assumptions=assumptions.goal,
+    )
 
 
 STUCK_PROPERTY = "stuck"
@@ -212,7 +216,7 @@ class _Writer:
         self.unread: set[str] = set()
         self.is_bounded = 0
 
-    def asked(self) -> CompiledProperty:
+    def compiled_property(self) -> CompiledProperty:
         formula, threshold = self.opened(self.property.expression)
         step_reward = exit_reward = -1
         match formula:
@@ -232,7 +236,7 @@ class _Writer:
             isinstance(formula, Expectation),
             threshold,
             variables,
-            can_be_vacuous=outputs.asked is not None or outputs.opened is not None,
+            can_be_vacuous=outputs.triggered is not None or outputs.opened is not None,
             can_be_late=outputs.can_be_late,
         )
         seen_start, seen_leaf = array("i", [0]), array("i")
@@ -258,14 +262,14 @@ class _Writer:
         return CompiledProperty(self.property, question, goal)
 
     def activity(self) -> int:
-        """The code that computes the activity of the property in a trace; -1 if the activity is always `ASKED`."""
-        asked, opened = self.outputs.asked, self.outputs.opened
-        if asked is None and opened is None:
+        """The code that computes the activity of the property in a trace; -1 if the activity is always `TRIGGERED`."""
+        triggered, opened = self.outputs.triggered, self.outputs.opened
+        if triggered is None and opened is None:
             return -1
         idle: Expression = Integer(Activity.IDLE)
         if opened is not None:
             idle = Conditional(opened, idle, Integer(Activity.CLOSED))
-        value = Conditional(asked, Integer(Activity.ASKED), idle) if asked is not None else idle
+        value = Conditional(triggered, Integer(Activity.TRIGGERED), idle) if triggered is not None else idle
         return self.compilation.expressions.integer(value, self.names)
 
     def variables(self) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ class Counterexample:
 
 def unwanted_verdict(result: Result) -> int:
     """The verdict of the traces that contradict an expectation."""
-    if result.asks_stuck:
+    if result.includes_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
     return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE

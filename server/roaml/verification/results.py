@@ -125,12 +125,12 @@ class Traces:
 
     target: VerificationTarget
     checker: ModelChecker
-    asked: CompiledProperty
+    compiled_property: CompiledProperty
     options: Options
 
     def recorder(self) -> Recorder:
         """A recorder that simulates single traces. It must not be used by several threads at a time."""
-        return Recorder(self.checker, self.asked, self.options.seed, self.options.max_steps)
+        return Recorder(self.checker, self.compiled_property, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
         """The steps of a trace.
@@ -183,13 +183,15 @@ class Result:
     @property
     def comment(self) -> str:
         """A description of what the property requires, if the model contains one."""
-        return (self.traces.asked.property.comment or "") if self.traces is not None else ""
+        return (self.traces.compiled_property.property.comment or "") if self.traces is not None else ""
 
     @property
-    def asks_stuck(self) -> bool:
+    def includes_stuck(self) -> bool:
         """Whether the question is about stuck traces."""
         traces = () if self.exact is None else self.exact.traces
-        questions = [answer.question for answer in self._answers()] + [t.space.asked.question for t in traces]
+        questions = [answer.question for answer in self._answers()] + [
+            t.space.compiled_property.question for t in traces
+        ]
         return any(question.is_stuck for question in questions)
 
     @property

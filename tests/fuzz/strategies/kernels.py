@@ -31,7 +31,7 @@ class Network(NetworkCase):
         except FaultError:  # it can be told beforehand that it goes wrong
             return
         for scheduler in (0, 1 + self.seed % 97):
-            details = difference(checker, checker.asked[0], self.seed, TRACES, STEPS, scheduler)
+            details = difference(checker, checker.compiled_properties[0], self.seed, TRACES, STEPS, scheduler)
             if details:
                 yield Failure("the kernels disagree", details)
 
