@@ -105,7 +105,7 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     ]
     if len(lines) > MAX_LINES:
         folded = len(lines) - MAX_LINES
-        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more answers …"]
+        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses …"]
     head = f"the shortest trace without success (trace {story.recording.trace}):"
     return "".join(f"{line}\n" for line in (head, *lines))
 

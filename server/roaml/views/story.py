@@ -239,7 +239,7 @@ def _what(turn: Turn) -> str:
     move = _short(source if stays else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
     if turn.is_answered and turn.status:
-        return f"answers {turn.status}"
+        return f"returns {turn.status}"
     if turn.is_ticked:
         return f"is ticked in {move}{answer}"
     if turn.is_halted:

@@ -107,8 +107,9 @@ def advice(waiting: Sequence[Wait]) -> str:
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
     if late.unanswered == HALT:
-        return f"a halt must be answered before time passes; let {late.whom} answer it at once"
-    return f"a tick must be answered before time passes; let {late.whom} return RUNNING, and the result at a later tick"
+        return f"a halt must end before time passes; let {late.whom} confirm it at once"
+    what = f"let {late.whom} return RUNNING, and the result at a later tick"
+    return f"a tick must return a status before time passes; {what}"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
@@ -320,7 +321,7 @@ class _Chain:
         elif _is_answer(link.event):
             unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
             origin = self.place_in_tree(shown[0][1]) or origin
-            text = f"waits{where} for {them} to answer its {unanswered}"
+            text = f"waits{where} for {them} to {'halt' if unanswered == HALT else 'return a status'}"
         else:
             senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
             text = f"waits{where} for {said(link.event, self.clients(), role)}{senders}"
