@@ -20,12 +20,21 @@ def difference(
     compiled = checker.compiled(property_)
     both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
     for trace in range(traces):
-        found: list[Any] = []
-        for each in both:
-            verdict = each.begin(seed, trace, scheduler)
+        results: list[Any] = []
+        for simulator in both:
+            verdict = simulator.begin(seed, trace, scheduler)
             if verdict == UNKNOWN:
-                verdict = each.advance(steps)
-            found.append((verdict, each.ending(), each.outcome(), each.snapshot(), each.problem(), each.taken()))
-        if repr(found[0]) != repr(found[1]):  # repr: NaN is what it is
-            return f"{property_.question.name}, trace {trace}, scheduler {scheduler}:\n{found[0]}\n{found[1]}"
+                verdict = simulator.advance(steps)
+            results.append(
+                (
+                    verdict,
+                    simulator.ending(),
+                    simulator.outcome(),
+                    simulator.snapshot(),
+                    simulator.problem(),
+                    simulator.taken(),
+                )
+            )
+        if repr(results[0]) != repr(results[1]):  # repr: NaN is what it is
+            return f"{property_.question.name}, trace {trace}, scheduler {scheduler}:\n{results[0]}\n{results[1]}"
     return ""

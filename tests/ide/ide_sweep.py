@@ -115,12 +115,12 @@ class System:
     def _findings(
         self, result: api.CheckResult, new: str, old: str, edits: Mapping[str, tuple[TextEdit, ...]] | None = None
     ) -> list[tuple[str, ...]]:
-        found = []
+        rows = []
         for diagnostic in result.diagnostics:
             line = result.source(diagnostic.path).lines.position(diagnostic.span.start).line
             message = diagnostic.message.replace(new, old) if new else diagnostic.message
-            found.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
-        return sorted(found)
+            rows.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
+        return sorted(rows)
 
     def _jani(self, result: api.CheckResult) -> str | None:
         try:
@@ -152,7 +152,7 @@ def _canonical(jani: str) -> object:
 def _unordered(value: object) -> object:
     """A JSON value with its lists sorted."""
     if isinstance(value, dict):
-        return {key: _unordered(each) for key, each in value.items()}
+        return {key: _unordered(item) for key, item in value.items()}
     if isinstance(value, list):
         return sorted(map(_unordered, value), key=repr)
     return value

@@ -118,8 +118,8 @@ async def test_after_shutdown() -> None:
     server.tell("exit")
     status, messages, log = await server.end()
     assert (status, log) == (0, "")
-    found = {message["id"]: message for message in messages}
-    assert [code(found, id_) for id_ in (10, 11, 12, 13, 14)] == [None, None] + [INVALID_REQUEST] * 3
+    answers = {message["id"]: message for message in messages}
+    assert [code(answers, id_) for id_ in (10, 11, 12, 13, 14)] == [None, None] + [INVALID_REQUEST] * 3
 
 
 # ------------------------------------------------------------------------ form

@@ -96,12 +96,12 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
 
 def test_results_do_not_depend_on_workers() -> None:
     checker = ModelChecker(model(starving(6000)))
-    found = []
+    results = []
     for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pool as used:
             answer = checker.answer(checker.compiled_properties[0], Options(epsilon=0.03), used)
-            found.append(checker.choices(checker.compiled_properties[0], answer, used))
-    assert found[0] == found[1]
+            results.append(checker.choices(checker.compiled_properties[0], answer, used))
+    assert results[0] == results[1]
 
 
 def test_rewards_are_not_sampled() -> None:
@@ -127,15 +127,15 @@ def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, i
     """The verdict and the steps of a trace under a scheduler. Both kernels must agree."""
     checker = ModelChecker(model(written))
     compiled = checker.compiled(checker.compiled_properties[0])
-    found = []
+    results = []
     for module in (kernel, plain_kernel()):
-        each = module.Kernel(compiled.program, compiled.goal)
-        verdict = each.begin(1, 0, scheduler)
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        verdict = simulator.begin(1, 0, scheduler)
         if verdict == UNKNOWN:
-            verdict = each.advance(steps)
-        found.append((verdict, each.outcome()[0]))
-    assert found[0] == found[1]
-    return found[0]
+            verdict = simulator.advance(steps)
+        results.append((verdict, simulator.outcome()[0]))
+    assert results[0] == results[1]
+    return results[0]
 
 
 def test_a_scheduler_in_a_cycle_never_reaches_the_goal() -> None:

@@ -37,7 +37,7 @@ def load(path: Path) -> Model:
 def test_reference_translations(path: Path) -> None:
     model = load(path)
     expected = {case["property"]: case for case in CASES if reference(case) == path}
-    checker = ModelChecker(model, [each for each in model.properties if each.name in expected])
+    checker = ModelChecker(model, [p for p in model.properties if p.name in expected])
     with Pool() as pool:
         for property_ in checker.compiled_properties:
             case = expected[property_.question.name]

@@ -172,13 +172,13 @@ def test_both_kernels_end_for_the_same_reason(tmp_path: Path) -> None:
         both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
         ends = []
         for trace in range(8):
-            found = []
-            for each in both:
-                each.begin(0, trace)
-                each.advance(10_000)
-                found.append((each.ending(), each.open_ways(0), each.outcome()))
-            assert found[0] == found[1]
-            ends.append(found[0][0])
+            results = []
+            for simulator in both:
+                simulator.begin(0, trace)
+                simulator.advance(10_000)
+                results.append((simulator.ending(), simulator.open_ways(0), simulator.outcome()))
+            assert results[0] == results[1]
+            ends.append(results[0][0])
         assert {End.STUCK.value} < set(ends)
 
 

@@ -96,9 +96,9 @@ def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
     )
     compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).compiled_properties[0])
     for module in (kernel, plain_kernel()):
-        found = module.Kernel(compiled.program, compiled.goal)
-        assert found.begin(0, 0) == program.UNKNOWN
-        assert found.advance(5) == program.FAULTY
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        assert simulator.begin(0, 0) == program.UNKNOWN
+        assert simulator.advance(5) == program.FAULTY
     with pytest.raises(Exception, match=message):
         answers(written)
 
@@ -133,8 +133,8 @@ def test_random_numbers_are_those_of_splitmix(seed: int, trace: int) -> None:
     second.begin(1, 1)
     second.advance(100)
     results = []
-    for each in (first, second):
-        each.begin(seed, trace)
-        each.advance(100)
-        results.append(each.outcome())
+    for simulator in (first, second):
+        simulator.begin(seed, trace)
+        simulator.advance(100)
+        results.append(simulator.outcome())
     assert results[0] == results[1]

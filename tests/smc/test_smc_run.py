@@ -233,9 +233,9 @@ def test_leaving_in_the_middle_of_large_results() -> None:
     """If a worker were killed while it sends, the main process would wait for the rest of the result."""
     for _ in range(5):
         with Pool(2, start_delay_s=0) as pool:
-            found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
-            next(found)
-            next(found)
+            results = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
+            next(results)
+            next(results)
     assert not multiprocessing.active_children()
 
 
@@ -249,8 +249,8 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
             yield task
 
     with ThreadPoolExecutor(2) as executor, Pool(2, executor) as pool:
-        found = pool.outcomes(counted())
-        task, outcome = next(found)
+        results = pool.outcomes(counted())
+        task, outcome = next(results)
         assert (task.first, len(outcome.questions[0].verdicts)) == (0, 10)
         assert taken <= 5
 
@@ -292,14 +292,14 @@ def test_progress_is_reported_during_long_traces() -> None:
         variables=[variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    told: list[tuple[int, int]] = []
+    calls: list[tuple[int, int]] = []
 
     def pulse(trace: int, steps: int) -> None:
-        told.append((trace, steps))
-        if len(told) == 3:
+        calls.append((trace, steps))
+        if len(calls) == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         ask(Options(max_steps=10**15), loop, pulse=pulse)
-    assert [trace for trace, _ in told] == [0, 0, 0]
-    assert told[0][1] < told[1][1] < told[2][1]
+    assert [trace for trace, _ in calls] == [0, 0, 0]
+    assert calls[0][1] < calls[1][1] < calls[2][1]

@@ -62,15 +62,15 @@ def chain(source: random.Random, number: int) -> Json:
         # The last location is always reached.
         targets = list(dict.fromkeys((places[following], *source.sample(places, source.randint(1, 2)))))
         weights = [source.randint(1, 5) for _ in targets]
-        found = []
+        values = []
         for target, weight in zip(targets, weights, strict=True):
             x = op("min", 6, op("+", "x", source.randint(0, 2)))
-            found.append(way(target, op("/", weight, sum(weights)), x=x, y=source.choice(["x", 0, 1])))
-        edges.append(edge(place, *found))
+            values.append(way(target, op("/", weight, sum(weights)), x=x, y=source.choice(["x", 0, 1])))
+        edges.append(edge(place, *values))
 
     edges.append(edge(places[-1], way(places[-1], end=True)))
     conditions = [op("=", "x", source.randint(1, 6)), op("∧", "end", op("<", "x", 5)), op("=", "y", 1)]
-    properties = {f"{number}-F{i}": probability(op("F", each)) for i, each in enumerate(conditions)}
+    properties = {f"{number}-F{i}": probability(op("F", formula)) for i, formula in enumerate(conditions)}
     properties[f"{number}-U"] = probability(op("U", op("<", "x", 4), "end"))
     properties[f"{number}-G"] = probability(op("G", op("≠", "x", 3)))
     properties[f"{number}-B"] = probability({**op("F", conditions[0]), "step-bounds": {"upper": source.randint(2, 9)}})
@@ -89,12 +89,12 @@ def chain(source: random.Random, number: int) -> Json:
 def computed(written: Json) -> dict[str, float]:
     """Property -> the probability that Storm computes."""
     parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(written))
-    found = {}
-    for each in properties:
-        built = stormpy.build_model(parsed, [each])
-        result = stormpy.model_checking(built, each, only_initial_states=True)
-        found[each.get_name()] = result.get_value(built.initial_states[0])
-    return found
+    values = {}
+    for formula in properties:
+        built = stormpy.build_model(parsed, [formula])
+        result = stormpy.model_checking(built, formula, only_initial_states=True)
+        values[formula.get_name()] = result.get_value(built.initial_states[0])
+    return values
 
 
 def test_estimates_agree_with_storm() -> None:

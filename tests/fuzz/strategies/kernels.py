@@ -24,7 +24,7 @@ class Network(NetworkCase):
         value, syntax = parse(json.dumps(self.written))
         model, findings = read_model(value, "model.jani")
         if syntax or findings or model is None:
-            yield Failure("a sound model is not read", "\n".join(found.message for found in (*syntax, *findings)))
+            yield Failure("a sound model is not read", "\n".join(finding.message for finding in (*syntax, *findings)))
             return
         try:
             checker = api.checker(model)
