@@ -126,7 +126,7 @@ def _run(options: argparse.Namespace) -> int:
     except FaultError as fault:
         return _fault(options, target, fault)
     if not verifier.names:
-        raise UsageError(f"{shown_path(options.main)} has no properties")
+        raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
     return _Verification(options, verifier).run()
 
 

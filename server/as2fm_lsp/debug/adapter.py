@@ -176,7 +176,7 @@ class Adapter:
 
     def _restart(self, arguments: Arguments) -> Body:
         if self._session.launch is None:
-            raise RequestError("no run has been launched")
+            raise RequestError("no run has been launched; send `launch` first")
         given = arguments.object("arguments")
         launch = launch_of(given) if given.has("program") else self._session.launch
         self._load(launch)

@@ -17,6 +17,7 @@ from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
+from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
@@ -93,7 +94,8 @@ def verifier_of(
         names = [*known, STUCK_PROPERTY]
     for name in expected:
         if name not in (*known, STUCK_PROPERTY):
-            raise PropertyError(f"there is no property `{name}`, for which a result is expected")
+            hint = alternatives(close_names(name, known), known, "property") or "; the target has no properties"
+            raise PropertyError(f"there is no property `{name}`, for which a result is expected{hint}")
     checker = checker_of(target, names)
     for property_ in checker.compiled_properties:
         for expectation in (*expectations, *target.expectations):

@@ -55,7 +55,7 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
 
 
 def _handles_requests(behavior: Behavior, duty: Duty) -> bool:
-    """Whether this chart handles the requests that an answer to the duty is sent for."""
+    """Whether this chart handles the events that the duty requires an answer to."""
     parts = _REQUESTS_OF[duty.kind]
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
