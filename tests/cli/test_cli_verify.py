@@ -28,8 +28,8 @@ import as2fm_lsp.verification.trace_files
 from as2fm_lsp.cli.progress_bar import line, search_line
 from roaml import api
 from roaml.smc.goal import Question
-from roaml.smc.lss import GREATEST, LEAST, Search, Side
-from roaml.smc.run import FIXED, Options, Tally
+from roaml.smc.lss import Search, SelectedScheduler, Side
+from roaml.smc.run import EstimationMethod, Options, Tally
 from roaml.verification.expectations import parse
 from timeouts import TIMEOUT_S
 
@@ -438,16 +438,18 @@ def test_progress_bar_of_a_search() -> None:
     state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
     text = search_line(question, state, Options())
     assert text == "p, least probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
-    state.selected[LEAST] = Side(7, Tally(traces=250, successes=100))
-    text = search_line(question, state, Options(method=FIXED, max_traces=1000))
+    state.selected[Side.LEAST] = SelectedScheduler(7, Tally(traces=250, successes=100))
+    text = search_line(question, state, Options(method=EstimationMethod.FIXED, max_traces=1000))
     assert text.startswith("p, least probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
-    state.side = GREATEST
+    state.side = Side.GREATEST
     assert search_line(question, state, Options()).startswith("p, greatest probability: round 2 of 9")
 
 
 def test_progress_bar() -> None:
     question = Question("p", "Pmin", False, None, ())
-    text = line(question, Options(method=FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0)
+    text = line(
+        question, Options(method=EstimationMethod.FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0
+    )
     assert text.startswith("p ━━━━━───────────────  25%  250 traces  0.4 [0.29")
     assert text.endswith("30 s left")
     assert line(question, Options(), Tally(), 1.0) == "p …"

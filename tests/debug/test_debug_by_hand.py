@@ -77,7 +77,7 @@ def test_the_console_publishes_and_completes(client: Client) -> None:
 def test_fields_that_do_not_fit(client: Client, fields: object, reason: str) -> None:
     client.begin(BUG)
     assert reason in client.refusal("publish", event="/arm/command", fields=fields)
-    assert "no topic, service, action or event" in client.refusal("publish", event="/nothing", fields={})
+    assert "there is no such topic, service, action or event" in client.refusal("publish", event="/nothing", fields={})
     assert client.step() == 0
 
 

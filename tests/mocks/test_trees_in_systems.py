@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, Drawn, as_xml, trees
@@ -32,6 +34,16 @@ def test_a_plugin_behind_conditions() -> None:
     change = Drawn("Script", (("code", "y := 1 - y"),))
     for seed in range(3):
         compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Parallel", (), (act, change)),)), seed)
+
+
+def test_an_action_that_its_condition_has_ended() -> None:
+    """The action returns the same status until it is reset, although its parent ticks it again. A condition is
+    evaluated again."""
+    for leaf, condition in itertools.product(("Act2", "Check"), ("_successIf", "_skipIf")):
+        ended, running = Drawn(leaf, ((condition, "y == 1"),)), Drawn("Act3")
+        again = Drawn("NonblockingSequence" if condition == "_successIf" else "PipelineSequence", (), (ended, running))
+        for seed in range(3):
+            compare(Drawn("KeepRunningUntilFailure", (), (again,)), seed)
 
 
 @settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)

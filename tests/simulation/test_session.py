@@ -12,7 +12,7 @@ from smc_models import automaton, document, edge, model, op, variable, way
 
 import conformance
 from roaml import api
-from roaml.smc.record import VERDICTS, Recorder, Recording
+from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 
 ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
 TRACES = 5
@@ -88,7 +88,7 @@ def test_another_outcome_of_a_choice(robot: api.VerificationTarget) -> None:
         session
         for trace in range(100)
         if (session := api.session(robot, "block_dropped", seed=1, trace=trace)).until_decided()
-        and session.verdict == "passed"
+        and session.verdict is TraceVerdict.PASSED
     )
     chance: list[api.Choice] = []
     while not chance:

@@ -7,7 +7,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.smc import kernel
-from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
+from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
@@ -67,7 +67,7 @@ def test_choices_that_do_not_matter() -> None:
     )
     assert choices.agreement.startswith("all ")
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), EXPLORATION)
+    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), ExtremeMethod.EXPLORATION)
     assert choices.maximum is not None
     assert choices.maximum.value == pytest.approx(0.25)
 
@@ -87,11 +87,11 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     choices = looked_at(starving(6000))
     assert choices.differ
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (0, SAMPLING)
+    assert (choices.minimum.value, choices.minimum.method) == (0, ExtremeMethod.SAMPLING)
     assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert choices.minimum.bounds.upper < 0.2
     assert choices.maximum is not None
-    assert (choices.maximum.value, choices.maximum.method) == (1, UNIFORM)
+    assert (choices.maximum.value, choices.maximum.method) == (1, ExtremeMethod.UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:

@@ -16,7 +16,7 @@ from roaml.smc.batch import Task, run
 from roaml.smc.end import End
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
-from roaml.smc.run import FIXED, Answer, Options, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from stuck_models import CROSSED, hospital, system
 from twin import plain_kernel
 
@@ -25,7 +25,7 @@ GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
 
 
 def answer(checker: ModelChecker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
-    options = Options(method=FIXED, max_traces=traces, max_steps=max_steps)
+    options = Options(method=EstimationMethod.FIXED, max_traces=traces, max_steps=max_steps)
     with Pool(jobs, start_delay_s=0 if jobs > 1 else 1) as pool:
         return checker.answer(checker.compiled_properties[0], options, pool)
 

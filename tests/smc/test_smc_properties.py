@@ -15,7 +15,7 @@ from smc_models import Json, answers, automaton, document, edge, model, op, prob
 from examples import examples
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
-from roaml.smc.run import FIXED, Options
+from roaml.smc.run import EstimationMethod, Options
 
 A, B = op("=", op("%", "x", 2), 1), op("≥", "x", 2)
 """`a` holds if the first bit of x is set, `b` if the second one is set."""
@@ -228,5 +228,5 @@ def test_properties_that_cannot_be_answered(expression: Json, message: str) -> N
     assert refused.code in ("unsupported-property", "ignored-bounds")
     assert refused.origin is not None
     with Pool() as pool:
-        options = Options(method=FIXED, max_traces=1)
+        options = Options(method=EstimationMethod.FIXED, max_traces=1)
         assert [checker.answer(property_, options, pool).value for property_ in checker.compiled_properties] == [1, 0]

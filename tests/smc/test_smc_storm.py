@@ -21,11 +21,11 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
 from roaml.smc.explore import Explorer, TooManyStatesError
-from roaml.smc.lss import GREATEST, LEAST, Search
+from roaml.smc.lss import Search, Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
-from roaml.smc.run import FIXED, Options
+from roaml.smc.run import EstimationMethod, Options
 from roaml.smc.solve import solve
 from roaml.verification.exhaustive import UndecidedError, exact_values
 
@@ -37,7 +37,7 @@ def estimates(actual_model: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
     """Property -> the numbers of successes and traces."""
     checker = ModelChecker(actual_model)
     with Pool() as pool:
-        options = Options(method=FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
+        options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
         answers = {
             property_.question.name: checker.answer(property_, options, pool)
             for property_ in checker.compiled_properties
@@ -160,7 +160,9 @@ def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -
         checker = ModelChecker(actual_model)
         with Pool() as pool:
             answer = checker.answer(
-                checker.compiled_properties[0], Options(method=FIXED, max_traces=TRACES, max_steps=3000), pool
+                checker.compiled_properties[0],
+                Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=3000),
+                pool,
             )
         low = answer.tally.successes
         high = low + answer.tally.undecided
@@ -257,5 +259,5 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
         state = Search()
         checker.search(checker.compiled_properties[0], Options(epsilon=0.02), pool, state)
     share = {side: tally.successes / tally.traces for side, (_, tally) in state.selected.items()}
-    assert share[GREATEST] == pytest.approx(expected.greatest, abs=0.03)
-    assert share[LEAST] == pytest.approx(expected.least, abs=0.03)
+    assert share[Side.GREATEST] == pytest.approx(expected.greatest, abs=0.03)
+    assert share[Side.LEAST] == pytest.approx(expected.least, abs=0.03)

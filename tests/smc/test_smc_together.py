@@ -15,7 +15,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, FAULTY, UNKNOWN, Compiled, merged
-from roaml.smc.run import FIXED, OKAMOTO, Answer, Options, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from twin import plain_kernel
 
 QUESTIONS: dict[str, Json] = {
@@ -66,7 +66,11 @@ def numbers(answer: Answer | FaultError) -> Any:
 
 @pytest.mark.parametrize(
     "options",
-    [Options(epsilon=0.03), Options(method=OKAMOTO, epsilon=0.05), Options(method=FIXED, max_traces=250, max_steps=9)],
+    [
+        Options(epsilon=0.03),
+        Options(method=EstimationMethod.OKAMOTO, epsilon=0.05),
+        Options(method=EstimationMethod.FIXED, max_traces=250, max_steps=9),
+    ],
     ids=["adaptive", "okamoto", "cut"],
 )
 def test_each_answer_is_that_of_traces_of_its_own(options: Options) -> None:
@@ -89,19 +93,20 @@ def test_questions_that_are_continued_from_different_traces() -> None:
     checker = ModelChecker(model(walk()))
     properties = list(checker.compiled_properties)
     tallies = [Tally() for _ in properties]
-    together(checker, properties[:3], Options(method=FIXED, max_traces=150), tallies[:3])
+    together(checker, properties[:3], Options(method=EstimationMethod.FIXED, max_traces=150), tallies[:3])
     for tally in tallies:
         tally.is_finished = False
-    continued = together(checker, properties, Options(method=FIXED, max_traces=400), tallies)
+    continued = together(checker, properties, Options(method=EstimationMethod.FIXED, max_traces=400), tallies)
     assert [numbers(answer) for answer in continued] == [
-        numbers(alone(checker, property_, Options(method=FIXED, max_traces=400))) for property_ in properties
+        numbers(alone(checker, property_, Options(method=EstimationMethod.FIXED, max_traces=400)))
+        for property_ in properties
     ]
 
 
 def test_a_trace_that_fails_concerns_only_the_questions_that_it_does_not_answer_before() -> None:
     # y reaches 3 in some traces, after `soon` has been decided in all of these that matter to it or not.
     checker = ModelChecker(model(walk(broken=op("G", op("<", op("/", 1, op("-", 3, "y")), 5)))))
-    options = Options(method=FIXED, max_traces=100)
+    options = Options(method=EstimationMethod.FIXED, max_traces=100)
     answers = together(checker, list(checker.compiled_properties), options)
     assert [a.message for a in answers if isinstance(a, FaultError)] == ["division by zero"]
     assert isinstance(answers[-1], FaultError)

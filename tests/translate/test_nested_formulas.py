@@ -18,7 +18,7 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import Options
+from roaml.smc.run import EstimationMethod, Options
 from roaml.verification.results import Exact
 
 
@@ -150,7 +150,9 @@ PORT = """<ports><ros_topic topic_name="/heads" type="std_msgs/Int32" event="pub
 
 
 def answered(files: Mapping[str, str]) -> dict[str, object]:
-    (result,) = api.verify(loaded(files), ["p"], Options(method="fixed", max_traces=300, seed=11), only_uniform=True)
+    (result,) = api.verify(
+        loaded(files), ["p"], Options(method=EstimationMethod.FIXED, max_traces=300, seed=11), only_uniform=True
+    )
     assert result.refusal is None, result.refusal
     assert result.answer.tally.successes > 0
     return {**result.answer.tally.to_json(), "value": result.answer.value, "bounds": result.answer.bounds}

@@ -17,7 +17,7 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
 from roaml.jani.writer import write
-from roaml.smc.run import Options
+from roaml.smc.run import EstimationMethod, Options
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
@@ -161,7 +161,7 @@ def test_storm_gives_the_same(name: str) -> None:
 
 @pytest.mark.parametrize("name", TWINS)
 def test_the_same_traces_satisfy_both(name: str) -> None:
-    options = Options(method="fixed", max_traces=300, seed=11)
+    options = Options(method=EstimationMethod.FIXED, max_traces=300, seed=11)
     one, other = api.verify(translated(name), [name, "twin"], options, only_uniform=True)
     assert one.answer is not None
     assert other.answer is not None
@@ -202,7 +202,7 @@ TIMED = """
 
 def test_what_is_open_at_the_end_of_time_is_undecided() -> None:
     model = api.to_jani(loaded(system(TIMED)))
-    options = Options(method="fixed", max_traces=200, seed=3)
+    options = Options(method=EstimationMethod.FIXED, max_traces=200, seed=3)
     soon, answered = api.verify(model, ["soon", "answered"], options, only_uniform=True)
     assert soon.answer is not None
     assert answered.answer is not None
@@ -261,7 +261,7 @@ def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str)
     assert both.least == pytest.approx(both.greatest)
     assert assumed.least == pytest.approx(assumed.greatest)
     assert 0 < both.least < assumed.least < 1
-    options = Options(method="fixed", max_traces=4000, seed=2, confidence=0.999)
+    options = Options(method=EstimationMethod.FIXED, max_traces=4000, seed=2, confidence=0.999)
     (result,) = api.verify(source, options=options)
     assert result.answer is not None
     assert result.answer.tally.simulated == 4000
@@ -275,7 +275,9 @@ def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str)
 
 def test_assumptions_that_no_trace_satisfies_leave_no_value() -> None:
     source = loaded(with_assumptions(EXISTS.format("never", "count == 70"), EXISTS.format("g", "whistle")))
-    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150), expectations=["g >= 0.1"])
+    (result,) = api.verify(
+        source, options=Options(method=EstimationMethod.FIXED, max_traces=150), expectations=["g >= 0.1"]
+    )
     assert result.answer is not None
     assert (result.answer.tally.traces, result.answer.tally.rejected) == (0, 150)
     assert not result.is_met
@@ -290,7 +292,7 @@ def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
         "</property>", '<time_interval after="3" within="50" time_unit="s" /></property>'
     )
     source = loaded(with_assumptions(late, EXISTS.format("g", "heads")))
-    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150))
+    (result,) = api.verify(source, options=Options(method=EstimationMethod.FIXED, max_traces=150))
     assert result.answer is not None
     tally = result.answer.tally
     assert tally.rejected == 0
@@ -300,7 +302,7 @@ def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
 def test_an_expectation_beside_the_property() -> None:
     expected = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.95"')
     source = loaded(system(expected + EXISTS.format("other", "tails")))
-    some, other = api.verify(source, options=Options(method="fixed", max_traces=300), only_uniform=True)
+    some, other = api.verify(source, options=Options(method=EstimationMethod.FIXED, max_traces=300), only_uniform=True)
     assert [verdict.expectation.text for verdict in some.verdicts] == ["≥ 0.95"]
     assert not some.is_met
     assert other.has_no_expectation
@@ -333,7 +335,7 @@ VACUOUS = f"""
 
 
 def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> None:
-    options = Options(method="fixed", max_traces=300, seed=1)
+    options = Options(method=EstimationMethod.FIXED, max_traces=300, seed=1)
     answered = api.verify(loaded(system(VACUOUS)), options=options, only_uniform=True)
     results = {result.name: result for result in answered}
     rows = {name: row(result) for name, result in results.items()}
@@ -358,7 +360,7 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
 
 def test_what_observers_say_of_their_activity_changes_no_answer() -> None:
     source = loaded(system(VACUOUS))
-    options = Options(method="fixed", max_traces=200)
+    options = Options(method=EstimationMethod.FIXED, max_traces=200)
     plain, full = (
         [(result.name, result.answer and result.answer.value) for result in api.verify(subject, options=options)]
         for subject in (api.to_jani(source), source)

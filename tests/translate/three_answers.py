@@ -12,7 +12,7 @@ from storm import Exact, exact
 from roaml import api
 
 TOLERANCE = 1e-5
-SAMPLING = api.Options(method="fixed", max_traces=200, max_steps=20_000, seed=1, confidence=0.9999)
+SAMPLING = api.Options(method=api.EstimationMethod.FIXED, max_traces=200, max_steps=20_000, seed=1, confidence=0.9999)
 
 
 @dataclass(frozen=True)

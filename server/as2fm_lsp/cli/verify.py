@@ -15,9 +15,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
-from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import CheckReport, render
+from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.mock_options import names_tree
 from as2fm_lsp.cli.model_arguments import (
@@ -39,6 +39,7 @@ from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.exhaustive import Vocabulary
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
@@ -46,13 +47,14 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, FIXED, METHODS, MIN_EPSILON, Options, Tally
+from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options, Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
+from roaml.verification.stuck import StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
@@ -92,6 +94,13 @@ MAX_TRACES_IN_ONE_PROCESS = 20_000
 """Up to this number, traces of a tree take less time than the start of further processes."""
 
 
+class Scheduler(Vocabulary):
+    """How nondeterminism is resolved."""
+
+    UNIFORM = "uniform"
+    LSS = "lss"
+
+
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -113,7 +122,7 @@ def _run(options: argparse.Namespace) -> int:
     settings = settings_of(options.main)
     if names_tree(options.main):
         return _run_tree(options, expectations, limits, settings)
-    only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
+    only_uniform = settings.only_uniform if options.scheduler is None else options.scheduler is Scheduler.UNIFORM
     names = options.property or None
     try:
         with StatusLine() as status:
@@ -135,9 +144,9 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
-    if limits.method == ADAPTIVE:  # the number is fixed, because all measurements use the same traces
+    if limits.method is EstimationMethod.ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
-        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
+        limits = replace(limits, method=EstimationMethod.FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
         options.jobs = 1
     try:
@@ -204,7 +213,7 @@ class _Verification:
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
         """The results of the properties that share traces; empty if fewer than two properties can share them."""
         options, verifier = self.options, self.verifier
-        if options.separate or options.exhaustive or options.scheduler == "lss":
+        if options.separate or options.exhaustive or options.scheduler is Scheduler.LSS:
             return {}
         properties = verifier.sharing()
         if not properties:
@@ -272,7 +281,7 @@ class _Verification:
             if self.state is not None:
                 self.state.keep(name, payload, so_far)
 
-        if self.options.scheduler == "lss":
+        if self.options.scheduler is Scheduler.LSS:
             return self._search(property_, pool, bar, began)
         try:
             result = self.verifier.answer(property_, pool, tally, watch, bar.pulse)
@@ -309,15 +318,15 @@ class _Verification:
 
     def _print(self) -> None:
         text = self._text()
-        print_text(text, None if self.options.format == "text" else "utf-8")
+        print_text(text, self.options.format.encoding)
         flush()
 
     def _text(self) -> str:
-        if self.options.format == "json":
+        if self.options.format is Format.JSON:
             entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.stuck_result is None else stuck_report.as_row(self.stuck_result, self._place_row)
             return as_json(self.results, entries, stuck=row, tree=self._tree_row())
-        if self.options.format == "junit":
+        if self.options.format is Format.JUNIT:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
             return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
@@ -371,7 +380,7 @@ class _Verification:
         """The assumptions of all results, in one line."""
         if self.options.exhaustive:
             return "computed from all reachable states, over all schedulers and for uniform choices"
-        if self.options.scheduler == "lss":
+        if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
         return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
@@ -395,11 +404,11 @@ class _Verification:
 
     def _print_faults(self) -> None:
         """Report the properties that could not be decided on standard error."""
-        if self.faults and self.options.format != "json":
+        if self.faults and self.options.format is not Format.JSON:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
-                print_text(render(report, "text"), stream=sys.stderr)
+                print_text(render(report, Format.TEXT), stream=sys.stderr)
 
     def _write_traces(self) -> None:
         """Write traces and stories."""
@@ -465,7 +474,7 @@ class _Verification:
             text = self._story_texts(stories)
         if file == STANDARD_OUTPUT:
             # With a format for programs, standard output contains only the results.
-            print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
+            print_text(text, stream=sys.stdout if self.options.format is Format.TEXT else sys.stderr)
         else:
             write_file(file, text)
 
@@ -511,7 +520,8 @@ def parser() -> ArgumentParser:
     )
     add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); for "
         "an expected reward relative to its value")  # fmt: skip
-    add("--method", choices=METHODS, default=ADAPTIVE, help="the number of traces: until the interval is narrow enough "
+    add("--method", action=WordAction, words=EstimationMethod, default=EstimationMethod.ADAPTIVE,
+        help="the number of traces: until the interval is narrow enough "
         "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
         "expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
     add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
@@ -525,7 +535,8 @@ def parser() -> ArgumentParser:
         metavar="N",
         help="number of processes (all processors); does not change the results",
     )
-    add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: uniformly at random, or by "
+    add("--scheduler", action=WordAction, words=Scheduler,
+        help="how nondeterminism is resolved: uniformly at random, or by "
         "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
         "warning or note states if other schedulers may give another value")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
@@ -535,7 +546,8 @@ def parser() -> ArgumentParser:
     add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
         "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
     add_model_arguments(result)
-    add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
+    add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
+        help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
         "traces, with the same results")  # fmt: skip
@@ -546,7 +558,8 @@ def parser() -> ArgumentParser:
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
-    add("--format", default="text", choices=("text", "json", "junit"), help="format of the results")
+    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
+        help="format of the results")  # fmt: skip
     return result
 
 
@@ -629,19 +642,19 @@ def _fault(options: argparse.Namespace, target: VerificationTarget, fault: Fault
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
         complain(f"{shown_path(options.main)}: {fault.message}")
-        if options.format == "json":
+        if options.format is Format.JSON:
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
     return _errors(options, report_of((diagnostic,), _source_of(target), len(target.files)))
 
 
 def _errors(options: argparse.Namespace, report: CheckReport) -> int:
-    if options.format == "json":
+    if options.format is Format.JSON:
         print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
-    elif options.format == "junit":
-        print_text(render(report, "junit"), "utf-8")
+    elif options.format is Format.JUNIT:
+        print_text(render(report, Format.JUNIT), "utf-8")
     else:
-        print_text(render(report, "text"), stream=sys.stderr)
+        print_text(render(report, Format.TEXT), stream=sys.stderr)
     return FOUND
 
 

@@ -35,7 +35,7 @@ class ChoiceRequests:
             "seed": session.seed,
             "trace": session.trace,
             "property": session.compiled_property.question.name,
-            "verdicts": debugger.verdicts,
+            "verdicts": {name: verdict.value for name, verdict in debugger.verdicts.items()},
             "isByHand": session.is_by_hand,
             "isChanged": session.is_changed,
             "end": None if end is None else end.text,

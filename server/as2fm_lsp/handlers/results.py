@@ -89,7 +89,7 @@ def register(context: Context) -> None:
         return {
             "property": result.name,
             "heading": " ".join(filter(None, (markdown.plain(result.comment), why.heading))),
-            "verdict": why.verdict,
+            "verdict": why.verdict.value,
             "trace": why.trace,
             "expected": missed(result),
             "stale": current.is_stale(known),

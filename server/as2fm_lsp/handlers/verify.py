@@ -160,7 +160,7 @@ class _VerifyCommand:
                 self.reject(name, str(error))
         if not usable:
             return None, {}
-        only_uniform = context.session.settings_of(self.path).scheduler == "uniform"
+        only_uniform = context.session.settings_of(self.path).only_uniform
         try:
             checker = checker_of(target, usable)
         except (FaultError, api.PropertyError) as error:

@@ -14,7 +14,7 @@ from as2fm_lsp.verification.report import one_as_text, warning
 from as2fm_lsp.verification.stuck_report import NOT_STUCK
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.results import Result
-from roaml.verification.stuck import WARNING, StuckResult
+from roaml.verification.stuck import StuckLevel, StuckResult
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, stuck_result: StuckResult | None = None) -> str:
     """A JUnit report with a test for each property. A test fails if an expectation does not hold, and is an error if
     there is no result. One more test fails if the system gets stuck and that is an error."""
-    level = WARNING if stuck_result is None else stuck_result.level
+    level = StuckLevel.WARNING if stuck_result is None else stuck_result.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if stuck_result is not None:
         outcome = CaseOutcome.PASSED if stuck_result.is_met else CaseOutcome.FAILED

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from roaml.smc.choices import EXPLORATION, SAMPLING, Choices, Extreme
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
 from roaml.verification.schedulers import extreme_of, interval_text
 
@@ -83,7 +83,7 @@ def _row(extreme: Extreme) -> dict[str, Any]:
         "value": _finite(extreme.value),
         "lower": _finite(extreme.bounds.lower),
         "upper": _finite(extreme.bounds.upper),
-        "found": extreme.method,
+        "found": extreme.method.value,
     }
     if extreme.scheduler:
         row["scheduler"] = extreme.scheduler
@@ -93,9 +93,9 @@ def _row(extreme: Extreme) -> dict[str, Any]:
 
 
 def _reached(extreme: Extreme) -> str:
-    if extreme.method == EXPLORATION:
+    if extreme.method is ExtremeMethod.EXPLORATION:
         return f"{extreme.value:.6g} (exact, from all states)"
-    who = extreme.scheduler if extreme.method == SAMPLING else "uniform choices"
+    who = extreme.scheduler if extreme.method is ExtremeMethod.SAMPLING else "uniform choices"
     return f"{interval_text(extreme)} (by {who})"
 
 

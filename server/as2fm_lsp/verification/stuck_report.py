@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.verification.stuck import WARNING, Stuck, StuckResult
+from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
@@ -44,7 +44,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> list[str]:
+def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> list[str]:
     """The warning for users, below the value that it makes doubtful; `shown` as in `as_text`."""
     if shown:
         return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
@@ -71,7 +71,7 @@ def _where(stuck: Stuck) -> str:
 
 def as_row(result: StuckResult, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
     """The result as a value for JSON; `place` returns the members for an origin."""
-    row: dict[str, Any] = {"level": result.level}
+    row: dict[str, Any] = {"level": result.level.value}
     if result.answer is not None:
         tally, (lower, upper) = result.answer.tally, result.answer.bounds
         row.update(traces=tally.traces, stuck=tally.ended(End.STUCK), cut=tally.ended(End.CUT))

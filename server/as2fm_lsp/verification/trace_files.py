@@ -95,7 +95,7 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
     for step in recorder.walk(recording):
         yield comma + _json(step_row(target, automata, step))
         comma = ",\n  "
-    verdict = VERDICTS.get(recording.verdict, "fault")
+    verdict = VERDICTS[recording.verdict].value
     yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
     if recording.end is End.STUCK:
         rows = [

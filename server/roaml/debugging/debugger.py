@@ -25,7 +25,7 @@ from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session, ends_tick
 from roaml.simulation.verdicts import Decided, Verdicts
 from roaml.smc.fault import FaultError
-from roaml.smc.record import TraceStep
+from roaml.smc.record import TraceStep, TraceVerdict
 
 MAX_STEPS = 200_000
 """The maximum number of steps of one movement. After that, the run stops and can be continued."""
@@ -168,7 +168,7 @@ class Debugger:
         return self.values.names(Frame(0, "", None, instance, 0, "statement"))
 
     @property
-    def verdicts(self) -> dict[str, str]:
+    def verdicts(self) -> dict[str, TraceVerdict]:
         return self._verdicts.verdicts(self.session.position)
 
     # ------------------------------------------------------------ moving
@@ -396,10 +396,10 @@ class Debugger:
         decided = self._verdicts.at(self.session.position)
         match filter_:
             case ExceptionFilter.VIOLATED:
-                names = [property_.name for property_ in decided if property_.verdict == "failed"]
+                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.FAILED]
                 return f"violated: {', '.join(names)}"
             case ExceptionFilter.SATISFIED:
-                names = [property_.name for property_ in decided if property_.verdict == "passed"]
+                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.PASSED]
                 return f"satisfied: {', '.join(names)}"
             case ExceptionFilter.FAILURE:
                 step = self.session.steps[self.session.position - 1]

@@ -16,7 +16,7 @@ from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
-from roaml.smc.record import Plain, TraceStep
+from roaml.smc.record import Plain, TraceStep, TraceVerdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Values:
         sources: Sources,
         state: SystemState,
         upcoming: TraceStep | None,
-        verdicts: Mapping[str, str],
+        verdicts: Mapping[str, TraceVerdict],
     ) -> None:
         self._session = session
         self._sources = sources
@@ -153,7 +153,7 @@ class Values:
 
     def _properties(self) -> Iterator[ScopeEntry]:
         for name, verdict in self._verdicts.items():
-            yield ScopeEntry(name, verdict, "verdict")
+            yield ScopeEntry(name, verdict.value, "verdict")
 
     # ------------------------------------------------------------ messages
 

@@ -21,7 +21,7 @@ from roaml.smc.end import End
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
-from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep
+from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
 from roaml.smc.story import Story, clock_times
 
 FORMAT_VERSION = 1
@@ -155,8 +155,8 @@ class Session:
         return self._run.end
 
     @property
-    def verdict(self) -> str:
-        """The verdict on the property: `passed`, `failed` or `undecided`."""
+    def verdict(self) -> TraceVerdict:
+        """The verdict on the property."""
         return VERDICTS[self._run.status]
 
     @property

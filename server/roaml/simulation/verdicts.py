@@ -12,15 +12,15 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
-from roaml.smc.record import VERDICTS
+from roaml.smc.record import VERDICTS, TraceVerdict
 
 
 class Decided(NamedTuple):
-    """A property is decided in the state after `position` steps; `verdict` is `passed` or `failed`."""
+    """A property is decided in the state after `position` steps; `verdict` is `PASSED` or `FAILED`."""
 
     name: str
     position: int
-    verdict: str
+    verdict: TraceVerdict
 
 
 class Verdicts:
@@ -52,7 +52,7 @@ class Verdicts:
         for follower in self._followers:
             follower.discard(position)
 
-    def verdicts(self, position: int) -> dict[str, str]:
+    def verdicts(self, position: int) -> dict[str, TraceVerdict]:
         """The verdict of each property at a position. The run must have been followed up to it."""
         return {follower.name: follower.verdict(position) for follower in self._followers}
 
@@ -98,6 +98,6 @@ class _PropertyFollower:
         if status not in (UNKNOWN, FAULTY):
             self.decided = Decided(self.name, self._position, VERDICTS[status])
 
-    def verdict(self, position: int) -> str:
+    def verdict(self, position: int) -> TraceVerdict:
         is_known = self.decided is not None and self.decided.position <= position
-        return self.decided.verdict if self.decided is not None and is_known else VERDICTS[UNKNOWN]
+        return self.decided.verdict if self.decided is not None and is_known else TraceVerdict.UNDECIDED

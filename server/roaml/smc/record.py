@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
+from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Destination, Edge, System
 from roaml.smc.batch import TraceProblem
 from roaml.smc.compile import Legend
@@ -25,7 +26,23 @@ Plain: TypeAlias = "bool | int | float | list[Plain]"
 SHORTEST = -1
 """The number of a trace that was not generated at random: the shortest possible one."""
 
-VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
+
+class TraceVerdict(Vocabulary):
+    """The verdict of a trace on a property, as the results name it."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    UNDECIDED = "undecided"
+    FAULT = "fault"
+
+
+VERDICTS = {
+    TRUE: TraceVerdict.PASSED,
+    FALSE: TraceVerdict.FAILED,
+    UNKNOWN: TraceVerdict.UNDECIDED,
+    FAULTY: TraceVerdict.FAULT,
+}
+"""The verdicts of the kernel."""
 
 
 class RecordedVariable(NamedTuple):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import VERDICTS
+from roaml.smc.record import VERDICTS, TraceVerdict
 from roaml.smc.run import Seen
 from roaml.text import Location
 from roaml.verification.results import Result
@@ -24,13 +24,13 @@ class Counterexample:
 
     Attributes:
         heading: a summary of the trace, in one sentence.
-        verdict: "failed", "passed" (if that contradicts the expectation) or "undecided".
+        verdict: the verdict of the trace; `PASSED` if that contradicts the expectation.
         trace: the number of the trace.
         lines: one line for each turn of an automaton.
     """
 
     heading: str
-    verdict: str
+    verdict: TraceVerdict
     trace: int
     lines: tuple[StoryLine, ...]
 
@@ -86,7 +86,7 @@ def _counterexample(
     if seen is None or traces is None:
         return None
     story = traces.story(seen.trace)
-    verdict = VERDICTS.get(story.recording.verdict, "fault")
+    verdict = VERDICTS[story.recording.verdict]
     from roaml.views.story import heading, lines  # noqa: PLC0415 - most verifications do not need a story
 
     story_lines = lines(story, place_of or _path_and_line(traces.target))

@@ -12,7 +12,7 @@ from roaml.smc.goal import NOT, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.verification.expectations import Expectation, Verdict
-from roaml.verification.results import ALL, NONE, Exact, ShortestTrace
+from roaml.verification.results import Exact, Proof, ShortestTrace
 from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
@@ -66,15 +66,15 @@ def exact_values(
     )
 
 
-def _proof(space: Space, values: GoalValues) -> str:
-    """What all states prove in addition to a probability of 0 or 1: `ALL`, `NONE` or "" (see `Exact`)."""
+def _proof(space: Space, values: GoalValues) -> Proof | None:
+    """What all states prove in addition to a probability of 0 or 1 (see `Exact`)."""
     goal = space.compiled_property.goal
     if space.compiled_property.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
-        return ""
+        return None
     is_negated = goal.formula.count(NOT) % 2 == 1
     if values.maximum.upper == 0.0 and not is_negated:
-        return NONE
-    return ALL if values.minimum.lower == 1.0 and is_negated else ""
+        return Proof.NONE
+    return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
 def check_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:

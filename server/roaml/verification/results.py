@@ -6,12 +6,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from enum import Enum
 
 from roaml.explicit.path import Path, PathRecorder
 from roaml.explicit.space import Space
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
+from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
@@ -50,7 +52,11 @@ class ShortestTrace:
         return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
-ALL, NONE = "all", "none"
+class Proof(Enum):
+    """What all states prove about the condition of a property."""
+
+    ALL = "the condition holds in all states"
+    NONE = "the condition holds in no state"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +68,8 @@ class Exact:
         uniform: the value with uniform choices.
         states: the number of states.
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
-        proof: for a property about one condition that is always or never reached: `ALL` if the condition holds in all
-            states, `NONE` if it holds in no state; "" otherwise.
+        proof: for a property about one condition that is always or never reached: whether the condition holds in all
+            states or in none; `None` otherwise.
         traces: the shortest traces in which the property fails or holds, if there are any.
     """
 
@@ -72,7 +78,7 @@ class Exact:
     uniform: Bounds
     states: int
     is_precise: bool = True
-    proof: str = ""
+    proof: Proof | None = None
     traces: tuple[ShortestTrace, ...] = field(default=(), repr=False, compare=False)
 
     @property
@@ -107,12 +113,12 @@ class SampledResult:
     """The probability under a scheduler that was sampled for the minimum or the maximum.
 
     Attributes:
-        side: `LEAST` or `GREATEST` of `roaml.smc.lss`.
+        side: whether it is the minimum or the maximum.
         scheduler: the number of the scheduler; `words` describes it.
         stuck: the traces that got stuck, if any.
     """
 
-    side: str
+    side: Side
     answer: Answer
     scheduler: int
     words: str

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from roaml.jani.operators import BinaryOperator
-from roaml.smc.choices import UNIFORM, Choices, Extreme
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.verification.expectations import Verdict
@@ -60,7 +60,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:
     """A phrase for the extreme that violates an expectation; "" if none does."""
-    if extreme is None or extreme.method == UNIFORM:
+    if extreme is None or extreme.method is ExtremeMethod.UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
         return f"by the {extreme_of(question)} over all schedulers, which is {extreme.value:.6g}"

@@ -12,21 +12,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from roaml.exhaustive import Vocabulary
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, Seen, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 
-WARNING, ERROR = "warning", "error"
-LEVELS = (WARNING, ERROR)
-"""The severities with which a stuck trace can be reported."""
 MAX_TRACES = 100
 """The number of traces that are generated to check whether a system gets stuck."""
 MAX_STEPS_PER_TRACE = 100_000
@@ -34,6 +32,13 @@ MAX_STEPS = 1_000_000
 """The number of steps after which no further traces are generated; this many steps take a tenth of a second."""
 BATCH_SIZE = 10
 """The number of traces in a batch. The number of steps is checked after each batch."""
+
+
+class StuckLevel(Vocabulary):
+    """The severity with which a stuck trace is reported."""
+
+    WARNING = "warning"
+    ERROR = "error"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,16 +107,16 @@ class StuckResult:
 
     answer: Answer | None
     stuck: Stuck | None
-    level: str = WARNING
+    level: StuckLevel = StuckLevel.WARNING
     fault: str = ""
 
     @property
     def is_met(self) -> bool:
-        return self.stuck is None or self.level != ERROR
+        return self.stuck is None or self.level is not StuckLevel.ERROR
 
 
 def check_stuck(
-    target: VerificationTarget, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None
+    target: VerificationTarget, checker: ModelChecker, options: Options, level: StuckLevel, pulse: Pulse | None = None
 ) -> StuckResult:
     """Generate traces to check whether they get stuck."""
     try:
@@ -126,7 +131,10 @@ def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Ans
     alone = Alone(checker.compiled(property_))
     for traces in range(BATCH_SIZE, MAX_TRACES + BATCH_SIZE, BATCH_SIZE):
         limits = replace(
-            options, method=FIXED, max_traces=traces, max_steps=min(options.max_steps, MAX_STEPS_PER_TRACE)
+            options,
+            method=EstimationMethod.FIXED,
+            max_traces=traces,
+            max_steps=min(options.max_steps, MAX_STEPS_PER_TRACE),
         )
         tally.is_finished = False
         answer = checker.answer(property_, limits, alone, tally, pulse=pulse)

@@ -13,10 +13,10 @@ from roaml.jani.selection import PropertyError, select
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
-from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
+from roaml.smc.lss import Search, Side, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch, summary
 from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
@@ -24,7 +24,7 @@ from roaml.verification.expectations import Expectation, Verdict, check_expectat
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Result, SampledResult, Traces
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
-from roaml.verification.stuck import StuckResult
+from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
 
@@ -156,7 +156,7 @@ class Verifier:
         if name in self.checker.refused:
             raise self.checker.refused[name]
         property_ = next(property_ for property_ in self.checker.compiled_properties if property_.question.name == name)
-        if self.options.method == SPRT and property_.question.threshold is None:
+        if self.options.method is EstimationMethod.SPRT and property_.question.threshold is None:
             for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
                     return replace(property_, question=with_threshold(property_.question, expectation.threshold))
@@ -294,7 +294,7 @@ class Verifier:
             NoThresholdError: it has no such number.
         """
         question = property_.question
-        if self.options.method == SPRT and (question.threshold is None or question.is_reward):
+        if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
     def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:
@@ -319,8 +319,8 @@ class Verifier:
                 words = described(scheduler, self.checker.automata)
                 got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer, scheduler)
                 sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
-        required_side = LEAST if is_minimised(property_.question) else GREATEST
-        own = next((result for result in sampled if result.side == required_side), None)
+        required_side = Side.LEAST if is_minimised(property_.question) else Side.GREATEST
+        own = next((result for result in sampled if result.side is required_side), None)
         verdicts = [
             Verdict(expectation, False, False, under="so far")
             if own is None
@@ -361,7 +361,7 @@ class Verifier:
         verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
         return Result(property_.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
-    def check_stuck(self, level: str = stuck.WARNING, pulse: Pulse | None = None) -> StuckResult:
+    def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
         return stuck.check_stuck(self.target, self.checker, self.options, level, pulse)
 

@@ -11,7 +11,7 @@ from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.smc.record import SHORTEST, VERDICTS, Plain, VariableChange
+from roaml.smc.record import SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
@@ -114,10 +114,11 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
 
 def heading(story: Story) -> str:
     """A sentence that summarises the trace."""
-    verdict = VERDICTS.get(story.recording.verdict, "went wrong")
+    verdict = VERDICTS[story.recording.verdict]
+    outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     trace = "the shortest trace" if story.recording.trace == SHORTEST else f"trace {story.recording.trace}"
-    text = f"{story.property} {verdict} in {trace} after {steps}"
+    text = f"{story.property} {outcome} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
         text = f"{story.property}: {trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):

@@ -18,7 +18,7 @@ from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.pool import Alone
-from roaml.smc.run import FIXED, Options
+from roaml.smc.run import EstimationMethod, Options
 
 MAX_STATES = 20_000
 TRACES = 2_000
@@ -43,7 +43,7 @@ class Network(NetworkCase):
             exact = values_of(space)
         except (FaultError, LimitError, NoValueError):
             return
-        options = Options(method=FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
+        options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
         try:
             tally = checker.answer(property_, options, Alone(checker.compiled(property_))).tally
         except FaultError as error:
