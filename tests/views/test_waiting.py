@@ -25,7 +25,7 @@ def told(folder: Path, files: dict[str, str]) -> str:
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
     subject = api.as_target(api.load(str(folder / "main.xml")))
-    look = stuck.look(subject, api.checker(subject.model), Options(), stuck.WARNING)
+    look = stuck.look(subject, api.checker(subject.model), Options(), stuck.StuckLevel.WARNING)
 
     def place_of(origin: object) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)  # type: ignore[arg-type]
