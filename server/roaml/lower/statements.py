@@ -13,7 +13,7 @@ from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, is_draw, walk
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, ScalarKind, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
-from roaml.lower.blackboard import blackboard_write
+from roaml.lower.blackboard_events import blackboard_write
 from roaml.lower.build import equal, event_data, integer, name, random_number
 from roaml.lower.context import LoweringContext
 from roaml.lower.executed_goals import ExecutedGoals

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
-from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
+from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs import assembly
@@ -54,9 +54,10 @@ MAX_STATES = 20_000
 """The maximum number of states of one node."""
 
 
-MACHINE = "machine"
-"""The name of the program that evaluates the conditions of a node with a machine. Machines are also halted after they
-have ended (docs/spec/nodes.md#library)."""
+MACHINE, CONDITION_MACHINE = "machine", "condition_machine"
+"""The names of the programs that evaluate the conditions of an action and of a condition whose behaviour is a machine.
+Machines are also halted after they have ended (docs/spec/nodes.md#library)."""
+MACHINES = (MACHINE, CONDITION_MACHINE)
 
 
 class NodeTooLargeError(Exception):
@@ -263,7 +264,7 @@ class _Explorer:
     def on_halt(self, fixed: dict[str, Known]) -> list[Transition]:
         if fixed["status"] == RUNNING:
             return self.on(self.event(TreeEventKind.HALT), ("halt", 0), fixed)
-        if self.code.program.name == MACHINE and fixed[_TOUCHED]:
+        if self.code.program.name in MACHINES and fixed[_TOUCHED]:
             return self.on(self.event(TreeEventKind.HALT), ("halt", 0), {**fixed, _ENDED: True})
         target = self.rest({**fixed, "status": IDLE})
         answer = Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin)
