@@ -16,10 +16,9 @@ from roaml.ide.names.lookup import SymbolGroup, symbol_group
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
-from roaml.model.system import sanitise
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot
-from roaml.scxml.names import safe_name
+from roaml.scxml.names import safe_name, sanitise
 from roaml.text import TextEdit, apply_edits
 
 FRESH = "zqfresh"

@@ -133,16 +133,18 @@ TWINS = {
         ),
         pattern("response", IS_ODD, IS_EVEN, scope='type="before" event="n == 3"'),
     ),
-    "existence after-until": (
+    "an event of its own after each": (
         op(
             "G",
             op(
                 "⇒",
-                op("∧", equal(1), op("≠", COUNT, 3)),
+                op("∧", ODD, op("≠", COUNT, 3)),
                 op("U", op("≠", COUNT, 3), op("∧", equal(2), op("≠", COUNT, 3))),
             ),
         ),
-        pattern("existence", TWO, scope='type="after-until" event="n == 1" until="n == 3"'),
+        pattern(
+            "response", "n % 2 == 1 &amp;&amp; n != 3", TWO, scope='type="after-until" event="true" until="n == 3"'
+        ),
     ),
 }
 PORT = """<ports><ros_topic topic_name="/heads" type="std_msgs/Int32" event="publish">
@@ -211,6 +213,8 @@ def table_formula(random_: random.Random) -> object:
             op("G", op("⇒", s, op("U", wait, r))),
             op("G", op("⇒", op("∧", s, op("F", r)), op("W", wait, r))),
             op("W", wait, r),
+            op("G", op("⇒", op("∧", s, op("¬", r)), op("U", op("¬", r), op("∧", p, op("¬", r))))),
+            op("G", op("⇒", op("∧", s, op("¬", r)), op("W", op("¬", r), op("∧", p, op("¬", r))))),
             op("⇒", op("F", r), op("U", wait, r)),
             op("F", op("∧", p, op("G", q))),
             op("F", op("∧", p, op("F", q))),

@@ -16,6 +16,7 @@ from as2fm_lsp.debug.launch import Launch
 from as2fm_lsp.debug.variables import References, Shown
 from roaml.debugging.debugger import Debugger, Stop, StopReason
 from roaml.debugging.frames import Frame
+from roaml.disk import is_valid_path
 from roaml.jani.node import Origin
 
 Body = Mapping[str, Any] | None
@@ -65,7 +66,7 @@ class ClientFormat:
         if path.startswith("file:"):
             path = urllib.parse.unquote(urllib.parse.urlsplit(path).path)
             path = path[1:] if os.name == "nt" else path
-        if "\0" in path:
+        if not is_valid_path(path):
             raise RequestError("`path` is not a path")
         return os.path.abspath(path)
 

@@ -11,7 +11,7 @@ from typing import Any
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.names import sent_by
+from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story
 from roaml.text import Location
@@ -93,7 +93,11 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     """The status that each leaf returned where chance decided it, in the order of the trace."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
     leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
-    ticks = [step.number for step in story.steps if sent_by(step.action or "") == f"bt_{ROOT_NUMBER}_tick"]
+    ticks = [
+        step.number
+        for step in story.steps
+        if sent_by(step.action or "") == tree_event_name(ROOT_NUMBER, TreeEventKind.TICK)
+    ]
     rows = []
     for turn in leaf_turns:
         node = leaves[turn.automaton]

@@ -8,7 +8,15 @@ from collections.abc import Iterable, Mapping
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
 from roaml.scxml.events import Role
-from roaml.scxml.names import CLOCK_ACTION, STATUSES, TreeEventKind, automaton_role, read_tree_event, received_by
+from roaml.scxml.names import (
+    CLOCK_ACTION,
+    NODE_PREFIX,
+    STATUSES,
+    TreeEventKind,
+    automaton_role,
+    read_tree_event,
+    received_by,
+)
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
@@ -55,7 +63,7 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
     tree = read_tree_event(event)
     if tree is None:
         return ""
-    prefix = f"BT_plugin_{tree.number}_"
+    prefix = f"{NODE_PREFIX}{tree.number}_"
     child = next((who(name) for name in automata if name.startswith(prefix)), f"bt_{tree.number}")
     match tree.kind:
         case TreeEventKind.TICK:
