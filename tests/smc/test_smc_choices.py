@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
@@ -15,7 +16,6 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import Options
 from roaml.smc.solve import solve
-from twin import plain_kernel
 
 GOAL = op("F", "done")
 
