@@ -8,7 +8,7 @@ import itertools
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, Drawn, as_xml, trees
-from tree_comparison import difference_in_system
+from tree_comparison import difference_in_system, difference_with_mocks
 from trees_in_systems import FOLDER, files
 
 from examples import TIMES, examples
@@ -69,6 +69,15 @@ def test_a_subtree_resets_a_child_that_has_ended() -> None:
         tree = Drawn("KeepRunningUntilFailure", (), (Drawn(parent, (), (asked, Drawn("Act3"), Drawn("Act2"))),))
         for seed in range(4):
             compare(tree, seed)
+
+
+def test_a_write_after_the_check_for_writes() -> None:
+    """A node that follows the check writes the entry again, at once; the next check sees that write."""
+    asked = Drawn("WasEntryUpdated", (("entry", "x"), ("_post", "x := 0")))
+    tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, Drawn("Check"))),))
+    for seed in range(4):
+        compare(tree, seed)
+        assert difference_with_mocks(tree, TICKS, seed) == ""
 
 
 def test_a_constant_that_two_subtrees_share() -> None:

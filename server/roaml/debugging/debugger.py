@@ -19,7 +19,7 @@ from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, Stacks, node
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
-from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
+from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
 from roaml.simulation.choices import Choice, Outcome
 from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session, ends_tick
@@ -305,7 +305,7 @@ class Debugger:
         node was ticked."""
         steps = self.session.steps
         position = self.session.position
-        tick = f"bt_{frame.node}_tick"
+        tick = tree_event_name(frame.node, TreeEventKind.TICK)
         for index in range(position - 1, -1, -1):
             step = steps[index]
             if frame.role == "node":
