@@ -60,10 +60,10 @@ def rows(text: str) -> dict[str, dict[str, Any]]:
 def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--format", "json", "--seed", 1)
     assert (done.status, done.err) == (0, "")
-    found = rows(done.out)
+    results = rows(done.out)
     names = {"all_delivered", "never_empty", "docks_only_when_low", "never_delivers_when_empty"}
-    assert {name: row["probability"] for name, row in found.items()} == dict.fromkeys(names, 1.0)
-    assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
+    assert {name: row["probability"] for name, row in results.items()} == dict.fromkeys(names, 1.0)
+    assert set(results["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
     assert not (robot / "main.jani").exists()
 
 
@@ -121,8 +121,8 @@ def test_results_do_not_depend_on_jobs(command: Command, tmp_path: Path) -> None
     name = write(tmp_path, coin())
 
     def numbers(*options: object) -> dict[str, dict[str, Any]]:
-        found = rows(command("verify", name, "--format", "json", *options).out)
-        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in found.items()}
+        results = rows(command("verify", name, "--format", "json", *options).out)
+        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in results.items()}
 
     assert numbers("--jobs", 1) == numbers("--jobs", 2) == numbers()
     assert numbers("--seed", 1) != numbers()
@@ -500,9 +500,9 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     written["automata"][0]["edges"].append(edge("s", way("e", 0.8, x=1), way("e", 0.2)))
     name = write(tmp_path, written)
     options = ("--scheduler", "lss", "--epsilon", 0.03, "--property", "heads")
-    found = rows(command("verify", name, *options, "--format", "json").out)["heads"]
-    assert found["least"]["probability"] == pytest.approx(0.3, abs=0.05)
-    assert found["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
+    result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
+    assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
+    assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
     assert "least probability found 0." in command("verify", name, *options).out
 
 
@@ -522,9 +522,9 @@ def test_expected_rewards(command: Command, tmp_path: Path) -> None:
 
 
 def errors(text: str) -> list[dict[str, Any]]:
-    found = json.loads(text)["errors"]
-    assert isinstance(found, list)
-    return found
+    entries = json.loads(text)["errors"]
+    assert isinstance(entries, list)
+    return entries
 
 
 def place(folder: Path, text: str, name: str = "model.jani") -> int:

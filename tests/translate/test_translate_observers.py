@@ -36,7 +36,7 @@ COIN = """<ascxml name="Coin" version="1.0" initial="toss">
         </ros_rate_callback>
     </state>
 </ascxml>"""
-JUDGE = """<ascxml name="Judge" version="1.0" initial="wait">
+REFEREE = """<ascxml name="Judge" version="1.0" initial="wait">
     <ros_topic_subscriber name="heads" topic="/heads" type="std_msgs/Int32" />
     <ros_topic_publisher name="whistle" topic="/whistle" type="std_msgs/Bool" />
     <state id="wait">
@@ -133,13 +133,13 @@ def system(guarantees: str, twins: object = (), seconds: int = 6) -> dict[str, s
     </properties>
 </roaml>""",
         "coin.ascxml": COIN,
-        "judge.ascxml": JUDGE,
+        "judge.ascxml": REFEREE,
         "properties.xml": f"<properties>{PORTS}<guarantees>{guarantees}</guarantees></properties>",
         "twins.jani": json.dumps({"properties": list(twins)}),  # type: ignore[call-overload]
     }
 
 
-def twin(name: str, path: object) -> dict[str, object]:
+def hand_written(name: str, path: object) -> dict[str, object]:
     probability = {"op": "Pmin", "exp": path}
     values = {"op": "filter", "fun": "values", "values": probability, "states": {"op": "initial"}}
     return {"name": name, "expression": values}
@@ -147,7 +147,7 @@ def twin(name: str, path: object) -> dict[str, object]:
 
 def translated(name: str) -> Model:
     written, path = TWINS[name]
-    return api.to_jani(loaded(system(written.format(name), [twin("twin", path)])))
+    return api.to_jani(loaded(system(written.format(name), [hand_written("twin", path)])))
 
 
 @pytest.mark.parametrize("name", TWINS)
@@ -176,7 +176,7 @@ def test_the_same_traces_satisfy_both(name: str) -> None:
 def test_other_properties_keep_their_answers() -> None:
     """The model with an observer does what the model without it does."""
     with_observer = translated("existence")
-    alone = api.to_jani(loaded(system("", [twin("twin", TWINS["existence"][1])])))
+    alone = api.to_jani(loaded(system("", [hand_written("twin", TWINS["existence"][1])])))
     assert exact(alone, "twin").least == pytest.approx(exact(with_observer, "twin").least, abs=1e-9)
     assert not any(action.name == TIME_OVER_ACTION for action in alone.actions)
 
@@ -225,7 +225,7 @@ def test_names_that_clash_are_changed() -> None:
 
 
 def test_properties_are_chosen_by_name() -> None:
-    source = loaded(system(TIMED, [twin("twin", op("F", HEADS))]))
+    source = loaded(system(TIMED, [hand_written("twin", op("F", HEADS))]))
     assert [p.name for p in api.to_jani(source).properties] == ["twin", "soon", "answered"]
     assert [p.name for p in api.to_jani(source, ["answered"]).properties] == ["answered"]
 

@@ -95,8 +95,8 @@ def run(arguments: Sequence[str]) -> int:
     if options.format is Format.TEXT or STANDARD_OUTPUT not in (output, options.map):
         _report(options, report)
     if options.format is Format.TEXT and output != STANDARD_OUTPUT:
-        told = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
-        print_text(f"{shown_path(output)}: {summary(model)}\n", stream=told)
+        messages = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
+        print_text(f"{shown_path(output)}: {summary(model)}\n", stream=messages)
     return CLEAN
 
 

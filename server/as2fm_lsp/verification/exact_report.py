@@ -29,13 +29,13 @@ def lines(name: str, exact: Exact, seconds: float) -> list[str]:
         shown.append(f"  proof: its condition holds in all {states}")
     elif exact.proof is Proof.NONE:
         shown.append(f"  proof: its condition holds in none of the {states}")
-    told = [
+    shortest = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
         for what, trace in (("fails", fails), ("holds", holds))
         if trace is not None
     ]
-    if told:
-        shown.append(f"  shortest traces: it {', it '.join(told)}")
+    if shortest:
+        shown.append(f"  shortest traces: it {', it '.join(shortest)}")
     return shown
 
 

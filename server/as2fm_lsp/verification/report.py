@@ -37,7 +37,7 @@ def as_text(
     for result in results:
         where = "" if result.stuck is None else shown or shown_at.get(result.stuck.chain, "")
         blocks.append(_block(result, place_of, level, where, is_alone=False))
-        if result.stuck is not None and not result.asks_stuck:
+        if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, beneath `{result.name}`")
     open_ = [
         (result.answer.question, result.choices)
@@ -114,7 +114,7 @@ def _refusal_row(refusal: Refusal) -> dict[str, Any]:
 
 
 def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
-    return [f"  {line}" for line in stuck_report.told(stuck, place_of, level, shown)]
+    return [f"  {line}" for line in stuck_report.stuck_lines(stuck, place_of, level, shown)]
 
 
 def _estimate(answer: Answer) -> str:
@@ -220,7 +220,7 @@ def _verdict(result: Result) -> str:
 def warning(result: Result) -> str:
     """The reason why the value is not, or may not be, the requested one; "" if it is."""
     parts = []
-    if result.stuck is not None and not result.asks_stuck:
+    if result.stuck is not None and not result.includes_stuck:
         parts.append(result.stuck.warning)
     if result.answer is not None:
         parts.append(activity_report.warning(result.answer))

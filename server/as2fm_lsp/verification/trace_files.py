@@ -88,7 +88,8 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
     yield "{\n"
-    yield f' "property": {_json(recorder.asked.question.name)},\n "trace": {trace},\n "seed": {recorder.seed},\n'
+    name = _json(recorder.compiled_property.question.name)
+    yield f' "property": {name},\n "trace": {trace},\n "seed": {recorder.seed},\n'
     yield f' "initial": {_json(start)},\n "steps": ['
     comma = "\n  "
     for step in recorder.walk(recording):

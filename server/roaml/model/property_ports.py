@@ -25,7 +25,7 @@ from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, flag_of, safe_name, sanitise, topic_message
 from roaml.scxml.observed import PortEvent
-from roaml.suggest import close_names
+from roaml.suggest import alternatives, close_names
 from roaml.text import Span
 
 FindInterface = Callable[[str, str], "InterfaceType | NotFound"]
@@ -375,8 +375,8 @@ class PortLinker:
             if type_ is None:
                 known = list(_leaf_paths(data))
                 close = close_names(variable.field.value, known) or (tuple(known) if len(known) == 1 else ())
-                hint = f"; did you mean `{close[0]}`?" if close else ""
-                message = f"{data} has no field `{variable.field.value}`{hint}"
+                hint = alternatives(close, known, "field")
+                message = f"`{data}` has no field `{variable.field.value}`{hint}"
                 self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message, close)
                 return _declared(variable), parameter
         if isinstance(type_, Struct):

@@ -87,7 +87,7 @@ class Choices:
         return self.minimum.bounds.upper < self.maximum.bounds.lower
 
 
-def look_at_choices(
+def check_choices(
     model: Model,
     compiled: Compiled,
     payload: Payload,

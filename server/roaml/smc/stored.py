@@ -51,7 +51,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
-        raise ValueError("it is not a tally") from None
+        raise ValueError("it does not contain the state of a verification") from None
     _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
     _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
     _check_sums(tally, question, options)

@@ -18,7 +18,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
-from roaml.smc.story import Story, tell
+from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
 from roaml.verification.stuck import Stuck
@@ -45,11 +45,11 @@ class ShortestTrace:
         """The whole trace, with the steps that are relevant for the property.
 
         Args:
-            clock: see `roaml.smc.story.tell`.
+            clock: see `roaml.smc.story.build_story`.
         """
         recorder = PathRecorder(self.space, self.path)
         names = {storage.name for storage in recorder.shared}
-        return tell(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
+        return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
 class Proof(Enum):
@@ -131,12 +131,12 @@ class Traces:
 
     target: VerificationTarget
     checker: ModelChecker
-    asked: CompiledProperty
+    compiled_property: CompiledProperty
     options: Options
 
     def recorder(self) -> Recorder:
         """A recorder that simulates single traces. It must not be used by several threads at a time."""
-        return Recorder(self.checker, self.asked, self.options.seed, self.options.max_steps)
+        return Recorder(self.checker, self.compiled_property, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
         """The steps of a trace.
@@ -148,7 +148,7 @@ class Traces:
 
     def story(self, trace: int) -> Story:
         """A whole trace, with the steps that are relevant for the property."""
-        return tell(self.recorder(), trace, self.target.clock)
+        return build_story(self.recorder(), trace, self.target.clock)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,13 +189,15 @@ class Result:
     @property
     def comment(self) -> str:
         """A description of what the property requires, if the model contains one."""
-        return (self.traces.asked.property.comment or "") if self.traces is not None else ""
+        return (self.traces.compiled_property.property.comment or "") if self.traces is not None else ""
 
     @property
-    def asks_stuck(self) -> bool:
+    def includes_stuck(self) -> bool:
         """Whether the question is about stuck traces."""
         traces = () if self.exact is None else self.exact.traces
-        questions = [answer.question for answer in self._answers()] + [t.space.asked.question for t in traces]
+        questions = [answer.question for answer in self._answers()] + [
+            t.space.compiled_property.question for t in traces
+        ]
         return any(question.is_stuck for question in questions)
 
     @property

@@ -88,7 +88,7 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     Args:
         time: the time of the model, in s.
     """
-    return tuple(_Chain(standstill, time).told())
+    return tuple(_Chain(standstill, time).waits())
 
 
 NEEDS_TIME = "answer-needs-time"
@@ -107,8 +107,9 @@ def advice(waiting: Sequence[Wait]) -> str:
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
     if late.unanswered is TreeEventKind.HALT:
-        return f"a halt must be answered before time passes; let {late.whom} answer it at once"
-    return f"a tick must be answered before time passes; let {late.whom} return RUNNING, and the result at a later tick"
+        return f"a halt must end before time passes; let {late.whom} confirm it at once"
+    what = f"let {late.whom} return RUNNING, and the result at a later tick"
+    return f"a tick must return a status before time passes; {what}"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
@@ -136,7 +137,7 @@ class _Chain:
 
     # ------------------------------------------------------------------ the search
 
-    def told(self) -> Iterator[Wait]:
+    def waits(self) -> Iterator[Wait]:
         clock = self.index.get(CLOCK)
         if clock is not None:
             self.follow(clock, "")
@@ -322,7 +323,7 @@ class _Chain:
             is_halt = any(event.endswith("_halt_response") for _, event in shown)
             unanswered = TreeEventKind.HALT if is_halt else TreeEventKind.TICK
             origin = self.place_in_tree(shown[0][1]) or origin
-            text = f"waits{where} for {them} to answer its {unanswered.value}"
+            text = f"waits{where} for {them} to {'halt' if is_halt else 'return a status'}"
         else:
             is_message = link.event.startswith(TOPIC_PREFIX)
             senders = f" from {' or '.join(others)}" if is_message and others else ""
