@@ -50,7 +50,7 @@ def row(exact: Exact) -> dict[str, Any]:
             for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
         },
         "precise": exact.is_precise,
-        "proof": exact.proof,
+        "proof": "" if exact.proof is None else exact.proof.name.lower(),
         "states": exact.states,
         "shortest": {
             name: None if (trace := exact.shortest(verdict)) is None else trace.steps
