@@ -109,6 +109,18 @@ def test_trees_that_are_rejected(content: str, reason: str, tmp_path: Path, caps
     assert reason in refused(capsys, tree(tmp_path, content), "--mock", "*: 0.5")
 
 
+def test_models_of_nodes_of_nav2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A model of a node of Nav2, as Groot2 writes it into the tree, does not hide what the node does."""
+    content = "<RecoveryNode><RateController><Drive/></RateController><Wait wait_duration='1'/></RecoveryNode>"
+    models = """</BehaviorTree><TreeNodesModel>
+        <Control ID="RecoveryNode"><input_port name="number_of_retries">Number of retries</input_port></Control>
+        <Decorator ID="RateController"/><Action ID="Wait"><input_port name="wait_duration"/></Action>
+    </TreeNodesModel><BehaviorTree ID="Other"><AlwaysSuccess/>"""
+    measured = verified(capsys, tree(tmp_path, content + models), "--mock", "Drive: 0", "--mock", "Wait: 1")["tree"]
+    assert isinstance(measured, dict)
+    assert [row["value"] for row in measured["recoveries"]] == [1.0]
+
+
 def test_an_entry_of_the_host(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tree(tmp_path, "<ScriptCondition code='level &gt; 3'/>")
     for level, success in (("2", 0.0), ("4", 1.0)):
