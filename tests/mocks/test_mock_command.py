@@ -207,6 +207,17 @@ def test_a_trace_of_a_plugin_with_conditions(tmp_path: Path, capsys: pytest.Capt
     assert "_inner_" not in text
 
 
+def test_nodes_with_names_in_a_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nodes with children are left out while they only pass on ticks, whatever their names are and also in Nav2."""
+    content = '<RecoveryNode name="Try hard">\n<RateController>\n<Drive/></RateController><Wait/></RecoveryNode>'
+    arguments = ("--mock", "Drive: 0 in 300 ms", "--mock", "Wait: 0", "--max-traces", "50", "--explain")
+    assert run(["verify", tree(tmp_path, content), *arguments]) == 0
+    text = capsys.readouterr().out
+    assert "bt_1002_tick" not in text
+    assert re.search(r"Try hard \(bt_1000\) +answers FAILURE", text)
+    assert re.search(r"bt_1000 is Try hard \(\S*tree.xml:3\), bt_1001 is RateController \(\S*tree.xml:4\)", text)
+
+
 def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "main.xml"
     path.write_text("<roaml/>", encoding="utf-8")
