@@ -7,7 +7,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.smc import kernel
-from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
+from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
@@ -24,8 +24,8 @@ def looked_at(written: Json, options: Options | None = None) -> Choices:
     checker = ModelChecker(model(written))
     options = options or Options(epsilon=0.03)
     with Pool() as pool:
-        answer = checker.answer(checker.asked[0], options, pool)
-        return checker.choices(checker.asked[0], answer, pool)
+        answer = checker.answer(checker.compiled_properties[0], options, pool)
+        return checker.choices(checker.compiled_properties[0], answer, pool)
 
 
 def starving(length: int, chance: bool = False, operator: str = "Pmin") -> Json:
@@ -67,7 +67,7 @@ def test_choices_that_do_not_matter() -> None:
     )
     assert choices.agreement.startswith("all ")
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), EXPLORATION)
+    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), ExtremeMethod.EXPLORATION)
     assert choices.maximum is not None
     assert choices.maximum.value == pytest.approx(0.25)
 
@@ -87,21 +87,21 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     choices = looked_at(starving(6000))
     assert choices.differ
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (0, SAMPLING)
+    assert (choices.minimum.value, choices.minimum.method) == (0, ExtremeMethod.SAMPLING)
     assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert choices.minimum.bounds.upper < 0.2
     assert choices.maximum is not None
-    assert (choices.maximum.value, choices.maximum.method) == (1, UNIFORM)
+    assert (choices.maximum.value, choices.maximum.method) == (1, ExtremeMethod.UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:
     checker = ModelChecker(model(starving(6000)))
-    found = []
+    results = []
     for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pool as used:
-            answer = checker.answer(checker.asked[0], Options(epsilon=0.03), used)
-            found.append(checker.choices(checker.asked[0], answer, used))
-    assert found[0] == found[1]
+            answer = checker.answer(checker.compiled_properties[0], Options(epsilon=0.03), used)
+            results.append(checker.choices(checker.compiled_properties[0], answer, used))
+    assert results[0] == results[1]
 
 
 def test_rewards_are_not_sampled() -> None:
@@ -126,16 +126,16 @@ def test_described() -> None:
 def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, int]:
     """The verdict and the steps of a trace under a scheduler. Both kernels must agree."""
     checker = ModelChecker(model(written))
-    compiled = checker.compiled(checker.asked[0])
-    found = []
+    compiled = checker.compiled(checker.compiled_properties[0])
+    results = []
     for module in (kernel, plain_kernel()):
-        each = module.Kernel(compiled.program, compiled.goal)
-        verdict = each.begin(1, 0, scheduler)
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        verdict = simulator.begin(1, 0, scheduler)
         if verdict == UNKNOWN:
-            verdict = each.advance(steps)
-        found.append((verdict, each.outcome()[0]))
-    assert found[0] == found[1]
-    return found[0]
+            verdict = simulator.advance(steps)
+        results.append((verdict, simulator.outcome()[0]))
+    assert results[0] == results[1]
+    return results[0]
 
 
 def test_a_scheduler_in_a_cycle_never_reaches_the_goal() -> None:
@@ -171,14 +171,14 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
         syncs=[["one", None, "one"], [None, "two", "two"]],
         properties={"p": probability(GOAL, "Pmax")},
     )
-    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
+    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).compiled_properties[0])
     assert len(Explorer(compiled).reachable(100)) == 4
     assert {outcomes(written, MEMORY | number)[0] for number in range(1, 40)} == {TRUE, FALSE}
 
 
 def test_limits_of_looking_at_all_states() -> None:
     checker = ModelChecker(model(chain(100)))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     assert solve(compiled, limit=50) is None
     assert solve(compiled, work=50) is None
     solution = solve(compiled)
@@ -194,6 +194,6 @@ def test_goals_of_several_parts_are_not_solved() -> None:
     both = op("∧", op("F", "done"), op("F", op("=", "c", 2)))
     written["properties"] = [{"name": "p", "expression": probability(both)}]
     checker = ModelChecker(model(written))
-    solution = solve(checker.compiled(checker.asked[0]))
+    solution = solve(checker.compiled(checker.compiled_properties[0]))
     assert solution is not None
     assert (solution.minimum, solution.has_choices, solution.agrees) == (None, False, True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import ALL, NONE, Exact
+from roaml.verification.results import Exact, Proof
 
 _SAME = 1e-6
 
@@ -25,17 +25,17 @@ def lines(name: str, exact: Exact, seconds: float) -> list[str]:
         both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
         shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
-    if exact.proof == ALL:
+    if exact.proof is Proof.ALL:
         shown.append(f"  proof: its condition holds in all {states}")
-    elif exact.proof == NONE:
+    elif exact.proof is Proof.NONE:
         shown.append(f"  proof: its condition holds in none of the {states}")
-    told = [
+    shortest = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
         for what, trace in (("fails", fails), ("holds", holds))
         if trace is not None
     ]
-    if told:
-        shown.append(f"  shortest traces: it {', it '.join(told)}")
+    if shortest:
+        shown.append(f"  shortest traces: it {', it '.join(shortest)}")
     return shown
 
 

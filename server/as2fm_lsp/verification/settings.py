@@ -16,7 +16,7 @@ from typing import Any
 
 from roaml.smc.run import MIN_EPSILON, Options
 from roaml.verification.expectations import Expectation, parse
-from roaml.verification.stuck import LEVELS, WARNING
+from roaml.verification.stuck import StuckLevel
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class VerificationSettings:
 
     Attributes:
         is_silent: whether the results are not shown as messages.
-        stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
+        stuck: how a system that gets stuck is reported, a warning or an error.
         problems: messages about invalid values, as sentences.
         partial_result_token: the token with which the client requests each result as soon as it is complete.
     """
@@ -34,7 +34,7 @@ class VerificationSettings:
     expectations: tuple[Expectation, ...]
     is_silent: bool
     problems: tuple[str, ...]
-    stuck: str = WARNING
+    stuck: StuckLevel = StuckLevel.WARNING
     partial_result_token: int | str | None = None
 
 
@@ -71,17 +71,17 @@ def verification_settings(settings: object, options: object = None) -> Verificat
             expectations.append(parse(f"{name} {text}"))
         except ValueError:
             problems.append(f"The expectation of {name} must have a form like '>= 0.95', not {text!r}.")
-    level = values.get("stuck", WARNING)
-    if level not in LEVELS:
-        problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
-        level = WARNING
+    word = values.get("stuck", StuckLevel.WARNING.value)
+    level = next((level for level in StuckLevel if level.value == word), None)
+    if level is None:
+        problems.append(f"verify.stuck must be one of {', '.join(map(str, StuckLevel))}, not {word!r}.")
     token = values.get("partialResultToken")
     return VerificationSettings(
         chosen,
         tuple(expectations),
         values.get("silent") is True,
         tuple(problems),
-        level,
+        level or StuckLevel.WARNING,
         token if isinstance(token, (int, str)) and not isinstance(token, bool) else None,
     )
 

@@ -52,8 +52,8 @@ class _Question:
     def __init__(self, space: Space, module: Any) -> None:
         self.space = space
         self.module = module
-        self.goal = space.asked.goal
-        self.question = space.asked.question
+        self.goal = space.compiled_property.goal
+        self.question = space.compiled_property.question
         self.is_precise = True
 
     def values(self) -> GoalValues:

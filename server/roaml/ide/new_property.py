@@ -111,7 +111,7 @@ def observable_events(analysis: Analysis, system: str) -> tuple[ObservableEvent,
     model = analysis.system(system)
     if model is None:
         return ()
-    tags = [*_tags(model)]
+    tags = [*port_tags(model)]
     text = "".join(f"<{tag}/>" for tag in tags)
     file = build_property_file(parse(f"<properties><ports>{text}</ports></properties>"))
     assert file is not None
@@ -123,7 +123,8 @@ def observable_events(analysis: Analysis, system: str) -> tuple[ObservableEvent,
     )
 
 
-def _tags(system: System) -> Iterator[str]:
+def port_tags(system: System) -> Iterator[str]:
+    """The start tags of ports that listen to everything that a system can send, without the angle brackets."""
     for kind, symbol_kind in SYMBOL_KINDS.items():
         for channel in system.channels(symbol_kind).values():
             names = (endpoint.automaton.interface_name(endpoint.use) for endpoint in channel.endpoints)

@@ -15,7 +15,7 @@ from roaml.rules.support.settings import constant_settings, integer_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
+    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
     is_library_tree = context.system is None or context.system.is_library_tree
     for node, key, text in constant_settings(context):
@@ -78,4 +78,4 @@ def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | 
     return None
 
 
-RULE = Rule("node-configuration", Severity.ERROR, "A node never answers because of its settings.", tree=check)
+RULE = Rule("node-configuration", Severity.ERROR, "A node never returns a status because of its settings.", tree=check)

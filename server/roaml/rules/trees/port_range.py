@@ -47,7 +47,7 @@ def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str
         if port.limits is None or number is None:
             continue
         if number < -1 and not is_library_tree and port.limits.special:
-            continue  # the node never answers, which `node-configuration` reports
+            continue  # the node never returns a status, which `node-configuration` reports
         reason = _reason(port.limits, number, len(node.children))
         effect = f"; {port.limits.effect}" if port.limits.effect and not _upper(port.limits) else ""
         # The translation computes the period of a rate, so it refuses rates that are not positive.
