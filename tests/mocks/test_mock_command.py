@@ -214,7 +214,7 @@ def test_nodes_with_names_in_a_trace(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert run(["verify", tree(tmp_path, content), *arguments]) == 0
     text = capsys.readouterr().out
     assert "bt_1002_tick" not in text
-    assert re.search(r"Try hard \(bt_1000\) +answers FAILURE", text)
+    assert re.search(r"Try hard \(bt_1000\) +returns FAILURE", text)
     assert re.search(r"bt_1000 is Try hard \(\S*tree.xml:3\), bt_1001 is RateController \(\S*tree.xml:4\)", text)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-from roaml.libraries.node import Absent, Library, Limits, Node, Port, Renamed
+from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
 from roaml.roles import UNBOUNDED, Direction, NodeKind
 
 __all__ = [
@@ -18,9 +18,9 @@ __all__ = [
     "LIBRARIES",
     "Absent",
     "Library",
-    "Limits",
     "Node",
     "Port",
+    "PortLimits",
     "Renamed",
     "library",
     "node_in_libraries",
@@ -108,11 +108,11 @@ _LIMITS = ("min", "above", "counts-children", "at-most", "less-than")
 """The attributes of ports that limit numbers."""
 
 
-def _limits(element: Any) -> Limits | None:
+def _limits(element: Any) -> PortLimits | None:
     if not any(element.get(attribute) for attribute in _LIMITS):
         return None
     minimum = element.get("min", element.get("above"))
-    return Limits(
+    return PortLimits(
         None if minimum is None else float(minimum),
         element.get("above") is not None,
         frozenset(map(float, element.get("special", "").split())),

@@ -19,7 +19,7 @@ WORLD_NODES = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class PortLimits:
     """The numbers that are useful values of a port (docs/spec/lone-trees.md#limits).
 
     Attributes:
@@ -64,7 +64,7 @@ class Port:
     system_type: str = ""
     system_direction: Direction | None = None
     system_constant: bool = False
-    limits: Limits | None = None
+    limits: PortLimits | None = None
 
 
 @dataclass(frozen=True)

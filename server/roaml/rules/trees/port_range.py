@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from roaml.diagnostics import Finding, Severity
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP
-from roaml.libraries import Limits, Node, Port, node_in_libraries
+from roaml.libraries import Node, Port, PortLimits, node_in_libraries
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
@@ -59,7 +59,7 @@ def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str
             yield RULE.at(place_of(node, port.name), message, severity=severity)
 
 
-def _reason(limits: Limits, number: float, children: int) -> str:
+def _reason(limits: PortLimits, number: float, children: int) -> str:
     """The numbers that are useful, if `number` is not one of them; otherwise ""."""
     if limits.counts_children:
         # `node-configuration` reports numbers that are too large.
@@ -73,12 +73,12 @@ def _reason(limits: Limits, number: float, children: int) -> str:
     return ""
 
 
-def _upper(limits: Limits) -> str:
+def _upper(limits: PortLimits) -> str:
     """The name of the port whose number is the upper bound; "" if there is none."""
     return limits.at_most or limits.less_than
 
 
-def _order(known: Node, limits: Limits, number: float, texts: Mapping[str, str]) -> str:
+def _order(known: Node, limits: PortLimits, number: float, texts: Mapping[str, str]) -> str:
     """The useful numbers, if `number` is greater than the number of the port that is its upper bound; otherwise ""."""
     other = known.port(_upper(limits))
     text = texts.get(other.name, other.default) if other is not None else None
