@@ -168,7 +168,8 @@ class _VerifyCommand:
                 else:
                     self.reject(name, str(error))
             return None, {}
-        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform)
+        is_exact = settings.exact_if_small
+        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform, is_exact)
         asked = {}
         for name in usable:
             try:

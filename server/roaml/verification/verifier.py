@@ -10,19 +10,20 @@ from dataclasses import dataclass, field, replace
 from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
-from roaml.smc.choices import Choices
+from roaml.smc.choices import NO_NONDETERMINISM, Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import GREATEST, LEAST, Search, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.run import SPRT, Answer, Options, Tally, Watch, summary
+from roaml.smc.run import FIXED, SPRT, Answer, Options, Tally, Watch, summary
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
 from roaml.verification.expectations import Expectation, Verdict, check_range, is_possible, judge
 from roaml.verification.refusal import refusal
-from roaml.verification.results import Result, SampledResult, Traces
+from roaml.verification.results import Exact, Result, SampledResult, Traces
 from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
+from roaml.verification.small import choices_of, values_if_small
 from roaml.verification.stuck import Look
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
@@ -73,12 +74,15 @@ def verifier_of(
     expectations: Iterable[Expectation] = (),
     *,
     only_uniform: bool = False,
+    exact_if_small: bool = False,
+    example_traces: int | None = None,
 ) -> Verifier:
     """A target prepared for verification.
 
     Args:
         properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
+        exact_if_small, example_traces: see `Verifier`.
 
     Raises:
         PropertyError: a property, or the property of an expectation, does not exist.
@@ -99,7 +103,7 @@ def verifier_of(
         for expectation in (*expectations, *target.expectations):
             if expectation.name == asked.question.name:
                 check_range(expectation, asked.question)
-    return Verifier(target, checker, options or Options(), expectations, only_uniform)
+    return Verifier(target, checker, options or Options(), expectations, only_uniform, exact_if_small, example_traces)
 
 
 def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
@@ -112,7 +116,7 @@ def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tu
 
 
 def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
-    """The result of traces with uniform choices, compared with other expectations, without new traces.
+    """The result of traces with uniform choices, or exact values, compared with other expectations, without new traces.
 
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
@@ -121,22 +125,37 @@ def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
     if traces is None or answer is None:
         return result
     expectations = [e for e in expectations_of(traces.asked, given) if is_possible(e, answer.question)]
-    return replace(result, verdicts=_verdicts(expectations, answer, result.choices))
+    return replace(result, verdicts=_verdicts(expectations, answer, result.choices, result.exact))
 
 
-def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
+def _verdicts(
+    expectations: Iterable[Expectation], answer: Answer, choices: Choices | None, exact: Exact | None
+) -> tuple[Verdict, ...]:
+    if exact is not None:
+        only_uniform, width = choices is None and not answer.question.is_stuck, answer.options.epsilon
+        return tuple(
+            judge_exactly(expectation, exact, answer.question, only_uniform=only_uniform, width=width)
+            for expectation in expectations
+        )
     return tuple(under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in expectations)
 
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
-    """A target with compiled properties, and their expectations; see `verifier_of`."""
+    """A target with compiled properties, and their expectations; see `verifier_of`.
+
+    Attributes:
+        exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
+        example_traces: the number of traces that are generated for such a result; `None` for as many as for others.
+    """
 
     target: VerificationTarget
     checker: ModelChecker
     options: Options = field(default_factory=Options)
     expectations: tuple[Expectation, ...] = ()
     only_uniform: bool = False
+    exact_if_small: bool = False
+    example_traces: int | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -202,7 +221,8 @@ class Verifier:
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, from traces with uniform choices.
+        """The result of a property, from traces with uniform choices; with exact values if they are wanted and the
+        model is small.
 
         Args:
             tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
@@ -217,9 +237,10 @@ class Verifier:
         """
         self.check_method(asked)
         began = time.monotonic()
-        answer = self.checker.answer(asked, self.options, pool, tally, watch, pulse)
-        choices = self._choices(asked, answer, pool, pulse)
-        return self._judged(asked, answer, choices, time.monotonic() - began)
+        small = self._small(asked)
+        options = self._trace_options(self._shown(small))
+        answer = self.checker.answer(asked, options, pool, tally, watch, pulse)
+        return self._finished(asked, answer, small, pool, pulse, began)
 
     def can_share(self, asked: CompiledProperty) -> bool:
         """Whether the traces of other properties can answer a property: it must be about a probability, and not about
@@ -252,31 +273,72 @@ class Verifier:
             seconds[property_.question.name] = time.monotonic() - began
             watch(property_, tally)
 
-        answers = self.checker.answer_together(asked, self.options, pool, tallies, watch_time, pulse)
-        return [
-            self._result(property_, answer, pool, pulse, seconds.get(property_.question.name, 0.0))
-            for property_, answer in zip(asked, answers, strict=True)
-        ]
-
-    def _result(
-        self, asked: CompiledProperty, answer: Answer | FaultError, pool: Pool, pulse: Pulse | None, seconds: float
-    ) -> Result:
-        """The result that contains an answer, which took `seconds` s to compute; a refusal if the answer is a fault."""
-        began = time.monotonic()
-        try:
+        small = [self._small(property_) for property_ in asked]
+        groups: dict[Options, list[int]] = {}
+        for i, exact in enumerate(small):
+            groups.setdefault(self._trace_options(self._shown(exact)), []).append(i)
+        answers: dict[int, Answer | FaultError] = {}
+        for options, group in groups.items():
+            together = self.checker.answer_together(
+                [asked[i] for i in group], options, pool, [tallies[i] for i in group], watch_time, pulse
+            )
+            answers.update(zip(group, together, strict=True))
+        results = []
+        for i, property_ in enumerate(asked):
+            name, since = property_.question.name, time.monotonic()
+            answer = answers[i]
             if isinstance(answer, FaultError):
-                raise answer
-            choices = self._choices(asked, answer, pool, pulse)
-        except FaultError as fault:
-            return self.refused(asked.question.name, fault)
-        return self._judged(asked, answer, choices, seconds + time.monotonic() - began)
+                results.append(self.refused(name, answer))
+                continue
+            try:
+                since -= seconds.get(name, 0.0)
+                results.append(self._finished(property_, answer, small[i], pool, pulse, since))
+            except FaultError as fault:
+                results.append(self.refused(name, fault))
+        return results
 
-    def _choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
-        """What is known about other schedulers; `None` if the question is only about uniform choices."""
-        question = asked.question
-        if self.only_uniform or question.is_stuck or question.is_conditional:
-            return None
-        return self.checker.choices(asked, answer, pool, pulse)
+    def _small(self, asked: CompiledProperty) -> Exact | None:
+        """The exact values of a property of a small model, for its result or to compare schedulers."""
+        if self.exact_if_small or (self._considers_choices(asked) and not self.checker.is_deterministic):
+            return values_if_small(self.checker, asked)
+        return None
+
+    def _shown(self, small: Exact | None) -> Exact | None:
+        """The exact values that the result contains. If traces can get stuck, it contains none, because the value is
+        doubtful and traces are needed as examples."""
+        return None if not self.exact_if_small or small is None or small.can_get_stuck else small
+
+    def _trace_options(self, exact: Exact | None) -> Options:
+        if exact is None or self.example_traces is None:
+            return self.options
+        return replace(self.options, method=FIXED, max_traces=self.example_traces)
+
+    def _finished(
+        self,
+        asked: CompiledProperty,
+        answer: Answer,
+        small: Exact | None,
+        pool: Pool,
+        pulse: Pulse | None,
+        began: float,
+    ) -> Result:
+        """The result that contains an answer.
+
+        Args:
+            small: the exact values, if the model is small.
+            began: the time at which the work began.
+        """
+        choices = None
+        if self._considers_choices(asked):
+            if small is None:
+                choices = self.checker.choices(asked, answer, pool, pulse)
+            else:
+                choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
+        return self._judged(asked, answer, choices, time.monotonic() - began, self._shown(small))
+
+    def _considers_choices(self, asked: CompiledProperty) -> bool:
+        """Whether the question is about all schedulers, not only about uniform choices."""
+        return not (self.only_uniform or asked.question.is_stuck or asked.question.is_conditional)
 
     def check_method(self, asked: CompiledProperty) -> None:
         """Check that a sequential test has a number to compare with, if one is requested.
@@ -354,13 +416,21 @@ class Verifier:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
         return stuck.look(self.target, self.checker, self.options, level, pulse)
 
-    def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:
+    def _judged(
+        self,
+        asked: CompiledProperty,
+        answer: Answer,
+        choices: Choices | None,
+        seconds: float,
+        exact: Exact | None = None,
+    ) -> Result:
         return Result(
             asked.question.name,
             answer,
-            _verdicts(self.expected(asked), answer, choices),
+            _verdicts(self.expected(asked), answer, choices, exact),
             seconds,
             stuck=stuck.stuck_in(self.target, self.checker, asked, answer),
+            exact=exact,
             choices=choices,
             traces=Traces(self.target, self.checker, asked, self.options),
         )
