@@ -13,19 +13,28 @@ from roaml.smc.program import UNKNOWN
 
 
 def difference(
-    checker: ModelChecker, asked: CompiledProperty, seed: int, traces: int, steps: int, scheduler: int = 0
+    checker: ModelChecker, property_: CompiledProperty, seed: int, traces: int, steps: int, scheduler: int = 0
 ) -> str:
     """The differences between the two kernels, "" if there are none: verdict, end, steps, random numbers, rewards, all
     values, faults, and the last step."""
-    compiled = checker.compiled(asked)
+    compiled = checker.compiled(property_)
     both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
     for trace in range(traces):
-        found: list[Any] = []
-        for each in both:
-            verdict = each.begin(seed, trace, scheduler)
+        results: list[Any] = []
+        for simulator in both:
+            verdict = simulator.begin(seed, trace, scheduler)
             if verdict == UNKNOWN:
-                verdict = each.advance(steps)
-            found.append((verdict, each.ending(), each.outcome(), each.snapshot(), each.problem(), each.taken()))
-        if repr(found[0]) != repr(found[1]):  # repr: NaN is what it is
-            return f"{asked.question.name}, trace {trace}, scheduler {scheduler}:\n{found[0]}\n{found[1]}"
+                verdict = simulator.advance(steps)
+            results.append(
+                (
+                    verdict,
+                    simulator.ending(),
+                    simulator.outcome(),
+                    simulator.snapshot(),
+                    simulator.problem(),
+                    simulator.taken(),
+                )
+            )
+        if repr(results[0]) != repr(results[1]):  # repr: NaN is what it is
+            return f"{property_.question.name}, trace {trace}, scheduler {scheduler}:\n{results[0]}\n{results[1]}"
     return ""

@@ -17,6 +17,7 @@ from pygls import uris
 
 from as2fm_lsp.buffer import MARK, Units
 from roaml.diagnostics import Diagnostic, Severity, Tag
+from roaml.disk import is_valid_path
 from roaml.facts import facts_to_json
 from roaml.rules import document_file
 from roaml.text import Location, SourceFile, Span, TextEdit
@@ -137,10 +138,9 @@ def _file(uri: str) -> str:
         return ""
     try:
         path = os.path.normpath(uris.to_fs_path(uri) or "")
-        os.fsencode(path)
-    except ValueError:  # not a valid URI, or one that the system cannot encode
+    except ValueError:  # not a valid URI
         return ""
-    return path if os.path.isabs(path) and "\0" not in path else ""
+    return path if os.path.isabs(path) and is_valid_path(path) else ""
 
 
 def rule_uri(code: str) -> str:

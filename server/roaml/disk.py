@@ -49,6 +49,15 @@ class NotReadableError(OSError):
         return f"{self.filename}: {self.strerror}"
 
 
+def is_valid_path(path: str) -> bool:
+    """Whether a file can have this path: it contains no null character, and the file system can encode it."""
+    try:
+        os.fsencode(path)
+    except UnicodeEncodeError:
+        return False
+    return "\0" not in path
+
+
 def status_of(path: str, most: int = MAX_BYTES) -> os.stat_result | UnreadableReason:
     """The status of a regular file of at most `most` bytes, or why the file cannot be read. Links are followed."""
     try:

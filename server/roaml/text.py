@@ -39,6 +39,10 @@ class Span(NamedTuple):
         return Span(min(self.start, other.start), max(self.end, other.end))
 
 
+NO_SPAN = Span(0, 0)
+"""The span of expressions that no text contains, such as those that a translation creates."""
+
+
 def span_of(ends: tuple[int, int]) -> Span:
     """A span with these ends. It takes half the time of `Span(...)`, for callers that create a span for each word."""
     return tuple.__new__(Span, ends)

@@ -162,7 +162,7 @@ def after_burst(folder: Path, pause: float, names: Sequence[str]) -> float:
     """The time in s from the last key to its diagnostics. `pause` is the time in s between keys."""
     path = folder / FIRST
     with opened(folder, REST) as (server, text):
-        offered = [each for each in REQUESTS if each.name in names and each.capability in server.capabilities]
+        offered = [r for r in REQUESTS if r.name in names and r.capability in server.capabilities]
         sent, version = 0.0, 2
         for key in islice(keys(text), BURST + 1):  # the final text contains a misspelled word, so there are diagnostics
             for number in range(len(offered)):

@@ -83,35 +83,35 @@ class Server:
     def diagnostics(self, path: Path, version: int) -> tuple[float, list[dict[str, Any]]]:
         """Wait for the diagnostics of a version of a document. Return when they arrived, and the diagnostics."""
         at, message = self.wait(is_diagnostics(path, version))
-        found: list[dict[str, Any]] = message["params"]["diagnostics"]
-        return at, found
+        diagnostics: list[dict[str, Any]] = message["params"]["diagnostics"]
+        return at, diagnostics
 
     def answer(self, id_: int) -> tuple[float, dict[str, Any]]:
         """Wait for the answer to a request. Return when it arrived."""
         return self.wait(is_answer(id_))
 
-    def wait(self, wanted: Wanted) -> tuple[float, dict[str, Any]]:
+    def wait(self, predicate: Wanted) -> tuple[float, dict[str, Any]]:
         """The next message that is expected, and when it arrived. Other messages are discarded.
 
         Raises:
             TimeoutError: the message does not arrive.
         """
-        return self.wait_for_all(wanted)[0]
+        return self.wait_for_all(predicate)[0]
 
-    def wait_for_all(self, *wanted: Wanted) -> list[tuple[float, dict[str, Any]]]:
+    def wait_for_all(self, *predicates: Wanted) -> list[tuple[float, dict[str, Any]]]:
         """Like `wait`, for several messages in any order."""
-        found: dict[Wanted, tuple[float, dict[str, Any]]] = {}
-        while len(found) < len(wanted):
+        messages: dict[Wanted, tuple[float, dict[str, Any]]] = {}
+        while len(messages) < len(predicates):
             try:
                 at, message = self._answers.get(timeout=TIMEOUT_S)
             except queue.Empty:
                 raise TimeoutError(
-                    f"no such answer in {TIMEOUT_S} s: {listed(w.__qualname__ for w in wanted)}"
+                    f"no such answer in {TIMEOUT_S} s: {listed(w.__qualname__ for w in predicates)}"
                 ) from None
-            for each in wanted:
-                if each not in found and each(message):
-                    found[each] = (at, message)
-        return [found[each] for each in wanted]
+            for predicate in predicates:
+                if predicate not in messages and predicate(message):
+                    messages[predicate] = (at, message)
+        return [messages[predicate] for predicate in predicates]
 
     def resident_memory(self) -> int | None:
         """The resident memory in bytes; `None` on systems without /proc."""

@@ -17,7 +17,7 @@ import pytest
 from command import Command
 
 import clock
-from as2fm_lsp.cli.formats import CheckReport
+from as2fm_lsp.cli.formats import CheckReport, Format
 from as2fm_lsp.cli.formats import render as render_report
 from as2fm_lsp.cli.formats.report import entry
 from roaml import __version__
@@ -48,7 +48,7 @@ def render(name: str, reported: list[Diagnostic] | None = None, limit: Severity 
     entries = [
         entry(d, lambda path: SourceFile(path, TEXT), lambda path: path.removeprefix(f"{FOLDER}/")) for d in reported
     ]
-    return render_report(CheckReport(entries, 2, limit), name)
+    return render_report(CheckReport(entries, 2, limit), Format(name))
 
 
 # ------------------------------------------------------------------------ JSON

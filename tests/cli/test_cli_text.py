@@ -12,7 +12,7 @@ import pytest
 from command import Command
 
 import clock
-from as2fm_lsp.cli.formats import CheckReport
+from as2fm_lsp.cli.formats import CheckReport, Format
 from as2fm_lsp.cli.formats import render as render_report
 from as2fm_lsp.cli.formats.report import entry
 from roaml.diagnostics import Diagnostic, RelatedPlace, Severity
@@ -29,7 +29,7 @@ def render_span(text: str, span: Span, message: str = "wrong", *, color: bool = 
     source = SourceFile("/x/a.ascxml", text)
     diagnostic = Diagnostic(source.path, "some-rule", Severity.ERROR, span, message)
     report = CheckReport([entry(diagnostic, lambda _: source, lambda path: path[3:])], 1, color=color)
-    return render_report(report, "text")
+    return render_report(report, Format.TEXT)
 
 
 def excerpt(text: str, place: str) -> list[str]:
@@ -120,7 +120,7 @@ def test_related_places_are_shown_with_their_lines() -> None:
     diagnostic = Diagnostic(here.path, "some-rule", Severity.HINT, Span(0, 1), "twice", (), related)
     sources = {here.path: here, there.path: there}
     report = CheckReport([entry(diagnostic, sources.__getitem__, lambda path: path[3:])], 2)
-    assert render_report(report, "text") == (
+    assert render_report(report, Format.TEXT) == (
         "a.ascxml:1:1: hint: twice [some-rule]\n"
         "    1 | a\n"
         "      | ^\n"
@@ -135,8 +135,10 @@ def test_the_summary_counts_in_words() -> None:
     severities = [Severity.HINT, Severity.ERROR, Severity.INFORMATION, Severity.WARNING, Severity.WARNING]
     diagnostics = [Diagnostic("/a", "c", severity, Span(0, 1), "m") for severity in severities]
     report = CheckReport([entry(d, lambda _: source, str) for d in diagnostics], 7)
-    assert render_report(report, "text").endswith("\n7 files checked: 1 error, 2 warnings, 1 information, 1 hint\n")
-    assert render_report(CheckReport([], 1), "text") == "1 file checked: no diagnostics\n"
+    assert render_report(report, Format.TEXT).endswith(
+        "\n7 files checked: 1 error, 2 warnings, 1 information, 1 hint\n"
+    )
+    assert render_report(CheckReport([], 1), Format.TEXT) == "1 file checked: no diagnostics\n"
 
 
 def test_colors() -> None:

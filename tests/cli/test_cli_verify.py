@@ -28,8 +28,8 @@ import as2fm_lsp.verification.trace_files
 from as2fm_lsp.cli.progress_bar import line, search_line
 from roaml import api
 from roaml.smc.goal import Question
-from roaml.smc.lss import GREATEST, LEAST, Search, Side
-from roaml.smc.run import FIXED, Options, Tally
+from roaml.smc.lss import Search, SelectedScheduler, Side
+from roaml.smc.run import EstimationMethod, Options, Tally
 from roaml.verification.expectations import parse
 from timeouts import TIMEOUT_S
 
@@ -60,10 +60,10 @@ def rows(text: str) -> dict[str, dict[str, Any]]:
 def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--format", "json", "--seed", 1)
     assert (done.status, done.err) == (0, "")
-    found = rows(done.out)
+    results = rows(done.out)
     names = {"all_delivered", "never_empty", "docks_only_when_low", "never_delivers_when_empty"}
-    assert {name: row["probability"] for name, row in found.items()} == dict.fromkeys(names, 1.0)
-    assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
+    assert {name: row["probability"] for name, row in results.items()} == dict.fromkeys(names, 1.0)
+    assert set(results["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
     assert not (robot / "main.jani").exists()
 
 
@@ -125,8 +125,8 @@ def test_results_do_not_depend_on_jobs(command: Command, tmp_path: Path) -> None
     name = write(tmp_path, coin())
 
     def numbers(*options: object) -> dict[str, dict[str, Any]]:
-        found = rows(command("verify", name, "--format", "json", *options).out)
-        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in found.items()}
+        results = rows(command("verify", name, "--format", "json", *options).out)
+        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in results.items()}
 
     assert numbers("--jobs", 1) == numbers("--jobs", 2) == numbers()
     assert numbers("--seed", 1) != numbers()
@@ -445,16 +445,18 @@ def test_progress_bar_of_a_search() -> None:
     state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
     text = search_line(question, state, Options())
     assert text == "p, least probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
-    state.selected[LEAST] = Side(7, Tally(traces=250, successes=100))
-    text = search_line(question, state, Options(method=FIXED, max_traces=1000))
+    state.selected[Side.LEAST] = SelectedScheduler(7, Tally(traces=250, successes=100))
+    text = search_line(question, state, Options(method=EstimationMethod.FIXED, max_traces=1000))
     assert text.startswith("p, least probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
-    state.side = GREATEST
+    state.side = Side.GREATEST
     assert search_line(question, state, Options()).startswith("p, greatest probability: round 2 of 9")
 
 
 def test_progress_bar() -> None:
     question = Question("p", "Pmin", False, None, ())
-    text = line(question, Options(method=FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0)
+    text = line(
+        question, Options(method=EstimationMethod.FIXED, max_traces=1000), Tally(traces=250, successes=100), 10.0
+    )
     assert text.startswith("p ━━━━━───────────────  25%  250 traces  0.4 [0.29")
     assert text.endswith("30 s left")
     assert line(question, Options(), Tally(), 1.0) == "p …"
@@ -498,6 +500,8 @@ def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
         out = command("verify", write(tmp_path, written), "--exhaustive").out
         states = "all 3 states" if symbol == "G" else "none of the 3 states"
         assert f"  proof: its condition holds in {states}\n" in out
+        row = rows(command("verify", "model.jani", "--exhaustive", "--format", "json").out)["p"]
+        assert row["exact"]["proof"] == ("all" if symbol == "G" else "none")
 
 
 def test_schedulers(command: Command, tmp_path: Path) -> None:
@@ -505,9 +509,9 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     written["automata"][0]["edges"].append(edge("s", way("e", 0.8, x=1), way("e", 0.2)))
     name = write(tmp_path, written)
     options = ("--scheduler", "lss", "--epsilon", 0.03, "--property", "heads")
-    found = rows(command("verify", name, *options, "--format", "json").out)["heads"]
-    assert found["least"]["probability"] == pytest.approx(0.3, abs=0.05)
-    assert found["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
+    result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
+    assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
+    assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
     assert "least probability found 0." in command("verify", name, *options).out
 
 
@@ -527,9 +531,9 @@ def test_expected_rewards(command: Command, tmp_path: Path) -> None:
 
 
 def errors(text: str) -> list[dict[str, Any]]:
-    found = json.loads(text)["errors"]
-    assert isinstance(found, list)
-    return found
+    entries = json.loads(text)["errors"]
+    assert isinstance(entries, list)
+    return entries
 
 
 def place(folder: Path, text: str, name: str = "model.jani") -> int:

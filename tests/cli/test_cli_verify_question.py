@@ -394,13 +394,13 @@ def test_a_property_that_cannot_be_answered_does_not_stop_the_others(command: Co
     written["properties"].insert(0, {"name": "nested", "expression": nested})
     name = write(tmp_path, written)
     done = command("verify", name, "--format", "json")
-    found = rows(done.out)
+    results = rows(done.out)
     assert done.status == 1
-    assert list(found) == ["nested", "heads"]
-    assert found["nested"]["error"]["code"] == "unsupported-property"
-    assert found["nested"]["error"]["file"] == name
-    assert "probability" not in found["nested"]
-    assert found["heads"]["probability"] == pytest.approx(0.3, abs=0.02)
+    assert list(results) == ["nested", "heads"]
+    assert results["nested"]["error"]["code"] == "unsupported-property"
+    assert results["nested"]["error"]["file"] == name
+    assert "probability" not in results["nested"]
+    assert results["heads"]["probability"] == pytest.approx(0.3, abs=0.02)
     text = command("verify", name)
     assert "nested: not answered: model.jani:" in text.out
     assert "supported are `Pmin` and `Pmax` of F, G, X, U, W and R" in text.out
@@ -419,10 +419,10 @@ def test_a_trace_that_goes_wrong_does_not_stop_the_others(command: Command, tmp_
     goals = {"late": probability(op("F", op("=", "x", 3))), "early": probability(op("X", op("=", "x", 0)))}
     done = command("verify", write(tmp_path, document(automaton("a", "s t u", steps), variables=[variable("x")],
                    properties=goals)), "--format", "json")  # fmt: skip
-    found = rows(done.out)
+    results = rows(done.out)
     assert done.status == 1
-    assert "division by zero (in trace 0 of seed 0)" in found["late"]["error"]["message"]
-    assert found["early"]["probability"] == 1
+    assert "division by zero (in trace 0 of seed 0)" in results["late"]["error"]["message"]
+    assert results["early"]["probability"] == 1
 
 
 SYSTEM = {
@@ -447,18 +447,18 @@ def test_check_reports_what_verify_refuses(command: Command, tmp_path: Path) -> 
     long_run = {"op": "Smin", "exp": reached}
     formulas = {"good": probability(op("F", reached)), "nested": probability(op("F", op("X", reached)))}
     formulas |= {"bounded": probability(bounded), "long_run": long_run}
-    written = {"properties": [{"name": name, "expression": each} for name, each in formulas.items()]}
+    written = {"properties": [{"name": name, "expression": formula} for name, formula in formulas.items()]}
     write(tmp_path, written, "p.jani")
     checked = {
         row["code"] for row in command("--check", "main.xml", "--format", "json").rows if row["file"] == "p.jani"
     }
     done = command("verify", "main.xml", "--format", "json")
-    found = rows(done.out)
-    refused = {name: row["error"]["code"] for name, row in found.items() if "error" in row}
+    results = rows(done.out)
+    refused = {name: row["error"]["code"] for name, row in results.items() if "error" in row}
     assert set(refused) == {"nested", "bounded", "long_run"}
     assert checked == set(refused.values()) == {"unsupported-property", "ignored-bounds"}
     assert all(rule_document(code) for code in checked)
-    assert found["good"]["probability"] == 1
+    assert results["good"]["probability"] == 1
 
 
 def test_the_code_of_faults_has_a_document(command: Command) -> None:

@@ -68,6 +68,13 @@ def test_messages_that_are_not_requests_are_ignored() -> None:
         assert client.ask("threads") == {"threads": []}
 
 
+def test_paths_that_no_file_can_have_are_refused() -> None:
+    with Client() as client:
+        for command in ("setBreakpoints", "breakpointLocations"):
+            for path in ("\0", "\ud800", "file:///%00", "file:///\udfff"):
+                assert client.refusal(command, source={"path": path}, line=1) == "`path` is not a path"
+
+
 @pytest.mark.parametrize("closes", ["stdin", "stdout"])
 def test_a_client_that_dies_ends_the_adapter(closes: str, tmp_path: Path) -> None:
     model = tmp_path / "endless.jani"

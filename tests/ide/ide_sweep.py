@@ -16,10 +16,9 @@ from roaml.ide.names.lookup import SymbolGroup, symbol_group
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
-from roaml.model.system import sanitise
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot
-from roaml.scxml.names import safe_name
+from roaml.scxml.names import safe_name, sanitise
 from roaml.text import TextEdit, apply_edits
 
 FRESH = "zqfresh"
@@ -115,12 +114,12 @@ class System:
     def _findings(
         self, result: api.CheckResult, new: str, old: str, edits: Mapping[str, tuple[TextEdit, ...]] | None = None
     ) -> list[tuple[str, ...]]:
-        found = []
+        rows = []
         for diagnostic in result.diagnostics:
             line = result.source(diagnostic.path).lines.position(diagnostic.span.start).line
             message = diagnostic.message.replace(new, old) if new else diagnostic.message
-            found.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
-        return sorted(found)
+            rows.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
+        return sorted(rows)
 
     def _jani(self, result: api.CheckResult) -> str | None:
         try:
@@ -152,7 +151,7 @@ def _canonical(jani: str) -> object:
 def _unordered(value: object) -> object:
     """A JSON value with its lists sorted."""
     if isinstance(value, dict):
-        return {key: _unordered(each) for key, each in value.items()}
+        return {key: _unordered(item) for key, item in value.items()}
     if isinstance(value, list):
         return sorted(map(_unordered, value), key=repr)
     return value

@@ -139,12 +139,12 @@ def renamed(name: str, piece: str, new: str) -> dict[str, str]:
     at = FILES[name].index(before + after) + len(before)
     result = rename(analysis, path_of(f"{name}.xml"), at, new)
     assert isinstance(result, Renaming), result
-    return {each: apply_edits(text, result.edits.get(path_of(f"{each}.xml"), ())) for each, text in FILES.items()}
+    return {file: apply_edits(text, result.edits.get(path_of(f"{file}.xml"), ())) for file, text in FILES.items()}
 
 
 def test_a_subtree_is_renamed_in_all_files() -> None:
     texts = renamed("inner", 'ID="In|ner"', "Core")
-    assert texts == {each: text.replace('ID="Inner"', 'ID="Core"') for each, text in FILES.items()}
+    assert texts == {name: text.replace('ID="Inner"', 'ID="Core"') for name, text in FILES.items()}
     assert renamed("main", 'SubTree ID="In|ner"', "Core") == texts
 
 

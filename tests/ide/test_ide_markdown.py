@@ -32,12 +32,12 @@ EVIL = '<img src="x" onerror="alert(1)"> <!-- --> <a@b.c> ![p](x.png) [l](x) [r]
 
 def live(text: str) -> list[str]:
     """The tags, pictures and links that a Markdown parser finds."""
-    found = []
+    active = []
     for token in COMMONMARK.parse(text):
-        for each in (token, *(token.children or ())):
-            if each.type in ("html_inline", "html_block", "image", "link_open"):
-                found.append(f"{each.type}: {each.content or each.attrs}")
-    return found
+        for inner in (token, *(token.children or ())):
+            if inner.type in ("html_inline", "html_block", "image", "link_open"):
+                active.append(f"{inner.type}: {inner.content or inner.attrs}")
+    return active
 
 
 def test_the_reader_finds_them() -> None:
@@ -139,11 +139,11 @@ def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
 @pytest.mark.parametrize("model", [ROBOT, CORNERS], ids=["robot", "corners"])
 def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: str) -> None:
     texts = {path: hostile(text, suffix, pattern) for path, text in split_files(model).items()}
-    told = set(filter(None, shown(texts)))
-    assert len(told) > 20
-    for text in told:
+    rendered = set(filter(None, shown(texts)))
+    assert len(rendered) > 20
+    for text in rendered:
         # Links of our own lead to the documents of the languages.
-        assert [each for each in live(text) if not any(ours in each for ours in OURS)] == [], text
+        assert [tag for tag in live(text) if not any(ours in tag for ours in OURS)] == [], text
 
 
 def test_analysis_of_hostile_models_is_one() -> None:

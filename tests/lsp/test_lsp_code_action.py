@@ -57,8 +57,8 @@ async def ask(client: Client, path: Path, text: str, at: str, *only: str) -> lis
     context = types.CodeActionContext([], only=list(only) or None)
     range_ = types.Range(position, position)
     params = types.CodeActionParams(types.TextDocumentIdentifier(path.as_uri()), range_, context)
-    found = await client.text_document_code_action_async(params)
-    return [action for action in found or () if isinstance(action, types.CodeAction)]
+    actions = await client.text_document_code_action_async(params)
+    return [action for action in actions or () if isinstance(action, types.CodeAction)]
 
 
 def applied(text: str, edits: list[types.TextEdit]) -> str:

@@ -118,8 +118,8 @@ async def test_after_shutdown() -> None:
     server.tell("exit")
     status, messages, log = await server.end()
     assert (status, log) == (0, "")
-    found = {message["id"]: message for message in messages}
-    assert [code(found, id_) for id_ in (10, 11, 12, 13, 14)] == [None, None] + [INVALID_REQUEST] * 3
+    answers = {message["id"]: message for message in messages}
+    assert [code(answers, id_) for id_ in (10, 11, 12, 13, 14)] == [None, None] + [INVALID_REQUEST] * 3
 
 
 # ------------------------------------------------------------------------ form
@@ -255,7 +255,7 @@ def test_the_end_of_a_process_is_seen_without_help_of_the_system(monkeypatch: py
     monkeypatch.setattr(parent_process, "POLL_INTERVAL_S", 0.01)
     other = subprocess.Popen([sys.executable, "-c", ""])
     other.wait()
-    parent_process._look_again_and_again(other.pid)
+    parent_process._poll(other.pid)
     parent_process.wait_for_end(other.pid)
 
 

@@ -38,9 +38,9 @@ async def answers(*messages: tuple[str, object, int | None], **capabilities: obj
         server.tell(method, params, id_)
     server.tell("shutdown", None, 2)
     server.tell("exit")
-    status, found, log = await server.end()
+    status, messages, log = await server.end()
     assert (status, log) == (0, "")
-    return {message["id"]: message for message in found if "id" in message and "method" not in message}
+    return {message["id"]: message for message in messages if "id" in message and "method" not in message}
 
 
 def code(answer: dict[str, object]) -> object:
@@ -54,29 +54,29 @@ CHANGE = {"textDocument": {"uri": "untitled:long", "version": 2}, "contentChange
 
 
 async def test_cancelled_before_it_has_begun() -> None:
-    found = await answers(
+    by_id = await answers(
         ("textDocument/foldingRange", OF_LONG, 10),
         (TOKENS, OF_LONG, "eleven"),
         ("$/cancelRequest", {"id": 10}, None),
         ("$/cancelRequest", {"id": "eleven"}, None),
         ("textDocument/foldingRange", OF_LONG, 12),
     )
-    assert [code(found[id_]) for id_ in (9, 10, "eleven", 12)] == [None, CANCELLED, CANCELLED, None]
-    assert found[12]["result"]
+    assert [code(by_id[id_]) for id_ in (9, 10, "eleven", 12)] == [None, CANCELLED, CANCELLED, None]
+    assert by_id[12]["result"]
 
 
 async def test_cancelled_while_it_runs() -> None:
-    found = await answers(("$/cancelRequest", {"id": 9}, None), ("textDocument/foldingRange", OF_LONG, 10))
-    assert [code(found[id_]) for id_ in (9, 10)] == [CANCELLED, None]
+    by_id = await answers(("$/cancelRequest", {"id": 9}, None), ("textDocument/foldingRange", OF_LONG, 10))
+    assert [code(by_id[id_]) for id_ in (9, 10)] == [CANCELLED, None]
 
 
 async def test_cancelled_when_it_is_answered() -> None:
-    found = await answers(
+    by_id = await answers(
         ("textDocument/foldingRange", OF_LONG, 10),
         ("textDocument/foldingRange", {"textDocument": {"uri": "untitled:none"}}, 11),
         ("$/cancelRequest", {"id": 9999}, None),
     )
-    assert [code(found[id_]) for id_ in (9, 10, 11)] == [None, None, None]
+    assert [code(by_id[id_]) for id_ in (9, 10, 11)] == [None, None, None]
 
 
 @pytest.mark.parametrize(("again", "expected"), [([TOKENS], MODIFIED), (["textDocument/hover"], None), (None, None)])
@@ -84,18 +84,18 @@ async def test_a_text_that_is_about_to_change(again: list[str] | None, expected:
     """Only clients that support it are asked to repeat a request."""
     support = {"cancel": True, "retryOnContentModified": again}
     general = {} if again is None else {"general": {"staleRequestSupport": support}}
-    found = await answers(
+    by_id = await answers(
         (TOKENS, OF_LONG, 10), ("textDocument/didChange", CHANGE, None), (TOKENS, OF_LONG, 11), **general
     )
-    assert code(found[10]) == expected
-    assert found[11]["result"] != found[10].get("result")
+    assert code(by_id[10]) == expected
+    assert by_id[11]["result"] != by_id[10].get("result")
 
 
 async def test_a_cancelled_translation_writes_nothing(tmp_path: Path) -> None:
     main = clock.write(tmp_path)
     command = {"command": "as2fm.translateToJani", "arguments": [main.as_uri()]}
-    found = await answers(("workspace/executeCommand", command, 10), ("$/cancelRequest", {"id": 10}, None))
-    assert code(found[10]) == CANCELLED
+    by_id = await answers(("workspace/executeCommand", command, 10), ("$/cancelRequest", {"id": 10}, None))
+    assert code(by_id[10]) == CANCELLED
     assert not main.with_suffix(".jani").exists()
 
 
@@ -107,8 +107,8 @@ async def test_invalid_requests_are_answered() -> None:
     server.tell("shutdown", None, 2)
     server.tell("exit")
     _, messages, _ = await server.end()
-    found = {message["id"]: message for message in messages}
-    assert [code(found[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
+    by_id = {message["id"]: message for message in messages}
+    assert [code(by_id[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
 
 
 async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:

@@ -143,8 +143,8 @@ async def test_actions(tmp_path: Path) -> None:
     def action(title: str) -> dict[str, object]:
         return {"title": title, "kind": "source", "command": {"title": title, "command": COMMAND, "arguments": [main]}}
 
-    found = {asking: answers[10 + number] for number, asking in enumerate(asked)}
-    assert found == {
+    actions = {asking: answers[10 + number] for number, asking in enumerate(asked)}
+    assert actions == {
         ("main.xml", "source"): [action("Translate to JANI")],
         ("main.xml", "quickfix"): [],
         ("clock.ascxml", "source"): [action("Translate main.xml to JANI")],

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import itertools
+
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, Drawn, as_xml, trees
-from tree_comparison import difference_in_system
+from tree_comparison import difference_in_system, difference_with_mocks
 from trees_in_systems import FOLDER, files
 
 from examples import TIMES, examples
@@ -34,6 +36,16 @@ def test_a_plugin_behind_conditions() -> None:
         compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Parallel", (), (act, change)),)), seed)
 
 
+def test_an_action_that_its_condition_has_ended() -> None:
+    """The action returns the same status until it is reset, although its parent ticks it again. A condition is
+    evaluated again."""
+    for leaf, condition in itertools.product(("Act2", "Check"), ("_successIf", "_skipIf")):
+        ended, running = Drawn(leaf, ((condition, "y == 1"),)), Drawn("Act3")
+        again = Drawn("NonblockingSequence" if condition == "_successIf" else "PipelineSequence", (), (ended, running))
+        for seed in range(3):
+            compare(Drawn("KeepRunningUntilFailure", (), (again,)), seed)
+
+
 @settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
 @given(trees(ANY))
 def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
@@ -57,6 +69,15 @@ def test_a_subtree_resets_a_child_that_has_ended() -> None:
         tree = Drawn("KeepRunningUntilFailure", (), (Drawn(parent, (), (asked, Drawn("Act3"), Drawn("Act2"))),))
         for seed in range(4):
             compare(tree, seed)
+
+
+def test_a_write_after_the_check_for_writes() -> None:
+    """A node that follows the check writes the entry again, at once; the next check sees that write."""
+    asked = Drawn("WasEntryUpdated", (("entry", "x"), ("_post", "x := 0")))
+    tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, Drawn("Check"))),))
+    for seed in range(4):
+        compare(tree, seed)
+        assert difference_with_mocks(tree, TICKS, seed) == ""
 
 
 def test_a_constant_that_two_subtrees_share() -> None:

@@ -12,7 +12,7 @@ from smc_models import automaton, document, edge, model, op, variable, way
 
 import conformance
 from roaml import api
-from roaml.smc.record import VERDICTS, Recorder, Recording
+from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 
 ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
 TRACES = 5
@@ -31,11 +31,11 @@ SYSTEMS = [ROBOT, *sorted({conformance.ROOT / case["model"] for case in conforma
 def test_traces_of_verify_are_replayed_forwards_and_backwards(path: Path) -> None:
     target = api.as_target(api.load(str(path), [str(conformance.INTERFACES)] if path != ROBOT else []))
     checker = api.checker(target.model)
-    for asked in checker.asked:
-        name = asked.question.name
-        recorder = Recorder(checker, asked, 1, 2_000)
+    for property_ in checker.compiled_properties:
+        name = property_.question.name
+        recorder = Recorder(checker, property_, 1, 2_000)
         session = api.session(target, name, seed=1)
-        for trace in range(TRACES if asked is checker.asked[0] else 2):
+        for trace in range(TRACES if property_ is checker.compiled_properties[0] else 2):
             recording = Recording(trace)
             steps = tuple(recorder.walk(recording))
             session = api.session(target, name, seed=1, trace=trace)
@@ -88,7 +88,7 @@ def test_another_outcome_of_a_choice(robot: api.VerificationTarget) -> None:
         session
         for trace in range(100)
         if (session := api.session(robot, "block_dropped", seed=1, trace=trace)).until_decided()
-        and session.verdict == "passed"
+        and session.verdict is TraceVerdict.PASSED
     )
     chance: list[api.Choice] = []
     while not chance:

@@ -12,7 +12,7 @@ from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
-from roaml.smc.run import FIXED, Answer, Options
+from roaml.smc.run import Answer, EstimationMethod, Options
 
 Json = dict[str, Any]
 
@@ -113,6 +113,9 @@ def model(written: Json) -> Model:
 def answers(written: Json, traces: int = 1, max_steps: int = 10_000, seed: int = 1) -> dict[str, Answer]:
     """Property -> its answer from a given number of traces."""
     checker = ModelChecker(model(written))
-    options = Options(method=FIXED, max_traces=traces, max_steps=max_steps, seed=seed)
+    options = Options(method=EstimationMethod.FIXED, max_traces=traces, max_steps=max_steps, seed=seed)
     with Pool() as pool:
-        return {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
+        return {
+            property_.question.name: checker.answer(property_, options, pool)
+            for property_ in checker.compiled_properties
+        }

@@ -9,7 +9,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.smc import kernel
-from roaml.smc.choices import EXPLORATION, SAMPLING, UNIFORM, Choices
+from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
@@ -79,7 +79,7 @@ def test_choices_that_do_not_matter() -> None:
     )
     assert choices.agreement.startswith("all ")
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), EXPLORATION)
+    assert (choices.minimum.value, choices.minimum.method) == (pytest.approx(0.25), ExtremeMethod.EXPLORATION)
     assert choices.maximum is not None
     assert choices.maximum.value == pytest.approx(0.25)
 
@@ -99,21 +99,21 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
     choices = looked_at(starving(100, steps=300))
     assert choices.differ
     assert choices.minimum is not None
-    assert (choices.minimum.value, choices.minimum.method) == (0, SAMPLING)
+    assert (choices.minimum.value, choices.minimum.method) == (0, ExtremeMethod.SAMPLING)
     assert choices.minimum.scheduler.startswith("sampled scheduler 1, which lets `")
     assert choices.minimum.bounds.upper < 0.2
     assert choices.maximum is not None
-    assert (choices.maximum.value, choices.maximum.method) == (1, UNIFORM)
+    assert (choices.maximum.value, choices.maximum.method) == (1, ExtremeMethod.UNIFORM)
 
 
 def test_results_do_not_depend_on_workers() -> None:
     checker = ModelChecker(model(starving(100, steps=300)))
-    found = []
+    results = []
     for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pool as used:
-            answer = checker.answer(checker.asked[0], Options(epsilon=0.03), used)
-            found.append(checker.choices(checker.asked[0], answer, used))
-    assert found[0] == found[1]
+            answer = checker.answer(checker.compiled_properties[0], Options(epsilon=0.03), used)
+            results.append(checker.choices(checker.compiled_properties[0], answer, used))
+    assert results[0] == results[1]
 
 
 def test_rewards_are_not_sampled() -> None:
@@ -138,16 +138,16 @@ def test_described() -> None:
 def outcomes(written: Json, scheduler: int, steps: int = 10_000) -> tuple[int, int]:
     """The verdict and the steps of a trace under a scheduler. Both kernels must agree."""
     checker = ModelChecker(model(written))
-    compiled = checker.compiled(checker.asked[0])
-    found = []
+    compiled = checker.compiled(checker.compiled_properties[0])
+    results = []
     for module in (kernel, plain_kernel()):
-        each = module.Kernel(compiled.program, compiled.goal)
-        verdict = each.begin(1, 0, scheduler)
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        verdict = simulator.begin(1, 0, scheduler)
         if verdict == UNKNOWN:
-            verdict = each.advance(steps)
-        found.append((verdict, each.outcome()[0]))
-    assert found[0] == found[1]
-    return found[0]
+            verdict = simulator.advance(steps)
+        results.append((verdict, simulator.outcome()[0]))
+    assert results[0] == results[1]
+    return results[0]
 
 
 def test_a_scheduler_in_a_cycle_never_reaches_the_goal() -> None:
@@ -183,7 +183,7 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
         syncs=[["one", None, "one"], [None, "two", "two"]],
         properties={"p": probability(GOAL, "Pmax")},
     )
-    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
+    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).compiled_properties[0])
     assert len(Explorer(compiled).reachable(100)) == 4
     assert {outcomes(written, MEMORY | number)[0] for number in range(1, 40)} == {TRUE, FALSE}
 
@@ -191,11 +191,11 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
 @pytest.mark.parametrize("limit", [{"states": 50}, {"transitions": 50}, {"work": 50}])
 def test_limits_of_looking_at_all_states(limit: dict[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
     checker = ModelChecker(model(starving(100, chance=True)))
-    exact = values_if_small(checker, checker.asked[0])
+    exact = values_if_small(checker, checker.compiled_properties[0])
     assert exact is not None
     assert (exact.states, exact.least, exact.average) == (200, 0, 1)
     monkeypatch.setattr(small, "LIMITS", replace(LIMITS, **limit))
-    assert values_if_small(checker, checker.asked[0]) is None
+    assert values_if_small(checker, checker.compiled_properties[0]) is None
 
 
 def test_steps_are_part_of_the_work() -> None:
@@ -203,10 +203,10 @@ def test_steps_are_part_of_the_work() -> None:
     written = starving(20, chance=True)
     written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 10**7}})}]
     checker = ModelChecker(model(written))
-    assert values_if_small(checker, checker.asked[0]) is None
+    assert values_if_small(checker, checker.compiled_properties[0]) is None
     written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 3}})}]
     checker = ModelChecker(model(written))
-    exact = values_if_small(checker, checker.asked[0])
+    exact = values_if_small(checker, checker.compiled_properties[0])
     assert exact is not None
     assert (exact.least, exact.greatest, exact.average) == (0, 1, pytest.approx(0.875))
 

@@ -23,7 +23,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
-from roaml.smc.run import ADAPTIVE, FIXED, OKAMOTO, SPRT, Answer, Options, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from roaml.smc.statistics import okamoto
 
 
@@ -41,7 +41,7 @@ def coin(p: float = 0.3, extra: int = 0) -> Json:
 def ask(options: Options, written: Json | None = None, pool: Pool | None = None, **more: Any) -> Answer:
     checker = ModelChecker(model(written or coin()))
     with pool or Pool() as used:
-        return checker.answer(checker.asked[0], options, used, **more)
+        return checker.answer(checker.compiled_properties[0], options, used, **more)
 
 
 def numbers(answer: Answer) -> tuple[Any, ...]:
@@ -58,9 +58,9 @@ def test_the_interval_gets_as_narrow_as_asked_for() -> None:
 
 
 def test_methods_with_a_fixed_number_of_traces() -> None:
-    assert ask(Options(method=OKAMOTO, epsilon=0.05)).tally.traces == okamoto(0.95, 0.05)
-    assert ask(Options(method=FIXED, max_traces=123)).tally.traces == 123
-    limited = ask(Options(method=ADAPTIVE, max_traces=150))
+    assert ask(Options(method=EstimationMethod.OKAMOTO, epsilon=0.05)).tally.traces == okamoto(0.95, 0.05)
+    assert ask(Options(method=EstimationMethod.FIXED, max_traces=123)).tally.traces == 123
+    limited = ask(Options(method=EstimationMethod.ADAPTIVE, max_traces=150))
     assert (limited.tally.traces, limited.is_complete) == (150, False)
 
 
@@ -68,13 +68,20 @@ def test_methods_with_a_fixed_number_of_traces() -> None:
 def test_sequential_test(relation: str, number: float, accepted: bool) -> None:
     written = coin()
     written["properties"][0]["expression"] = op(relation, {"op": "Pmax", "exp": op("F", op("=", "x", 1))}, number)
-    answer = ask(Options(method=SPRT, epsilon=0.02), written)
+    answer = ask(Options(method=EstimationMethod.SPRT, epsilon=0.02), written)
     assert answer.tally.accepted is accepted
     assert answer.tally.traces < 2000
 
 
+def test_a_method_is_a_member_not_its_value() -> None:
+    with pytest.raises(ValueError, match="there is no method `fixed`"):
+        Options(method="fixed", max_traces=1)  # type: ignore[arg-type]
+
+
 def test_another_seed_gives_other_traces_the_same_seed_the_same() -> None:
-    first, again, other = (ask(Options(seed=seed, method=FIXED, max_traces=1000)) for seed in (7, 7, 8))
+    first, again, other = (
+        ask(Options(seed=seed, method=EstimationMethod.FIXED, max_traces=1000)) for seed in (7, 7, 8)
+    )
     assert numbers(first) == numbers(again)
     assert first.tally.examples != other.tally.examples
 
@@ -91,7 +98,7 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
 def test_threads_do_not_share_a_kernel() -> None:
     """With a shared kernel, one thread would continue the trace of another."""
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     together = Barrier(2)
 
     def kernel(_: int) -> Kernel:
@@ -122,7 +129,7 @@ def test_going_on_after_an_interruption() -> None:
 
 
 def test_a_killed_worker_costs_time_only() -> None:
-    options = Options(method=FIXED, max_traces=60_000)
+    options = Options(method=EstimationMethod.FIXED, max_traces=60_000)
     written = coin(extra=400)
     whole = ask(options, written)
     pool = Pool(2, start_delay_s=0)
@@ -163,7 +170,7 @@ def test_workers_end_with_the_run() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        ask(Options(method=FIXED, max_traces=10**9), coin(extra=1000), pool, watch=watch)
+        ask(Options(method=EstimationMethod.FIXED, max_traces=10**9), coin(extra=1000), pool, watch=watch)
     assert processes
     for process in processes:
         process.join(10)
@@ -187,7 +194,7 @@ def test_many_undecided_traces_end_the_run() -> None:
 
 
 def test_examples_are_remembered() -> None:
-    answer = ask(Options(method=FIXED, max_traces=2000))
+    answer = ask(Options(method=EstimationMethod.FIXED, max_traces=2000))
     examples = answer.tally.examples
     assert len(examples[TRUE]) == answer.tally.successes
     assert len(examples[FALSE]) == answer.failures or len(examples[FALSE]) == 1000
@@ -204,7 +211,7 @@ def test_the_first_fault_is_reported_however_traces_are_distributed() -> None:
     traces = []
     for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pytest.raises(FaultError, match="division by zero") as caught:
-            ask(Options(method=FIXED, max_traces=20_000), written, pool)
+            ask(Options(method=EstimationMethod.FIXED, max_traces=20_000), written, pool)
         assert caught.value.origin is not None
         traces.append(caught.value.trace)
     assert traces[0] == traces[1]
@@ -214,7 +221,7 @@ def test_memory_does_not_grow_with_the_number_of_traces() -> None:
     peaks = []
     for traces in (20_000, 200_000):
         tracemalloc.start()
-        ask(Options(method=FIXED, max_traces=traces))
+        ask(Options(method=EstimationMethod.FIXED, max_traces=traces))
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.5 * peaks[0]
@@ -222,7 +229,7 @@ def test_memory_does_not_grow_with_the_number_of_traces() -> None:
 
 def tasks() -> Iterator[Task]:
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     first = 0
     while True:
         yield Task(payload, 1, first, 10, 1000)
@@ -233,9 +240,9 @@ def test_leaving_in_the_middle_of_large_results() -> None:
     """If a worker were killed while it sends, the main process would wait for the rest of the result."""
     for _ in range(5):
         with Pool(2, start_delay_s=0) as pool:
-            found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
-            next(found)
-            next(found)
+            results = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
+            next(results)
+            next(results)
     assert not multiprocessing.active_children()
 
 
@@ -249,8 +256,8 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
             yield task
 
     with ThreadPoolExecutor(2) as executor, Pool(2, executor) as pool:
-        found = pool.outcomes(counted())
-        task, outcome = next(found)
+        results = pool.outcomes(counted())
+        task, outcome = next(results)
         assert (task.first, len(outcome.questions[0].verdicts)) == (0, 10)
         assert taken <= 5
 
@@ -266,7 +273,7 @@ def test_a_batch_is_a_function_of_its_task() -> None:
 def test_dask() -> None:
     """The same batches on a cluster, also when a worker dies."""
     distributed: Any = importlib.import_module("distributed")
-    options = Options(method=FIXED, max_traces=30_000)
+    options = Options(method=EstimationMethod.FIXED, max_traces=30_000)
     written = coin(extra=200)
     whole = ask(options, written)
     with (
@@ -292,14 +299,14 @@ def test_progress_is_reported_during_long_traces() -> None:
         variables=[variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    told: list[tuple[int, int]] = []
+    calls: list[tuple[int, int]] = []
 
     def pulse(trace: int, steps: int) -> None:
-        told.append((trace, steps))
-        if len(told) == 3:
+        calls.append((trace, steps))
+        if len(calls) == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         ask(Options(max_steps=10**15), loop, pulse=pulse)
-    assert [trace for trace, _ in told] == [0, 0, 0]
-    assert told[0][1] < told[1][1] < told[2][1]
+    assert [trace for trace, _ in calls] == [0, 0, 0]
+    assert calls[0][1] < calls[1][1] < calls[2][1]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from storm import exact
-from test_translate_observers import COUNT, TAILS, WHISTLE, op, system, twin
+from test_translate_observers import COUNT, TAILS, WHISTLE, hand_written, op, system
 from translating import loaded, reported
 
 from examples import examples
@@ -18,7 +18,7 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import Options
+from roaml.smc.run import EstimationMethod, Options
 from roaml.verification.results import Exact
 
 
@@ -133,16 +133,18 @@ TWINS = {
         ),
         pattern("response", IS_ODD, IS_EVEN, scope='type="before" event="n == 3"'),
     ),
-    "existence after-until": (
+    "an event of its own after each": (
         op(
             "G",
             op(
                 "⇒",
-                op("∧", equal(1), op("≠", COUNT, 3)),
+                op("∧", ODD, op("≠", COUNT, 3)),
                 op("U", op("≠", COUNT, 3), op("∧", equal(2), op("≠", COUNT, 3))),
             ),
         ),
-        pattern("existence", TWO, scope='type="after-until" event="n == 1" until="n == 3"'),
+        pattern(
+            "response", "n % 2 == 1 &amp;&amp; n != 3", TWO, scope='type="after-until" event="true" until="n == 3"'
+        ),
     ),
 }
 PORT = """<ports><ros_topic topic_name="/heads" type="std_msgs/Int32" event="publish">
@@ -150,7 +152,9 @@ PORT = """<ports><ros_topic topic_name="/heads" type="std_msgs/Int32" event="pub
 
 
 def answered(files: Mapping[str, str]) -> dict[str, object]:
-    (result,) = api.verify(loaded(files), ["p"], Options(method="fixed", max_traces=300, seed=11), only_uniform=True)
+    (result,) = api.verify(
+        loaded(files), ["p"], Options(method=EstimationMethod.FIXED, max_traces=300, seed=11), only_uniform=True
+    )
     assert result.refusal is None, result.refusal
     assert result.answer.tally.successes > 0
     return {**result.answer.tally.to_json(), "value": result.answer.value, "bounds": result.answer.bounds}
@@ -158,7 +162,7 @@ def answered(files: Mapping[str, str]) -> dict[str, object]:
 
 def only(in_jani: object = None, in_xml: str = "") -> dict[str, str]:
     """A system with one property."""
-    files = system("", [] if in_jani is None else [twin("p", in_jani)])
+    files = system("", [] if in_jani is None else [hand_written("p", in_jani)])
     guarantees = f"<guarantees>{in_xml.format('p')}</guarantees>" if in_xml else ""
     return {**files, "properties.xml": f"<properties>{PORT if in_xml else ''}{guarantees}</properties>"}
 
@@ -209,6 +213,8 @@ def table_formula(random_: random.Random) -> object:
             op("G", op("⇒", s, op("U", wait, r))),
             op("G", op("⇒", op("∧", s, op("F", r)), op("W", wait, r))),
             op("W", wait, r),
+            op("G", op("⇒", op("∧", s, op("¬", r)), op("U", op("¬", r), op("∧", p, op("¬", r))))),
+            op("G", op("⇒", op("∧", s, op("¬", r)), op("W", op("¬", r), op("∧", p, op("¬", r))))),
             op("⇒", op("F", r), op("U", wait, r)),
             op("F", op("∧", p, op("G", q))),
             op("F", op("∧", p, op("F", q))),
@@ -275,18 +281,18 @@ def traces(checker: object, count: int) -> list[list[State]]:
 def test_random_formulas_in_traces(draw: Callable[[random.Random], object]) -> None:
     random_ = random.Random(17)
     formulas = {f"p{i}": draw(random_) for i in range(examples(40))}
-    files = system("", [twin(name, formula) for name, formula in formulas.items()])
+    files = system("", [hand_written(name, formula) for name, formula in formulas.items()])
     checker = api.verifier(loaded({**files, "properties.xml": "<properties />"})).checker
     assert {fault.code for fault in checker.refused.values()} <= {"unsupported-property"}
     states = traces(checker, 15)
     verdicts = set()
-    for asked in checker.asked:
-        recorder = Recorder(checker, asked, 5, 100_000)
+    for property_ in checker.compiled_properties:
+        recorder = Recorder(checker, property_, 5, 100_000)
         for number, seen in enumerate(states):
             recording = Recording(number)
             recorder.rush(recording)
-            expected = holds(formulas[asked.question.name], seen)
-            assert recording.verdict == (TRUE if expected else FALSE), formulas[asked.question.name]
+            expected = holds(formulas[property_.question.name], seen)
+            assert recording.verdict == (TRUE if expected else FALSE), formulas[property_.question.name]
             verdicts.add(expected)
     assert verdicts == {True, False}
     assert bool(checker.refused) == (draw is drawn_formula)
@@ -315,8 +321,8 @@ def test_all_states_give_what_storm_computes_for_the_nested_formula(name: str) -
 
 
 def all_states(verifier: api.Verifier) -> Exact:
-    (asked,) = verifier.checker.asked
-    values = verifier.exhaustive(asked, StateLimits()).exact
+    (property_,) = verifier.checker.compiled_properties
+    values = verifier.exhaustive(property_, StateLimits()).exact
     assert values is not None
     return values
 
@@ -348,7 +354,7 @@ def written(folder: Path, formula: object, **variable: object) -> str:
         "variables": [{"name": "x", "type": type_, **(variable or {"initial-value": 0})}],
         "automata": [automaton],
         "system": {"elements": [{"automaton": "a"}]},
-        "properties": [twin("p", formula)],
+        "properties": [hand_written("p", formula)],
     }
     path = folder / "chain.jani"
     path.write_text(json.dumps(document))

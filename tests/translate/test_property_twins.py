@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import pytest
 from storm import exact
-from test_translate_observers import op, twin
+from test_translate_observers import hand_written, op
 from translating import loaded
 
 from roaml import api
@@ -284,13 +284,13 @@ CERTAIN = {("race", "caught up"), ("ward", "running only once agreed")}
 @pytest.mark.parametrize("key", TWINS, ids=" ".join)
 def test_storm_and_the_search_give_the_values_of_the_twin(key: tuple[str, str]) -> None:
     in_xml, in_jani = TWINS[key]
-    source = loaded(files(key[0], in_xml, [twin("twin", in_jani)]))
+    source = loaded(files(key[0], in_xml, [hand_written("twin", in_jani)]))
     model = api.to_jani(source)
     by_hand, observed = exact(model, "twin"), exact(model, "p")
     assert observed.least == pytest.approx(by_hand.least, abs=1e-6)
     assert observed.greatest == pytest.approx(by_hand.greatest, abs=1e-6)
     verifier = api.verifier(source, ["p"])
-    values = verifier.exhaustive(verifier.checker.asked[0], StateLimits()).exact
+    values = verifier.exhaustive(verifier.checker.compiled_properties[0], StateLimits()).exact
     assert values is not None
     assert values.minimum.lower == pytest.approx(by_hand.least, abs=1e-5)
     assert values.maximum.upper == pytest.approx(by_hand.greatest, abs=1e-5)

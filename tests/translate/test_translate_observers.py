@@ -17,7 +17,7 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
 from roaml.jani.writer import write
-from roaml.smc.run import Options
+from roaml.smc.run import EstimationMethod, Options
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
@@ -36,7 +36,7 @@ COIN = """<ascxml name="Coin" version="1.0" initial="toss">
         </ros_rate_callback>
     </state>
 </ascxml>"""
-JUDGE = """<ascxml name="Judge" version="1.0" initial="wait">
+REFEREE = """<ascxml name="Judge" version="1.0" initial="wait">
     <ros_topic_subscriber name="heads" topic="/heads" type="std_msgs/Int32" />
     <ros_topic_publisher name="whistle" topic="/whistle" type="std_msgs/Bool" />
     <state id="wait">
@@ -133,13 +133,13 @@ def system(guarantees: str, twins: object = (), seconds: int = 6) -> dict[str, s
     </properties>
 </roaml>""",
         "coin.ascxml": COIN,
-        "judge.ascxml": JUDGE,
+        "judge.ascxml": REFEREE,
         "properties.xml": f"<properties>{PORTS}<guarantees>{guarantees}</guarantees></properties>",
         "twins.jani": json.dumps({"properties": list(twins)}),  # type: ignore[call-overload]
     }
 
 
-def twin(name: str, path: object) -> dict[str, object]:
+def hand_written(name: str, path: object) -> dict[str, object]:
     probability = {"op": "Pmin", "exp": path}
     values = {"op": "filter", "fun": "values", "values": probability, "states": {"op": "initial"}}
     return {"name": name, "expression": values}
@@ -147,7 +147,7 @@ def twin(name: str, path: object) -> dict[str, object]:
 
 def translated(name: str) -> Model:
     written, path = TWINS[name]
-    return api.to_jani(loaded(system(written.format(name), [twin("twin", path)])))
+    return api.to_jani(loaded(system(written.format(name), [hand_written("twin", path)])))
 
 
 @pytest.mark.parametrize("name", TWINS)
@@ -161,7 +161,7 @@ def test_storm_gives_the_same(name: str) -> None:
 
 @pytest.mark.parametrize("name", TWINS)
 def test_the_same_traces_satisfy_both(name: str) -> None:
-    options = Options(method="fixed", max_traces=300, seed=11)
+    options = Options(method=EstimationMethod.FIXED, max_traces=300, seed=11)
     one, other = api.verify(translated(name), [name, "twin"], options, only_uniform=True)
     assert one.answer is not None
     assert other.answer is not None
@@ -176,7 +176,7 @@ def test_the_same_traces_satisfy_both(name: str) -> None:
 def test_other_properties_keep_their_answers() -> None:
     """The model with an observer does what the model without it does."""
     with_observer = translated("existence")
-    alone = api.to_jani(loaded(system("", [twin("twin", TWINS["existence"][1])])))
+    alone = api.to_jani(loaded(system("", [hand_written("twin", TWINS["existence"][1])])))
     assert exact(alone, "twin").least == pytest.approx(exact(with_observer, "twin").least, abs=1e-9)
     assert not any(action.name == TIME_OVER_ACTION for action in alone.actions)
 
@@ -202,7 +202,7 @@ TIMED = """
 
 def test_what_is_open_at_the_end_of_time_is_undecided() -> None:
     model = api.to_jani(loaded(system(TIMED)))
-    options = Options(method="fixed", max_traces=200, seed=3)
+    options = Options(method=EstimationMethod.FIXED, max_traces=200, seed=3)
     soon, answered = api.verify(model, ["soon", "answered"], options, only_uniform=True)
     assert soon.answer is not None
     assert answered.answer is not None
@@ -225,7 +225,7 @@ def test_names_that_clash_are_changed() -> None:
 
 
 def test_properties_are_chosen_by_name() -> None:
-    source = loaded(system(TIMED, [twin("twin", op("F", HEADS))]))
+    source = loaded(system(TIMED, [hand_written("twin", op("F", HEADS))]))
     assert [p.name for p in api.to_jani(source).properties] == ["twin", "soon", "answered"]
     assert [p.name for p in api.to_jani(source, ["answered"]).properties] == ["answered"]
 
@@ -261,7 +261,7 @@ def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str)
     assert both.least == pytest.approx(both.greatest)
     assert assumed.least == pytest.approx(assumed.greatest)
     assert 0 < both.least < assumed.least < 1
-    options = Options(method="fixed", max_traces=4000, seed=2, confidence=0.999)
+    options = Options(method=EstimationMethod.FIXED, max_traces=4000, seed=2, confidence=0.999)
     (result,) = api.verify(source, options=options)
     assert result.answer is not None
     assert result.answer.tally.simulated == 4000
@@ -275,7 +275,9 @@ def test_the_value_given_assumptions_is_the_ratio_that_storm_computes(name: str)
 
 def test_assumptions_that_no_trace_satisfies_leave_no_value() -> None:
     source = loaded(with_assumptions(EXISTS.format("never", "count == 70"), EXISTS.format("g", "whistle")))
-    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150), expectations=["g >= 0.1"])
+    (result,) = api.verify(
+        source, options=Options(method=EstimationMethod.FIXED, max_traces=150), expectations=["g >= 0.1"]
+    )
     assert result.answer is not None
     assert (result.answer.tally.traces, result.answer.tally.rejected) == (0, 150)
     assert not result.is_met
@@ -290,7 +292,7 @@ def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
         "</property>", '<time_interval after="3" within="50" time_unit="s" /></property>'
     )
     source = loaded(with_assumptions(late, EXISTS.format("g", "heads")))
-    (result,) = api.verify(source, options=Options(method="fixed", max_traces=150))
+    (result,) = api.verify(source, options=Options(method=EstimationMethod.FIXED, max_traces=150))
     assert result.answer is not None
     tally = result.answer.tally
     assert tally.rejected == 0
@@ -300,7 +302,7 @@ def test_a_trace_that_leaves_an_assumption_open_is_undecided() -> None:
 def test_an_expectation_beside_the_property() -> None:
     expected = EXISTS.format("some", "heads").replace("<property", '<property expect="&gt;= 0.95"')
     source = loaded(system(expected + EXISTS.format("other", "tails")))
-    some, other = api.verify(source, options=Options(method="fixed", max_traces=300), only_uniform=True)
+    some, other = api.verify(source, options=Options(method=EstimationMethod.FIXED, max_traces=300), only_uniform=True)
     assert [verdict.expectation.text for verdict in some.verdicts] == ["≥ 0.95"]
     assert not some.is_met
     assert other.has_no_expectation
@@ -333,7 +335,7 @@ VACUOUS = f"""
 
 
 def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> None:
-    options = Options(method="fixed", max_traces=300, seed=1)
+    options = Options(method=EstimationMethod.FIXED, max_traces=300, seed=1)
     answered = api.verify(loaded(system(VACUOUS)), options=options, only_uniform=True)
     results = {result.name: result for result in answered}
     rows = {name: row(result) for name, result in results.items()}
@@ -358,7 +360,7 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
 
 def test_what_observers_say_of_their_activity_changes_no_answer() -> None:
     source = loaded(system(VACUOUS))
-    options = Options(method="fixed", max_traces=200)
+    options = Options(method=EstimationMethod.FIXED, max_traces=200)
     plain, full = (
         [(result.name, result.answer and result.answer.value) for result in api.verify(subject, options=options)]
         for subject in (api.to_jani(source), source)

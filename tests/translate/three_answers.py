@@ -12,7 +12,7 @@ from storm import Exact, exact
 from roaml import api
 
 TOLERANCE = 1e-5
-SAMPLING = api.Options(method="fixed", max_traces=200, max_steps=20_000, seed=1, confidence=0.9999)
+SAMPLING = api.Options(method=api.EstimationMethod.FIXED, max_traces=200, max_steps=20_000, seed=1, confidence=0.9999)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def answers(
         storms_answer: `None` if Storm does not answer.
     """
     verifier = api.verifier(source, [name])
-    result = verifier.exhaustive(verifier.checker.asked[0], api.StateLimits(max_states))
+    result = verifier.exhaustive(verifier.checker.compiled_properties[0], api.StateLimits(max_states))
     (sampled,) = api.verify(source, [name], SAMPLING, only_uniform=True)
     assert sampled.answer is not None, sampled.refusal
     exact = result.exact

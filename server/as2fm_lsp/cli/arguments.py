@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.output import print_text
+from roaml.exhaustive import Vocabulary
 from roaml.suggest import close_names, did_you_mean
 
 if TYPE_CHECKING:
@@ -46,6 +47,27 @@ class ArgumentParser(argparse.ArgumentParser):
         except argparse.ArgumentError as error:
             close = close_names(str(value), map(str, action.choices or ()))
             raise argparse.ArgumentError(action, f"{error.message}{did_you_mean(close)}") from None
+
+
+class WordAction(argparse.Action):
+    """Stores a member of a vocabulary; users write its value.
+
+    Args:
+        words: the members that users may choose.
+    """
+
+    def __init__(self, option_strings: Sequence[str], dest: str, *, words: Iterable[Vocabulary], **rest: Any) -> None:
+        self._members = {str(member): member for member in words}
+        super().__init__(option_strings, dest, choices=tuple(self._members), **rest)
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        setattr(namespace, self.dest, self._members[values])
 
 
 def unknown_rule(code: str) -> str:

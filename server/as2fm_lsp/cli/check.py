@@ -135,7 +135,7 @@ def _write(options: argparse.Namespace, report: CheckReport) -> None:
     if options.output is not None:
         write_file(options.output, text)
     else:
-        print_text(text, None if options.format == "text" else "utf-8")
+        print_text(text, options.format.encoding)
 
 
 def _statistics(entries: Sequence[Entry]) -> str:

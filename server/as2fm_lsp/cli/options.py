@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import argparse
 
-from as2fm_lsp.cli.formats import FORMATS
+from as2fm_lsp.cli.arguments import WordAction
+from as2fm_lsp.cli.formats import Format
 from roaml.project.settings import SEVERITIES
 
 
@@ -17,7 +18,9 @@ def check_options(check: argparse._ActionsContainer) -> None:
         help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
     )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
-    check.add_argument("--format", default="text", choices=FORMATS, help="format of the diagnostics")
+    check.add_argument(
+        "--format", action=WordAction, words=Format, default=Format.TEXT, help="format of the diagnostics"
+    )
     check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"

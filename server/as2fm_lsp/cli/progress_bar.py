@@ -53,7 +53,7 @@ class ProgressBar:
         self._show()
 
     def search(self, search: Search) -> None:
-        """Update during a search for schedulers, or traces with one that was found."""
+        """Show the progress of a search for schedulers, or of the traces under the selected scheduler."""
         self._search = search
         side = search.selected.get(search.side)
         if side is not None:

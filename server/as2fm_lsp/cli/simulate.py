@@ -11,7 +11,7 @@ from pathlib import Path
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import render
+from as2fm_lsp.cli.formats import Format, render
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -73,7 +73,7 @@ def _run(options: argparse.Namespace) -> int:
         target = read_target(options, settings)
         session = api.session(target, _property(options, target), options.seed, options.trace, _saved(options))
     except (api.ModelError, api.JaniError) as error:
-        print_text(render(error_report(error), "text"), stream=sys.stderr)
+        print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)
         return FOUND
     except FaultError as fault:
         complain(fault_text(target, fault))

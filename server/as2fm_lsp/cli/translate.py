@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
-from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import CheckReport, render
+from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
@@ -92,11 +92,11 @@ def run(arguments: Sequence[str]) -> int:
     if is_refused:  # The named property cannot be translated.
         _report(options, report)
         return _not_written(options, output)
-    if options.format == "text" or STANDARD_OUTPUT not in (output, options.map):
+    if options.format is Format.TEXT or STANDARD_OUTPUT not in (output, options.map):
         _report(options, report)
-    if options.format == "text" and output != STANDARD_OUTPUT:
-        told = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
-        print_text(f"{shown_path(output)}: {summary(model)}\n", stream=told)
+    if options.format is Format.TEXT and output != STANDARD_OUTPUT:
+        messages = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
+        print_text(f"{shown_path(output)}: {summary(model)}\n", stream=messages)
     return CLEAN
 
 
@@ -127,7 +127,13 @@ def parser() -> ArgumentParser:
         "--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"'
     )
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
-    result.add_argument("--format", default="text", choices=("text", "json"), help="format of the diagnostics")
+    result.add_argument(
+        "--format",
+        action=WordAction,
+        words=(Format.TEXT, Format.JSON),
+        default=Format.TEXT,
+        help="format of the diagnostics",
+    )
     return result
 
 
@@ -218,14 +224,14 @@ def _reported(
 
 def _report(options: argparse.Namespace, report: CheckReport) -> None:
     """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
-    if options.format == "json":
-        print_text(render(report, "json"), "utf-8")
+    if options.format is Format.JSON:
+        print_text(render(report, Format.JSON), "utf-8")
     elif report.entries:
-        print_text(render(report, "text"), stream=sys.stderr)
+        print_text(render(report, Format.TEXT), stream=sys.stderr)
 
 
 def _not_written(options: argparse.Namespace, output: str) -> int:
-    if options.format == "text":
+    if options.format is Format.TEXT:
         complain(f"{shown_path(output)} was not written")
     return FOUND
 

@@ -15,9 +15,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
-from as2fm_lsp.cli.arguments import ArgumentParser
+from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.formats import CheckReport, render
+from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.mock_options import names_tree
 from as2fm_lsp.cli.model_arguments import (
@@ -39,6 +39,7 @@ from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.exhaustive import Vocabulary
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
@@ -46,7 +47,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import ADAPTIVE, FIXED, METHODS, MIN_EPSILON, Options, Tally
+from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options, Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
@@ -54,6 +55,7 @@ from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
 from roaml.verification.small import EXAMPLE_TRACES
+from roaml.verification.stuck import StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
@@ -108,6 +110,13 @@ MAX_TRACES_IN_ONE_PROCESS = 20_000
 """Up to this number, traces of a tree take less time than the start of further processes."""
 
 
+class Scheduler(Vocabulary):
+    """How nondeterminism is resolved."""
+
+    UNIFORM = "uniform"
+    LSS = "lss"
+
+
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -129,7 +138,7 @@ def _run(options: argparse.Namespace) -> int:
     settings = settings_of(options.main)
     if names_tree(options.main):
         return _run_tree(options, expectations, limits, settings)
-    only_uniform = options.scheduler == "uniform" or (options.scheduler is None and settings.scheduler == "uniform")
+    only_uniform = settings.only_uniform if options.scheduler is None else options.scheduler is Scheduler.UNIFORM
     names = options.property or None
     try:
         with StatusLine() as status:
@@ -150,14 +159,14 @@ def _run(options: argparse.Namespace) -> int:
     except FaultError as fault:
         return _fault(options, target, fault)
     if not verifier.names:
-        raise UsageError(f"{shown_path(options.main)} has no properties")
+        raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
     return _Verification(options, verifier).run()
 
 
 def _asks_for_traces(options: argparse.Namespace) -> bool:
     """Whether an option is given that has an effect only on traces."""
     values = [getattr(options, name) for name in TRACE_OPTIONS]
-    return any(value is not None and value is not False for value in values) or options.scheduler == "lss"
+    return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS
 
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
@@ -165,9 +174,9 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
-    if limits.method == ADAPTIVE:  # the number is fixed, because all measurements use the same traces
+    if limits.method is EstimationMethod.ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
-        limits = replace(limits, method=FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
+        limits = replace(limits, method=EstimationMethod.FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
     if (limits.max_traces or 0) <= MAX_TRACES_IN_ONE_PROCESS:
         options.jobs = 1
     try:
@@ -201,7 +210,7 @@ class _Verification:
         self.verifier = verifier
         self.target = verifier.target
         self.limits = verifier.options
-        self.look: stuck.Look | None = None
+        self.stuck_result: stuck.StuckResult | None = None
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
@@ -219,50 +228,50 @@ class _Verification:
                     with Pool(workers or self.options.jobs, executor) as pool:
                         self.results.append(self._answer_alone(name, pool, bar))
                     interrupted = self.results[-1].is_interrupted
-            looks = self.tree is None and not interrupted and not self.options.exhaustive
-            if looks and stuck.can_be_stuck(checker):
-                asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
-                self.look = self._look(None if asks_stuck or self.faults else bar)
+            can_check = self.tree is None and not interrupted and not self.options.exhaustive
+            if can_check and stuck.can_be_stuck(checker):
+                includes_stuck = any(property_.question.is_stuck for property_ in checker.compiled_properties)
+                self.stuck_result = self._check_stuck(None if includes_stuck or self.faults else bar)
         self._print()
-        self._tell_faults()
-        is_met = all(r.is_met for r in self.results) and (self.look is None or self.look.is_met)
+        self._print_faults()
+        is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
         status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
-            self._tell()
+            self._write_traces()
         return status
 
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
         """The results of the properties that share traces; empty if fewer than two properties can share them."""
         options, verifier = self.options, self.verifier
-        if options.separate or options.exhaustive or options.scheduler == "lss":
+        if options.separate or options.exhaustive or options.scheduler is Scheduler.LSS:
             return {}
-        asked = verifier.sharing()
-        if not asked:
+        properties = verifier.sharing()
+        if not properties:
             return {}
-        payloads = [verifier.checker.payload(property_) for property_ in asked] if self.state is not None else []
-        tallies = [Tally() for _ in asked]
+        payloads = [verifier.checker.payload(property_) for property_ in properties] if self.state is not None else []
+        tallies = [Tally() for _ in properties]
         if self.state is not None:
-            tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
-        by_name = {property_.question.name: payload for property_, payload in zip(asked, payloads, strict=False)}
+            tallies = [self.state.tally(e.question, payload) for e, payload in zip(properties, payloads, strict=True)]
+        by_name = {property_.question.name: payload for property_, payload in zip(properties, payloads, strict=False)}
 
         def watch(property_: CompiledProperty, so_far: Tally) -> None:
-            shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
+            shown = next((e for e, tally in zip(properties, tallies, strict=True) if not tally.is_finished), None)
             if property_ is shown:
-                bar.together(property_.question, so_far, len(asked))
+                bar.together(property_.question, so_far, len(properties))
             if self.state is not None:
                 self.state.keep(property_.question.name, by_name[property_.question.name], so_far)
 
         began = time.monotonic()
-        bar.begin(asked[0].question, self.limits, tallies[0])
+        bar.begin(properties[0].question, self.limits, tallies[0])
         try:
-            results = verifier.answer_together(asked, pool, tallies, watch, bar.pulse)
+            results = verifier.answer_together(properties, pool, tallies, watch, bar.pulse)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         except KeyboardInterrupt:
             seconds = time.monotonic() - began
-            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
+            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(properties, tallies, strict=True)]
         if self.state is not None:
-            for property_, tally in zip(asked, tallies, strict=True):
+            for property_, tally in zip(properties, tallies, strict=True):
                 self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
         self.faults += [result.fault for result in results if result.fault is not None]
         return {result.name: self._with_shown_path(result) for result in results}
@@ -282,84 +291,84 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
-        name = asked.question.name
+        name = property_.question.name
         if self.options.exhaustive:
-            return self._exhaustive(asked, bar, began)
+            return self._exhaustive(property_, bar, began)
         try:
-            self.verifier.check_method(asked)
+            self.verifier.check_method(property_)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         tally = Tally()
-        payload = self.verifier.checker.payload(asked)
+        payload = self.verifier.checker.payload(property_)
         if self.state is not None:
-            tally = self.state.tally(asked.question, payload)
-        bar.begin(asked.question, self.limits, tally)
+            tally = self.state.tally(property_.question, payload)
+        bar.begin(property_.question, self.limits, tally)
 
         def watch(so_far: Tally) -> None:
             bar.watch(so_far)
             if self.state is not None:
                 self.state.keep(name, payload, so_far)
 
-        if self.options.scheduler == "lss":
-            return self._search(asked, pool, bar, began)
+        if self.options.scheduler is Scheduler.LSS:
+            return self._search(property_, pool, bar, began)
         try:
-            result = self.verifier.answer(asked, pool, tally, watch, bar.pulse)
+            result = self.verifier.answer(property_, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
-            result = self.verifier.interrupted(asked, tally, time.monotonic() - began)
+            result = self.verifier.interrupted(property_, tally, time.monotonic() - began)
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
         search, interrupted = Search(), False
         try:
-            self.verifier.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
+            self.verifier.checker.search(property_, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
             interrupted = True
-        return self.verifier.sampled(asked, search, time.monotonic() - began, is_interrupted=interrupted)
+        return self.verifier.sampled(property_, search, time.monotonic() - began, is_interrupted=interrupted)
 
-    def _look(self, bar: ProgressBar | None) -> stuck.Look:
+    def _check_stuck(self, bar: ProgressBar | None) -> stuck.StuckResult:
         """The result of a check for stuck systems; with a progress bar, traces are generated for it."""
         level = self.options.stuck
-        own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
+        own = stuck.StuckResult(None, None, level) if bar is None else self.verifier.check_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exhaustive(self, asked: CompiledProperty, bar: ProgressBar, began: float) -> Result:
+    def _exhaustive(self, property_: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
         limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
         try:
             return self.verifier.exhaustive(
-                asked, limits, lambda states, done: bar.states(asked.question, states, done)
+                property_, limits, lambda states, done: bar.states(property_.question, states, done)
             )
         except KeyboardInterrupt:
-            return Result(asked.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            return Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
 
     def _print(self) -> None:
         text = self._text()
-        print_text(text, None if self.options.format == "text" else "utf-8")
+        print_text(text, self.options.format.encoding)
         flush()
 
     def _text(self) -> str:
-        if self.options.format == "json":
+        if self.options.format is Format.JSON:
             entries = [_row(finding) for finding in self._fault_entries()]
-            row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
+            row = None if self.stuck_result is None else stuck_report.as_row(self.stuck_result, self._place_row)
             return as_json(self.results, entries, stuck=row, tree=self._tree_row())
-        if self.options.format == "junit":
+        if self.options.format is Format.JUNIT:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
-            return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
+            return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
         # A story of a stuck trace ends with the waiting automata.
-        is_told = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
-        is_told = is_told and not any(result.is_interrupted for result in self.results)
-        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
+        has_story = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
+        has_story = has_story and not any(result.is_interrupted for result in self.results)
+        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if has_story else "")
         if self.tree is not None:
-            return f"{self._tree_text(text, is_told)}{self._assumptions()}\n"
-        if self.look is not None:
-            text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
-        return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
+            return f"{self._tree_text(text, has_story)}{self._assumptions()}\n"
+        if self.stuck_result is not None:
+            text += stuck_report.as_text(self.stuck_result, self._place, self._where_shown(has_story))
+        return f"{text}{'' if has_story else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
 
     def _tree_row(self) -> dict[str, Any] | None:
         if self.tree is None:
@@ -369,7 +378,7 @@ class _Verification:
         mocked, outcome = self.tree
         return None if outcome is None else as_row(mocked, outcome)
 
-    def _tree_text(self, text: str, is_told: bool) -> str:
+    def _tree_text(self, text: str, has_story: bool) -> str:
         """The results of a tree without a system: those of its properties, its measurements, and a failing trace."""
         from as2fm_lsp.verification import tree_report  # noqa: PLC0415
 
@@ -378,28 +387,30 @@ class _Verification:
         if outcome is not None:
             text += tree_report.as_text(mocked, outcome, self._place)
             succeeds = next((r for r in self.results if r.name == "succeeds" and r.traces is not None), None)
-            failing = None if succeeds is None or is_told else unwanted_trace(succeeds)
+            failing = None if succeeds is None or has_story else unwanted_trace(succeeds)
             if succeeds is not None and succeeds.traces is not None and failing is not None:
                 story = succeeds.traces.story(failing.trace)
                 text += tree_report.story_as_text(mocked, story, self._place)
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
-    def _where_shown(self, is_told: bool) -> str:
+    def _where_shown(self, has_story: bool) -> str:
         """The place in the output where the waiting automata of the example of a stuck trace are shown; "" if they are
         not shown elsewhere."""
-        if self.look is None or self.look.stuck is None:
+        if self.stuck_result is None or self.stuck_result.stuck is None:
             return ""
-        same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
-        if same and is_told:
+        same = [
+            result for result in self.results if result.stuck and result.stuck.chain == self.stuck_result.stuck.chain
+        ]
+        if same and has_story:
             return "in the trace below"
-        named = next((result.name for result in same if not result.asks_stuck), None)
+        named = next((result.name for result in same if not result.includes_stuck), None)
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:
         """The assumptions of all results, in one line."""
         if self.options.exhaustive:
             return "computed from all reachable states, over all schedulers and for uniform choices"
-        if self.options.scheduler == "lss":
+        if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
         how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
@@ -408,7 +419,7 @@ class _Verification:
         over = "" if self.verifier.only_uniform else "over all schedulers and "
         computed = f"exact values: computed from all reachable states, {over}for uniform choices"
         computed += " (--method adaptive: estimates from traces)"
-        has_estimate = self.look is not None and self.look.answer is not None
+        has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
         has_estimate = has_estimate or any(r.answer is not None and r.exact is None for r in self.results)
         return f"{computed}\nestimates: {how}" if has_estimate else computed
 
@@ -429,15 +440,15 @@ class _Verification:
             if diagnostic is not None
         ]
 
-    def _tell_faults(self) -> None:
+    def _print_faults(self) -> None:
         """Report the properties that could not be decided on standard error."""
-        if self.faults and self.options.format != "json":
+        if self.faults and self.options.format is not Format.JSON:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
-                print_text(render(report, "text"), stream=sys.stderr)
+                print_text(render(report, Format.TEXT), stream=sys.stderr)
 
-    def _tell(self) -> None:
+    def _write_traces(self) -> None:
         """Write traces and stories."""
         from as2fm_lsp.verification.trace_files import write_traces  # noqa: PLC0415
 
@@ -501,7 +512,7 @@ class _Verification:
             text = self._story_texts(stories)
         if file == STANDARD_OUTPUT:
             # With a format for programs, standard output contains only the results.
-            print_text(text, stream=sys.stdout if self.options.format == "text" else sys.stderr)
+            print_text(text, stream=sys.stdout if self.options.format is Format.TEXT else sys.stderr)
         else:
             write_file(file, text)
 
@@ -546,7 +557,8 @@ def parser() -> ArgumentParser:
     )
     add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
         "an expected reward relative to its value")  # fmt: skip
-    add("--method", choices=METHODS, help="generate traces, also if the model is small: until the interval is narrow "
+    add("--method", action=WordAction, words=EstimationMethod,
+        help="generate traces, also if the model is small: until the interval is narrow "
         "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
         "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
     add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
@@ -560,7 +572,8 @@ def parser() -> ArgumentParser:
         metavar="N",
         help="number of processes (all processors); does not change the results",
     )
-    add("--scheduler", choices=("uniform", "lss"), help="how nondeterminism is resolved: uniformly at random, or by "
+    add("--scheduler", action=WordAction, words=Scheduler,
+        help="how nondeterminism is resolved: uniformly at random, or by "
         "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
         "warning or note states if other schedulers may give another value")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
@@ -570,7 +583,8 @@ def parser() -> ArgumentParser:
     add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
         "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
     add_model_arguments(result)
-    add("--stuck", choices=stuck.LEVELS, default=stuck.WARNING, help="report traces that get stuck as a "
+    add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
+        help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
         "traces, with the same results")  # fmt: skip
@@ -581,7 +595,8 @@ def parser() -> ArgumentParser:
         help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
-    add("--format", default="text", choices=("text", "json", "junit"), help="format of the results")
+    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
+        help="format of the results")  # fmt: skip
     return result
 
 
@@ -659,19 +674,19 @@ def _fault(options: argparse.Namespace, target: VerificationTarget, fault: Fault
     diagnostic = _diagnostic(options, fault)
     if diagnostic is None:
         complain(f"{shown_path(options.main)}: {fault.message}")
-        if options.format == "json":
+        if options.format is Format.JSON:
             print_text(as_json((), [{"message": fault.message, "code": fault.code}]), "utf-8")
         return FOUND
     return _errors(options, report_of((diagnostic,), _source_of(target), len(target.files)))
 
 
 def _errors(options: argparse.Namespace, report: CheckReport) -> int:
-    if options.format == "json":
+    if options.format is Format.JSON:
         print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
-    elif options.format == "junit":
-        print_text(render(report, "junit"), "utf-8")
+    elif options.format is Format.JUNIT:
+        print_text(render(report, Format.JUNIT), "utf-8")
     else:
-        print_text(render(report, "text"), stream=sys.stderr)
+        print_text(render(report, Format.TEXT), stream=sys.stderr)
     return FOUND
 
 

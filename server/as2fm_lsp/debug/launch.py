@@ -20,6 +20,7 @@ from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.simulation import RunError, SavedSession
 from roaml.smc.fault import FaultError
+from roaml.smc.record import TraceVerdict
 from roaml.text import SourceFile
 
 MAX_SAVED = 1 << 26
@@ -73,7 +74,7 @@ def launch_of(arguments: Arguments) -> Launch:
         arguments.natural("seed", 0),
         arguments.natural("trace", 0),
         against or in_favour,
-        "passed" if in_favour else "failed",
+        TraceVerdict.PASSED if in_favour else TraceVerdict.FAILED,
         _saved(os.path.join(os.path.dirname(program), saved)) if saved else None,
     )
     constants = arguments.object("constants").members

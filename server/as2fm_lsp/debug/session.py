@@ -16,6 +16,7 @@ from as2fm_lsp.debug.launch import Launch
 from as2fm_lsp.debug.variables import References, Shown
 from roaml.debugging.debugger import Debugger, Stop, StopReason
 from roaml.debugging.frames import Frame
+from roaml.disk import is_valid_path
 from roaml.jani.node import Origin
 
 Body = Mapping[str, Any] | None
@@ -65,7 +66,7 @@ class ClientFormat:
         if path.startswith("file:"):
             path = urllib.parse.unquote(urllib.parse.urlsplit(path).path)
             path = path[1:] if os.name == "nt" else path
-        if "\0" in path:
+        if not is_valid_path(path):
             raise RequestError("`path` is not a path")
         return os.path.abspath(path)
 
@@ -106,7 +107,7 @@ class DebugSession:
             RequestError: there is no run.
         """
         if self.debugger is None:
-            raise RequestError("no run has been launched")
+            raise RequestError("no run has been launched; send `launch` first")
         return self.debugger
 
     @property
@@ -159,7 +160,7 @@ class DebugSession:
         """
         number = arguments.number("frameId")
         if number not in self.frames:
-            raise RequestError(f"there is no frame {number}")
+            raise RequestError(f"there is no frame {number}; frames are valid only until the run continues")
         return self.frames[number]
 
     def children(self, reference: int) -> list[Shown]:
@@ -170,7 +171,9 @@ class DebugSession:
         """
         children = self.references.children(reference)
         if children is None:
-            raise RequestError(f"there are no variables with the reference {reference}")
+            raise RequestError(
+                f"there are no variables with the reference {reference}; it is valid only until the run continues"
+            )
         return list(children)
 
     def where(self, origin: Origin | None) -> dict[str, Any]:

@@ -42,7 +42,7 @@ class StateRequests:
         debugger = self._session.stopped
         thread = arguments.number("threadId")
         if all(known.number != thread for known in debugger.threads):
-            raise RequestError(f"there is no thread {thread}")
+            raise RequestError(f"there is no thread {thread}; `threads` lists them")
         frames = debugger.stack(thread)
         first, levels = arguments.natural("startFrame", 0), arguments.natural("levels", 0)
         chosen = frames[first : first + levels] if levels else frames[first:]

@@ -8,12 +8,14 @@ from typing import Any
 
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import ALL, NONE, Exact, Result
+from roaml.verification.results import Exact, Proof, Result
 
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
 WIDTH = 1e-6
 """The greatest width of the bounds of an exact value, relative for expected rewards."""
+_PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
+"""What all states prove, in JSON."""
 
 
 def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
@@ -34,17 +36,17 @@ def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False
         both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
         shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
-    if exact.proof == ALL:
+    if exact.proof is Proof.ALL:
         shown.append(f"  proof: its condition holds in all {states}")
-    elif exact.proof == NONE:
+    elif exact.proof is Proof.NONE:
         shown.append(f"  proof: its condition holds in none of the {states}")
-    told = [
+    shortest = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
         for what, trace in (("fails", fails), ("holds", holds))
         if trace is not None
     ]
-    if told:
-        shown.append(f"  shortest traces: it {', it '.join(told)}")
+    if shortest:
+        shown.append(f"  shortest traces: it {', it '.join(shortest)}")
     return shown
 
 
@@ -59,7 +61,7 @@ def row(exact: Exact) -> dict[str, Any]:
             for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
         },
         "precise": exact.is_precise,
-        "proof": exact.proof,
+        "proof": _PROOFS[exact.proof],
         "states": exact.states,
         "shortest": {
             name: None if (trace := exact.shortest(verdict)) is None else trace.steps

@@ -19,7 +19,7 @@ from roaml.project.workspace import Snapshot
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
-from roaml.verification.verifier import judged_again
+from roaml.verification.verifier import with_expectations
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +47,13 @@ class ExpectedNow:
     beside: Mapping[str, Comparison]
     configured: Mapping[str, Comparison]
 
-    def judge(self, known: KnownResult) -> KnownResult:
+    def with_expectations(self, known: KnownResult) -> KnownResult:
         """A known result, compared with the expectations that are valid now."""
         name = known.result.name
         given = verification_settings(self.client_settings, known.options).expectations
         written = (self.beside.get(name), self.configured.get(name))
         more = [expectation_of(name, comparison) for comparison in written if comparison is not None]
-        return replace(known, result=judged_again(known.result, (*given, *more)))
+        return replace(known, result=with_expectations(known.result, (*given, *more)))
 
 
 def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> ExpectedNow:

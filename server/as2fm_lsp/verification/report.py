@@ -17,13 +17,15 @@ from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import Result
 from roaml.verification.schedulers import may_differ
-from roaml.verification.stuck import WARNING, Stuck
+from roaml.verification.stuck import Stuck, StuckLevel
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
 
 
-def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
+def as_text(
+    results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = ""
+) -> str:
     """All results of one call, as text for users.
 
     Args:
@@ -36,7 +38,7 @@ def as_text(results: Sequence[Result], place_of: PlaceOf, level: str = WARNING, 
     for result in results:
         where = "" if result.stuck is None else shown or shown_at.get(result.stuck.chain, "")
         blocks.append(_block(result, place_of, level, where, is_alone=False))
-        if result.stuck is not None and not result.asks_stuck:
+        if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, beneath `{result.name}`")
     open_ = [
         (result.answer.question, result.choices or Choices())
@@ -52,19 +54,19 @@ def _without_expectation(results: Sequence[Result]) -> list[str]:
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
-def one_as_text(result: Result, place_of: PlaceOf, level: str = WARNING, shown: str = "") -> str:
+def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> str:
     """A single result, as text for users. See `as_text`."""
     return _block(result, place_of, level, shown, is_alone=True)
 
 
-def _block(result: Result, place_of: PlaceOf, level: str, shown: str, *, is_alone: bool) -> str:
+def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool) -> str:
     lines = []
     if result.refusal is not None:
         lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
     if result.undecided:
         lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
     if result.exact is not None:
-        name = f"{result.name} ({PROBABILITY})" if result.asks_stuck else result.name
+        name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
         lines += exact_report.lines(name, result.exact, result.seconds, only_uniform=result.is_uniform)
     if result.exact is not None and result.answer is not None:
         lines += [f"  {remark}" for remark in _example_remarks(result.answer)]
@@ -115,8 +117,8 @@ def _refusal_row(refusal: Refusal) -> dict[str, Any]:
     return {**where, "code": refusal.code, "message": refusal.message}
 
 
-def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: str, shown: str) -> list[str]:
-    return [f"  {line}" for line in stuck_report.told(stuck, place_of, level, shown)]
+def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
+    return [f"  {line}" for line in stuck_report.stuck_lines(stuck, place_of, level, shown)]
 
 
 def _estimate(answer: Answer) -> str:
@@ -198,7 +200,7 @@ def row(result: Result) -> dict[str, Any]:
     if about := warning(result):
         values["warning"] = about
     for sampled in result.sampled:
-        values[sampled.side] = {**_answer(sampled.answer), "scheduler": sampled.scheduler, "by": sampled.words}
+        values[sampled.side.value] = {**_answer(sampled.answer), "scheduler": sampled.scheduler, "by": sampled.words}
     if result.tried:
         values["schedulers"] = {"wanted": "lss", "tried": result.tried}
     if result.exact is not None:
@@ -230,7 +232,7 @@ def _verdict(result: Result) -> str:
 def warning(result: Result) -> str:
     """The reason why the value is not, or may not be, the requested one; "" if it is."""
     parts = []
-    if result.stuck is not None and not result.asks_stuck:
+    if result.stuck is not None and not result.includes_stuck:
         parts.append(result.stuck.warning)
     if result.answer is not None:
         parts.append(activity_report.warning(result.answer))
@@ -256,7 +258,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "interval": answer.interval,
         "confidence": answer.options.confidence,
         "epsilon": answer.options.epsilon,
-        "method": answer.options.method,
+        "method": answer.options.method.value,
         "seed": answer.options.seed,
         "max_steps": answer.options.max_steps,
     }

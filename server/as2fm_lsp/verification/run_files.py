@@ -84,7 +84,7 @@ def json_text(session: Session, target: VerificationTarget) -> str:
         "seed": saved.seed,
         "by_hand": session.is_by_hand,
         "steps": [step_row(target, session.automata, step) for step in session.steps[: session.position]],
-        "verdict": session.verdict,
+        "verdict": session.verdict.value,
         "end": None if end is None else end.key,
     }
     return json.dumps(value, ensure_ascii=False, indent=1) + "\n"

@@ -17,7 +17,7 @@ from typing import Any
 
 from roaml.smc.run import MIN_EPSILON, Options
 from roaml.verification.expectations import Expectation, parse
-from roaml.verification.stuck import LEVELS, WARNING
+from roaml.verification.stuck import StuckLevel
 
 TRACE_OPTIONS = frozenset({"confidence", "epsilon", "maxSteps", "seed"})
 """The options of a call that have an effect only on traces."""
@@ -30,7 +30,7 @@ class VerificationSettings:
     Attributes:
         is_silent: whether the results are not shown as messages.
         exact_if_small: whether results of small models also have exact values.
-        stuck: how a system that gets stuck is reported, one of `stuck.LEVELS`.
+        stuck: how a system that gets stuck is reported, a warning or an error.
         problems: messages about invalid values, as sentences.
         partial_result_token: the token with which the client requests each result as soon as it is complete.
     """
@@ -40,7 +40,7 @@ class VerificationSettings:
     is_silent: bool
     problems: tuple[str, ...]
     exact_if_small: bool = True
-    stuck: str = WARNING
+    stuck: StuckLevel = StuckLevel.WARNING
     partial_result_token: int | str | None = None
 
 
@@ -77,10 +77,10 @@ def verification_settings(settings: object, options: object = None) -> Verificat
             expectations.append(parse(f"{name} {text}"))
         except ValueError:
             problems.append(f"The expectation of {name} must have a form like '>= 0.95', not {text!r}.")
-    level = values.get("stuck", WARNING)
-    if level not in LEVELS:
-        problems.append(f"verify.stuck must be one of {', '.join(LEVELS)}, not {level!r}.")
-        level = WARNING
+    word = values.get("stuck", StuckLevel.WARNING.value)
+    level = next((level for level in StuckLevel if level.value == word), None)
+    if level is None:
+        problems.append(f"verify.stuck must be one of {', '.join(map(str, StuckLevel))}, not {word!r}.")
     exact = values.get("exactIfSmall", True)
     if not isinstance(exact, bool):
         problems.append(f"verify.exactIfSmall must be true or false, not {exact!r}.")
@@ -92,7 +92,7 @@ def verification_settings(settings: object, options: object = None) -> Verificat
         values.get("silent") is True,
         tuple(problems),
         exact and TRACE_OPTIONS.isdisjoint(_mapping(options)),
-        level,
+        level or StuckLevel.WARNING,
         token if isinstance(token, (int, str)) and not isinstance(token, bool) else None,
     )
 

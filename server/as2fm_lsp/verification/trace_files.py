@@ -88,13 +88,14 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
     yield "{\n"
-    yield f' "property": {_json(recorder.asked.question.name)},\n "trace": {trace},\n "seed": {recorder.seed},\n'
+    name = _json(recorder.compiled_property.question.name)
+    yield f' "property": {name},\n "trace": {trace},\n "seed": {recorder.seed},\n'
     yield f' "initial": {_json(start)},\n "steps": ['
     comma = "\n  "
     for step in recorder.walk(recording):
         yield comma + _json(step_row(target, automata, step))
         comma = ",\n  "
-    verdict = VERDICTS.get(recording.verdict, "fault")
+    verdict = VERDICTS[recording.verdict].value
     yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
     if recording.end is End.STUCK:
         rows = [

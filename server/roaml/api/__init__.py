@@ -49,23 +49,23 @@ if TYPE_CHECKING:
     from roaml.simulation.run import Decision, RunError
     from roaml.simulation.session import SavedSession, Session
     from roaml.simulation.state import EventState, MachineState, NodeState, NodeStatus, SystemState
-    from roaml.smc.choices import Choices, Extreme
+    from roaml.smc.choices import Choices, Extreme, ExtremeMethod
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
     from roaml.smc.goal import CompiledProperty, Question, Threshold
-    from roaml.smc.lss import Search
+    from roaml.smc.lss import Search, Side
     from roaml.smc.model import ModelChecker
     from roaml.smc.pool import Pool, Pulse, WorkersLostError
-    from roaml.smc.record import Recorder, Recording, TraceStep
-    from roaml.smc.run import Answer, Options, Tally, Watch
+    from roaml.smc.record import Recorder, Recording, TraceStep, TraceVerdict
+    from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch
     from roaml.smc.statistics import Bounds
     from roaml.smc.story import Story
     from roaml.text import Location, SourceFile, Span
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.refusal import Refusal
-    from roaml.verification.results import Exact, Result, SampledResult, ShortestTrace, Traces
-    from roaml.verification.stuck import Look, Stuck
+    from roaml.verification.results import Exact, Proof, Result, SampledResult, ShortestTrace, Traces
+    from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
     from roaml.views.story import StoryLine
@@ -97,23 +97,23 @@ else:
         "roaml.simulation.run": ("Decision", "RunError"),
         "roaml.simulation.session": ("SavedSession", "Session"),
         "roaml.simulation.state": ("EventState", "MachineState", "NodeState", "NodeStatus", "SystemState"),
-        "roaml.smc.choices": ("Choices", "Extreme"),
+        "roaml.smc.choices": ("Choices", "Extreme", "ExtremeMethod"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
         "roaml.smc.goal": ("CompiledProperty", "Question", "Threshold"),
-        "roaml.smc.lss": ("Search",),
+        "roaml.smc.lss": ("Search", "Side"),
         "roaml.smc.model": ("ModelChecker",),
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
-        "roaml.smc.record": ("Recorder", "Recording", "TraceStep"),
+        "roaml.smc.record": ("Recorder", "Recording", "TraceStep", "TraceVerdict"),
         "roaml.explicit.space": ("StateLimits",),
-        "roaml.smc.run": ("Answer", "Options", "Tally", "Watch"),
+        "roaml.smc.run": ("Answer", "EstimationMethod", "Options", "Tally", "Watch"),
         "roaml.smc.statistics": ("Bounds",),
         "roaml.smc.story": ("Story",),
         "roaml.verification.counterexample": ("Counterexample", "counterexample"),
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
         "roaml.verification.refusal": ("Refusal",),
-        "roaml.verification.results": ("Exact", "Result", "SampledResult", "ShortestTrace", "Traces"),
-        "roaml.verification.stuck": ("Look", "Stuck"),
+        "roaml.verification.results": ("Exact", "Proof", "Result", "SampledResult", "ShortestTrace", "Traces"),
+        "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
         "roaml.views.story": ("StoryLine",),
@@ -145,16 +145,17 @@ __all__ = [
     "Decision",
     "Diagnostic",
     "End",
+    "EstimationMethod",
     "EventState",
     "Exact",
     "Expectation",
     "Extreme",
+    "ExtremeMethod",
     "FaultError",
     "JaniError",
     "LineColumn",
     "LoadedSystem",
     "Location",
-    "Look",
     "MachineState",
     "Migration",
     "Model",
@@ -171,6 +172,7 @@ __all__ = [
     "Overrides",
     "PathError",
     "Pool",
+    "Proof",
     "Property",
     "PropertyError",
     "Pulse",
@@ -189,6 +191,7 @@ __all__ = [
     "Severity",
     "SharedFileError",
     "ShortestTrace",
+    "Side",
     "Snapshot",
     "SourceFile",
     "SourceMap",
@@ -197,10 +200,13 @@ __all__ = [
     "Story",
     "StoryLine",
     "Stuck",
+    "StuckLevel",
+    "StuckResult",
     "SystemState",
     "Tally",
     "Threshold",
     "TraceStep",
+    "TraceVerdict",
     "Traces",
     "Verdict",
     "VerificationTarget",

@@ -22,7 +22,7 @@ from roaml.jani.node import Origin
 from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
-from roaml.smc.record import AutomatonStep, TraceStep
+from roaml.smc.record import AutomatonStep, TraceStep, TraceVerdict
 
 
 class Line(NamedTuple):
@@ -293,10 +293,10 @@ class Matcher:
             if any(_is_part(change.variable.instance, change.variable.name, variable) for change in step.changes):
                 hits.append((breakpoint_, first))
         for property_ in decided:
-            if property_.verdict == "failed":
+            if property_.verdict is TraceVerdict.FAILED:
                 hits += ((breakpoint_, first) for breakpoint_ in self._properties.get(property_.name, ()))
             verdict = self._filters.get(
-                ExceptionFilter.VIOLATED if property_.verdict == "failed" else ExceptionFilter.SATISFIED
+                ExceptionFilter.VIOLATED if property_.verdict is TraceVerdict.FAILED else ExceptionFilter.SATISFIED
             )
             if verdict is not None:
                 hits.append((verdict, first))

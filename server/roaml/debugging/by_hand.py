@@ -25,6 +25,7 @@ from roaml.scxml.names import (
 from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session
 from roaml.smc.record import Plain, RecordedVariable
+from roaml.suggest import alternatives, close_names
 from roaml.views.event_words import interface_name, said
 
 
@@ -92,7 +93,9 @@ def sending(session: Session, sources: Sources, name: str, fields: Value) -> Int
     if len(matches) > 1 and any("_req" in form.event for form in matches):
         matches = [form for form in matches if "_req_client_" in form.event]
     if not matches:
-        raise WatchError(f"there is no topic, service, action or event `{name}` on which something can be sent")
+        names = list(dict.fromkeys(form.name for form in forms))
+        hint = alternatives(close_names(name, names), names, "name")
+        raise WatchError(f"no message can be sent to `{name}`: there is no such topic, service, action or event{hint}")
     if len(matches) > 1:
         raise WatchError(f"`{name}` has several events; use one of {', '.join(form.event for form in matches)}")
     (form,) = matches
@@ -142,7 +145,8 @@ def _written(
 def _check_members(fields: Mapping[str, Value], known: Mapping[str, Value], path: str) -> None:
     for name, value in fields.items():
         if name not in known:
-            raise WatchError(f"there is no field `{path}{name}`; there are {', '.join(known) or 'none'}")
+            hint = alternatives(close_names(name, known), known, "field") if known else "; it has no fields"
+            raise WatchError(f"there is no field `{path}{name}`{hint}")
         inner = known[name]
         if isinstance(inner, dict) and isinstance(value, dict):
             _check_members(value, inner, f"{path}{name}.")

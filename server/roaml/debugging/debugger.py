@@ -19,13 +19,13 @@ from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, Stacks, node
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
-from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
+from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
 from roaml.simulation.choices import Choice, Outcome
 from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session, ends_tick
 from roaml.simulation.verdicts import Decided, Verdicts
 from roaml.smc.fault import FaultError
-from roaml.smc.record import TraceStep
+from roaml.smc.record import TraceStep, TraceVerdict
 
 MAX_STEPS = 200_000
 """The maximum number of steps of one movement. After that, the run stops and can be continued."""
@@ -168,7 +168,7 @@ class Debugger:
         return self.values.names(Frame(0, "", None, instance, 0, "statement"))
 
     @property
-    def verdicts(self) -> dict[str, str]:
+    def verdicts(self) -> dict[str, TraceVerdict]:
         return self._verdicts.verdicts(self.session.position)
 
     # ------------------------------------------------------------ moving
@@ -305,7 +305,7 @@ class Debugger:
         node was ticked."""
         steps = self.session.steps
         position = self.session.position
-        tick = f"bt_{frame.node}_tick"
+        tick = tree_event_name(frame.node, TreeEventKind.TICK)
         for index in range(position - 1, -1, -1):
             step = steps[index]
             if frame.role == "node":
@@ -396,10 +396,10 @@ class Debugger:
         decided = self._verdicts.at(self.session.position)
         match filter_:
             case ExceptionFilter.VIOLATED:
-                names = [property_.name for property_ in decided if property_.verdict == "failed"]
+                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.FAILED]
                 return f"violated: {', '.join(names)}"
             case ExceptionFilter.SATISFIED:
-                names = [property_.name for property_ in decided if property_.verdict == "passed"]
+                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.PASSED]
                 return f"satisfied: {', '.join(names)}"
             case ExceptionFilter.FAILURE:
                 step = self.session.steps[self.session.position - 1]

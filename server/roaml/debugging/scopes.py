@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.debugging.breakpoints import WatchedVariable
@@ -12,11 +12,21 @@ from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.model.expand import PortConstant
-from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length, is_timer, read_tree_event, received_by
+from roaml.scxml.names import (
+    BLACKBOARD,
+    FIELD_PREFIX,
+    InterfaceEventKind,
+    is_length,
+    is_timer,
+    read_interface_event,
+    read_tree_event,
+    received_by,
+    safe_name,
+)
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
-from roaml.smc.record import Plain, TraceStep
+from roaml.smc.record import Plain, TraceStep, TraceVerdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +64,7 @@ class Values:
         sources: Sources,
         state: SystemState,
         upcoming: TraceStep | None,
-        verdicts: Mapping[str, str],
+        verdicts: Mapping[str, TraceVerdict],
     ) -> None:
         self._session = session
         self._sources = sources
@@ -65,6 +75,7 @@ class Values:
         self._stored: dict[int, dict[str, Plain]] = {}
         for (instance, name), value in session.values():
             self._stored.setdefault(instance, {})[name] = value
+        self._clients = {safe_name(name) for name in session.automata}
         self._instances = {automaton.name: number for number, automaton in enumerate(session.automata_of_model)}
 
     # ------------------------------------------------------------ scopes
@@ -153,7 +164,7 @@ class Values:
 
     def _properties(self) -> Iterator[ScopeEntry]:
         for name, verdict in self._verdicts.items():
-            yield ScopeEntry(name, verdict, "verdict")
+            yield ScopeEntry(name, verdict.value, "verdict")
 
     # ------------------------------------------------------------ messages
 
@@ -167,7 +178,7 @@ class Values:
             event = machine.event
         if not event or is_timer(event):
             return {}
-        return _event_variables(event, self._parameters(event))
+        return _event_variables(event, self._parameters(event), self._clients)
 
     def _parameters(self, event: str) -> dict[str, Value]:
         """The parameters with which an event was last sent, as structs."""
@@ -218,24 +229,34 @@ def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
     return name in stored or any(part.startswith(f"{name}{SEPARATOR}") for part in stored)
 
 
-def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:
+def _event_variables(event: str, parameters: dict[str, Value], clients: Collection[str]) -> dict[str, Value]:
     handle = {name: parameters.pop(name) for name in ("goal_id",) if name in parameters}
     if read_tree_event(event):
         status = parameters.get("status")
         return {"_bt": {"status": STATUS_NAMES.get(status, "")}} if isinstance(status, int) else {}
-    if event.startswith("topic_"):
-        return {"_msg": parameters}
-    name = event.partition("_client_")[0]
-    if event.startswith("srv_"):
-        return {"_res" if name.endswith("_response") else "_req": parameters}
-    if event.startswith(CANCEL_PREFIX):
-        return {"_action": dict(handle)}
-    if event.startswith("action_"):
-        action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
-        if "_result" in name:
-            code = {"code": parameters.pop("code")} if "code" in parameters else {}
-            return {**action, "_wrapped_result": {**code, "result": parameters}}
-        if "_feedback" in name:
-            return {**action, "_feedback": parameters}
-        return {**action, "_goal": parameters} if parameters else action
-    return {"_event": {"data": {**handle, **parameters}}} if parameters or handle else {}
+    read = read_interface_event(event, clients)
+    match None if read is None else read.kind:
+        case None:
+            return {"_event": {"data": {**handle, **parameters}}} if parameters or handle else {}
+        case InterfaceEventKind.MESSAGE:
+            return {"_msg": parameters}
+        case InterfaceEventKind.REQUEST:
+            return {"_req": parameters}
+        case InterfaceEventKind.RESPONSE:
+            return {"_res": parameters}
+        case InterfaceEventKind.CANCEL:
+            return {"_action": dict(handle)}
+        case kind:
+            return _action_variables(kind, handle, parameters)
+
+
+def _action_variables(
+    kind: InterfaceEventKind, handle: dict[str, Value], parameters: dict[str, Value]
+) -> dict[str, Value]:
+    action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
+    if kind is InterfaceEventKind.RESULT:
+        code = {"code": parameters.pop("code")} if "code" in parameters else {}
+        return {**action, "_wrapped_result": {**code, "result": parameters}}
+    if kind is InterfaceEventKind.FEEDBACK:
+        return {**action, "_feedback": parameters}
+    return {**action, "_goal": parameters} if parameters else action

@@ -13,8 +13,7 @@ from roaml.simulation.session import SavedSession, Session
 from roaml.simulation.verdicts import Verdicts
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
-from roaml.smc.program import FALSE, TRUE
-from roaml.smc.record import Recorder, Recording
+from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 from roaml.verification.verifier import checker_of
 
 MAX_TRACES = 100_000
@@ -33,7 +32,7 @@ class Start:
     Attributes:
         property: the name of the property; "" for the first one.
         nth: the number, from 1, of the trace among those with `verdict`; 0 for the trace with the number `trace`.
-        verdict: `failed` for traces that contradict the property, `passed` for traces that satisfy it.
+        verdict: `FAILED` for traces that contradict the property, `PASSED` for traces that satisfy it.
         saved: the session to continue; it overrides the other attributes.
     """
 
@@ -41,7 +40,7 @@ class Start:
     seed: int = 0
     trace: int = 0
     nth: int = 0
-    verdict: str = "failed"
+    verdict: TraceVerdict = TraceVerdict.FAILED
     saved: SavedSession | None = None
 
 
@@ -56,37 +55,38 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
     """
     name = begin.property if begin.saved is None else begin.saved.property
     checker = checker_of(sources.target, None)
-    asked = _asked(checker, sources, name) if name else next(iter(checker.asked), checker.stuck)
+    property_ = (
+        _compiled_property(checker, sources, name) if name else next(iter(checker.compiled_properties), checker.stuck)
+    )
     seed, trace = begin.seed, begin.trace
     if begin.nth and begin.saved is None:
-        recorder = Recorder(checker, asked, seed, MAX_TRACE_STEPS)
-        trace = _nth(recorder, begin, asked.question.name, is_cancelled)
-    session = Session(checker, asked, seed, trace, sources.target.clock, begin.saved)
+        recorder = Recorder(checker, property_, seed, MAX_TRACE_STEPS)
+        trace = _nth(recorder, begin, property_.question.name, is_cancelled)
+    session = Session(checker, property_, seed, trace, sources.target.clock, begin.saved)
     return Debugger(session, sources, Verdicts(checker, session.seed, session.trace), log)
 
 
-def _asked(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
+def _compiled_property(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
     if name in checker.refused:
         raise checker.refused[name]
-    asked = next((property_ for property_ in checker.asked if property_.question.name == name), None)
-    if asked is not None:
-        return asked
+    property_ = next((property_ for property_ in checker.compiled_properties if property_.question.name == name), None)
+    if property_ is not None:
+        return property_
     checker_of(sources.target, [name])  # raises an error if there is no such property
     return checker.stuck
 
 
 def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[], bool]) -> int:
-    verdict = FALSE if begin.verdict == "failed" else TRUE
     missing = begin.nth
     for trace in range(MAX_TRACES):
         recording = Recording(trace)
         recorder.rush(recording)
-        missing -= recording.verdict == verdict
+        missing -= VERDICTS[recording.verdict] is begin.verdict
         if missing == 0:
             return trace
         if is_cancelled():
             raise StartError("the search for a trace was cancelled")
     count = begin.nth - missing
-    holds = "does not hold" if verdict == FALSE else "holds"
+    holds = "does not hold" if begin.verdict is TraceVerdict.FAILED else "holds"
     counted = f"`{name}` {holds} in only {count} of {MAX_TRACES:,} traces with seed {begin.seed}"
     raise StartError(f"{counted}, but trace {begin.nth} of these is requested; use another seed")

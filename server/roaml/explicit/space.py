@@ -75,7 +75,7 @@ class Space:
     """
 
     checker: ModelChecker
-    asked: CompiledProperty
+    compiled_property: CompiledProperty
     search: Any
     fault_at: int = -1
     problem: TraceProblem | None = None
@@ -92,7 +92,11 @@ class Space:
 
 
 def explore(
-    checker: ModelChecker, asked: CompiledProperty, limits: StateLimits, watch: Watch | None = None, modules: Any = None
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    watch: Watch | None = None,
+    modules: Any = None,
 ) -> Space:
     """All states that can be reached before the goal is decided.
 
@@ -103,7 +107,7 @@ def explore(
         LimitError: there are more states than allowed.
     """
     kernel_module, search_module = modules or _modules()
-    compiled = checker.compiled(asked)
+    compiled = checker.compiled(property_)
     goal = compiled.goal
     program = compiled.program
     steps, lower, depth = _bounds(goal)
@@ -128,9 +132,9 @@ def explore(
             case codes.PART:
                 continue
             case codes.COMPLETE:
-                return Space(checker, asked, search)
+                return Space(checker, property_, search)
             case codes.FAULT:
-                return Space(checker, asked, search, search.problem, TraceProblem(0, *search.fault()))
+                return Space(checker, property_, search, search.problem, TraceProblem(0, *search.fault()))
             case codes.STATES:
                 raise LimitError(search.count, f"there are more than {limits.states:,} (--max-states)")
             case codes.MEMORY:

@@ -56,8 +56,8 @@ class _Question:
         self.space = space
         self.work = work
         self.module = module
-        self.goal = space.asked.goal
-        self.question = space.asked.question
+        self.goal = space.compiled_property.goal
+        self.question = space.compiled_property.question
         self.is_precise = True
 
     def values(self) -> GoalValues:

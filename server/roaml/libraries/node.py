@@ -10,8 +10,8 @@ from functools import cached_property
 from roaml.roles import Direction, NodeKind
 
 EVENT_ATTRIBUTE = "_event_probability"
-"""The attribute that gives a node which asks about the world the probability of the event at a tick. The libraries
-ignore it (docs/spec/mocks.md#world)."""
+"""The attribute that sets the probability of an event of the world at a tick, for a node that reads such an event. The
+libraries ignore it (docs/spec/mocks.md#world)."""
 WORLD_NODES = frozenset(
     ("DistanceController", "GoalUpdatedController", "SpeedController", "PathLongerOnApproach", "PauseResumeController")
 )

@@ -3,28 +3,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
-from roaml.lower.build import event_data, integer, name
+from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
+from roaml.lower.build import event_data, name
 from roaml.lower.program import TranslatableSystem
+from roaml.lower.programs.blackboard import board_automaton
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.events import EventRole, Role, ScxmlEvent
+from roaml.scxml.events import Role
 from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Target, Transition
-from roaml.scxml.names import BLACKBOARD, BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
+from roaml.scxml.names import BLACKBOARD
 from roaml.text import Location
-
-if TYPE_CHECKING:
-    from roaml.lower.programs.board import Board
-    from roaml.lower.programs.entries import BoardEntry
-
-REQUEST = ScxmlEvent(BLACKBOARD_REQUEST, EventRole.BLACKBOARD_READ)
-ANSWER = ScxmlEvent(BLACKBOARD_ANSWER)
-
-
-def blackboard_write(variable: str) -> ScxmlEvent:
-    return ScxmlEvent(f"{BLACKBOARD_WRITE_PREFIX}{variable}", EventRole.BLACKBOARD_WRITE)
 
 
 def blackboard(program: TranslatableSystem) -> Automaton | None:
@@ -53,42 +42,6 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
     asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
     idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
     return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
-
-
-def board_automaton(board: Board, origin: Location, *, is_read: bool) -> Automaton | None:
-    """The automaton that stores the entries of a tree that is executed as BehaviorTree.CPP executes it; `None` if there
-    are none.
-
-    Args:
-        is_read: whether a node reads an entry.
-    """
-    entries = [*board.entries.values(), *board.flag_of.values()]
-    if not entries:
-        return None
-    data = tuple(Data(entry.variable, BASE_TYPES[entry.type_name], entry.start, origin) for entry in entries)
-    writes = [
-        Transition(
-            blackboard_write(entry.variable),
-            None,
-            (Target("idle", 1.0, _stored(board, entry, origin), origin),),
-            origin,
-        )
-        for entry in entries
-    ]
-    answer = Send(ANSWER, tuple(Param(entry.variable, name(entry.variable), origin) for entry in entries), origin)
-    asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
-    idle = State("idle", (), (), (*writes, asked) if is_read else tuple(writes), origin)
-    return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
-
-
-def _stored(board: Board, entry: BoardEntry, origin: Location) -> tuple[Assign, ...]:
-    """The assignments of the blackboard when an entry is written: its value, and the flags of the nodes that observe
-    it."""
-    flags = board.flags.get(entry.variable, ())
-    return (
-        Assign(name(entry.variable), event_data("value"), origin),
-        *(Assign(name(flag.variable), integer(1), origin) for flag in flags),
-    )
 
 
 def _place(program: TranslatableSystem, variable: str) -> Location:

@@ -7,47 +7,46 @@ from collections.abc import Iterable
 
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Call, Expr, Index, Member, Name, Number
-from roaml.lower.program import NOWHERE
-from roaml.text import Span
+from roaml.text import NO_SPAN, Span
 
 EVENT_DATA = "_event"
 
 
-def name(identifier: str, span: Span = NOWHERE) -> Name:
+def name(identifier: str, span: Span = NO_SPAN) -> Name:
     return Name(span, identifier)
 
 
-def integer(value: int, span: Span = NOWHERE) -> Number:
+def integer(value: int, span: Span = NO_SPAN) -> Number:
     return Number(span, value, False)
 
 
-def event_data(parameter: str, span: Span = NOWHERE) -> Expr:
+def event_data(parameter: str, span: Span = NO_SPAN) -> Expr:
     """The expression `_event.data.<parameter>`: a parameter of the event that the transition waits for."""
     return Member(span, Member(span, Name(span, EVENT_DATA), "data", span), parameter, span)
 
 
-def random_number(span: Span = NOWHERE) -> Expr:
+def random_number(span: Span = NO_SPAN) -> Expr:
     return Call(span, Member(span, Name(span, "Math"), "random", span), ())
 
 
-def length(array: Expr, span: Span = NOWHERE) -> Expr:
+def length(array: Expr, span: Span = NO_SPAN) -> Expr:
     return Member(span, array, "length", span)
 
 
-def indexed(expr: Expr, indexes: Iterable[Expr], span: Span = NOWHERE) -> Expr:
+def indexed(expr: Expr, indexes: Iterable[Expr], span: Span = NO_SPAN) -> Expr:
     for index in indexes:
         expr = Index(span, expr, index)
     return expr
 
 
-def binary(left: Expr, operator: Operator, right: Expr, span: Span = NOWHERE) -> Expr:
+def binary(left: Expr, operator: Operator, right: Expr, span: Span = NO_SPAN) -> Expr:
     return Binary(span, operator, span, left, right)
 
 
-def equal(left: Expr, right: Expr, span: Span = NOWHERE) -> Expr:
+def equal(left: Expr, right: Expr, span: Span = NO_SPAN) -> Expr:
     return binary(left, Operator.EQUAL, right, span)
 
 
-def both(left: Expr | None, right: Expr, span: Span = NOWHERE) -> Expr:
+def both(left: Expr | None, right: Expr, span: Span = NO_SPAN) -> Expr:
     """The expression `left && right`; if `left` is `None`, only `right`."""
     return right if left is None else binary(left, Operator.AND, right, span)

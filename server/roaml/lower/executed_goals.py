@@ -18,11 +18,11 @@ from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext
-from roaml.lower.program import NOWHERE
-from roaml.model.system import Channel, sanitise
+from roaml.model.system import Channel
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Data
-from roaml.text import Location
+from roaml.scxml.names import sanitise
+from roaml.text import NO_SPAN, Location
 
 GOAL_ID = "goal_id"
 _BOOL = BASE_TYPES["bool"]
@@ -76,7 +76,7 @@ class ExecutedGoals:
                     origin,
                 )
             case ProtocolPart.THREAD_FREE:
-                yield from self._assign(action, lambda _, __: Boolean(NOWHERE, False), origin)
+                yield from self._assign(action, lambda _, __: Boolean(NO_SPAN, False), origin)
 
     def _of(self, action: Channel) -> Mapping[int, str]:
         return self.variables.get(action.name, {})

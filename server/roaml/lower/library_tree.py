@@ -17,7 +17,7 @@ from functools import cached_property
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import BEHAVIORTREE_CPP, Node, Port, library, node_in_libraries
 from roaml.lower.programs.assembly import NodeProgram, programs
-from roaml.lower.programs.automaton import MACHINE, NodeTooLargeError, node_automaton
+from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
@@ -155,9 +155,9 @@ class LibraryTreeBuilder:
             return
         conditions = [*self.subtrees_above(instance)]
         if program is None and instance.scripts:
-            conditions.append(replace(node, type=MACHINE))
+            conditions.append(replace(node, type=CONDITION_MACHINE if _is_condition(instance) else MACHINE))
         for level, condition in enumerate(conditions):
-            kind = programs()[MACHINE if condition.type == MACHINE else "SubTree"]
+            kind = programs()[condition.type if condition.type in MACHINES else "SubTree"]
             name = f"{CONDITIONS_PREFIX}{_address(instance.number, level)}_{condition.name}"
             yield _Part(condition, kind, _address(instance.number, level), name)
         yield _Part(node, program, _address(instance.number, len(conditions)), instance.automaton)
@@ -297,7 +297,7 @@ class LibraryTreeBuilder:
     def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...]) -> NodeCode:
         node = part.node
         number = self.index[id(part)]
-        is_condition = node.type in (MACHINE, "SubTree")
+        is_condition = node.type in (*MACHINES, "SubTree")
         values = PortValues() if is_condition else port_values(node, program, self.board)
         if program.asks_world:
             probability = event_probability(node)
@@ -350,6 +350,12 @@ def _declared(automaton: SystemAutomaton) -> Node:
     node = node_in_libraries(name)
     assert node is not None, name
     return node
+
+
+def _is_condition(instance: Instance) -> bool:
+    """Whether a node is a condition: so says the tree's file or the library that declares the node."""
+    known = node_in_libraries(instance.plugin)
+    return instance.condition or (known is not None and known.kind is NodeKind.CONDITION)
 
 
 def _of_machine(outline: MachineOutline) -> Node:

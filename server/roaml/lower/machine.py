@@ -11,7 +11,7 @@ from decimal import Decimal, InvalidOperation
 from roaml.exhaustive import assert_never
 from roaml.expr.tree import Boolean, Expr
 from roaml.expr.types import Type
-from roaml.lower.blackboard import ANSWER, REQUEST
+from roaml.lower.blackboard_events import ANSWER, REQUEST
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext, type_of, variables_of
 from roaml.lower.data import lower_data
@@ -19,18 +19,19 @@ from roaml.lower.executed_goals import executed_goals
 from roaml.lower.expressions import LoweringScope, lower_expr
 from roaml.lower.interfaces import ActionEvents, ServiceEvents, topic_event, tree_event
 from roaml.lower.nodes import builtin_ports
-from roaml.lower.program import NOWHERE, TranslatableSystem
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.statements import StatementLowering, literal_index
 from roaml.model import machine as hl
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
-from roaml.model.system import SystemAutomaton, sanitise
+from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Send, State, Statement, Target, Transition
-from roaml.scxml.names import STATUSES, named
+from roaml.scxml.names import STATUSES, TreeEventKind, named, sanitise
+from roaml.text import NO_SPAN
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
 """(name of a plain automaton, handle of a timer) -> the event of the ticks of the timer."""
@@ -96,7 +97,7 @@ class _ChartLowering:
         for event in dict.fromkeys(of_threads):
             if event not in own:
                 target = Target(state.id, 1.0, (), state.origin)
-                yield Transition(event, Boolean(NOWHERE, False), (target,), state.origin)
+                yield Transition(event, Boolean(NO_SPAN, False), (target,), state.origin)
 
     def cancel_events(self, chart: Chart) -> Iterator[ScxmlEvent]:
         for state in chart.states:
@@ -244,7 +245,8 @@ class _ChartLowering:
 
     def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         assert handler.child is not None
-        answer = "response" if handler.trigger is ProtocolPart.CHILD_STATUS else "halt_response"
+        is_status = handler.trigger is ProtocolPart.CHILD_STATUS
+        answer = TreeEventKind.RESPONSE if is_status else TreeEventKind.HALT_RESPONSE
         children = self.statements.children
         if (index := literal_index(handler.child)) is not None:
             yield tree_event(children[index], answer), cond
@@ -264,8 +266,10 @@ class _ChartLowering:
             case ProtocolPart.TICK:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
-            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return tree_event(self.statements.address, trigger.value.removeprefix("bt-"))
+            case ProtocolPart.BT_HALT:
+                return tree_event(self.statements.address, TreeEventKind.HALT)
+            case ProtocolPart.BT_TICK:
+                return tree_event(self.statements.address, TreeEventKind.TICK)
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:

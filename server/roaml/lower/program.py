@@ -11,7 +11,7 @@ from roaml.model.machine import Machine
 from roaml.model.parameters import Parameters
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.value_types import Environment
-from roaml.text import Location, Span
+from roaml.text import Location
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
@@ -52,7 +52,3 @@ class TranslatableSystem:
 
     def node(self, number: int) -> Location:
         return self.nodes.get(number, self.place)
-
-
-NOWHERE = Span(0, 0)
-"""The span of expressions that the lowering creates. Their place is the origin of the enclosing statement."""

@@ -19,7 +19,7 @@ from roaml.expr.types import BASE_TYPES
 from roaml.lower.build import binary, equal, integer, name
 from roaml.lower.interfaces import topic_event
 from roaml.lower.machine import copies
-from roaml.lower.program import NOWHERE, TranslatableSystem
+from roaml.lower.program import TranslatableSystem
 from roaml.lower.tree import tick_timer
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.machine import Chart, Declaration, Machine
@@ -31,7 +31,7 @@ from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Branch, Data, If, Param, Send, State, Statement, Target, Transition
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.names import CLOCK, CLOCK_STEP, FIELD_PREFIX, TIME_IS_OVER, TIMER_PREFIX, safe_name
-from roaml.text import Location
+from roaml.text import NO_SPAN, Location
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,8 +159,8 @@ def _clock_message(now: Expr, units_per_second: int, origin: Location) -> Iterab
     nanoseconds: Expr = integer(0)
     if units_per_second > 1:
         count = integer(units_per_second)
-        floor = Member(NOWHERE, name("Math"), "floor", NOWHERE)
-        seconds = Call(NOWHERE, floor, (binary(now, Operator.DIVIDE, count),))
+        floor = Member(NO_SPAN, name("Math"), "floor", NO_SPAN)
+        seconds = Call(NO_SPAN, floor, (binary(now, Operator.DIVIDE, count),))
         rest = binary(now, Operator.REMAINDER, count)
         nanoseconds = binary(rest, Operator.MULTIPLY, integer(NANOSECONDS_PER_SECOND // units_per_second))
     yield Param(f"{FIELD_PREFIX}sec", seconds, origin)

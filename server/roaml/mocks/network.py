@@ -10,11 +10,11 @@ from fractions import Fraction
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
-from roaml.lower.blackboard import board_automaton
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import NodeTooLargeError, node_automaton
+from roaml.lower.programs.blackboard import board_automaton
 from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
 from roaml.lower.programs.entries import BoardEntry
@@ -38,7 +38,7 @@ from roaml.model.timing import period
 from roaml.roles import NodeKind
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
-from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
+from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX, TreeEventKind
 from roaml.text import Location
 
 DEFAULT_RATE = Fraction(10)
@@ -240,7 +240,7 @@ class _Builder:
 def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location, counts: bool) -> Automaton:
     """The automaton that ticks the tree until the tree returns a status other than RUNNING; with `counts`, it also
     counts the ticks."""
-    response = tree_event(ROOT_NUMBER, "response")
+    response = tree_event(ROOT_NUMBER, TreeEventKind.RESPONSE)
 
     def to(state: str, *body: Statement) -> tuple[Target, ...]:
         return (Target(state, 1.0, body, origin),)
@@ -256,7 +256,7 @@ def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin:
     ]
     data = (Data(TICKS, BASE_TYPES["int64"], integer(0), origin),) if counts else ()
     counted = [Assign(name(TICKS), binary(name(TICKS), Operator.ADD, integer(1)), origin)] if counts else []
-    call = Send(tree_event(ROOT_NUMBER, "tick"), (), origin)
+    call = Send(tree_event(ROOT_NUMBER, TreeEventKind.TICK), (), origin)
     idle = Transition(tick, None, to("wait_tick_res", *counted, call), origin)
     states = (
         State("idle", (), (), (idle,), origin),

@@ -20,6 +20,7 @@ from typing import TypeAlias
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
 from roaml.script.names import names_in
+from roaml.scxml.names import NODE_PREFIX
 from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
@@ -150,7 +151,7 @@ class Instance:
 
     @property
     def automaton(self) -> str:
-        return f"BT_plugin_{self.number}_{self.name}"
+        return f"{NODE_PREFIX}{self.number}_{self.name}"
 
     def port(self, key: str) -> PortValue | None:
         return next((value for name, value in self.ports if name == key), None)

@@ -470,7 +470,7 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
         case BadComparison(operator=operator, left=left, right=right):
             return f"`{operator}` cannot compare `{left}` with `{right}`"
         case UnknownFunction(name=name):
-            return f"there is no `{name}`"
+            return f"there is no function `{name}`; only functions of `Math` can be called"
         case DivisionByZero():
             return "division by zero"
         case RandomUsed():

@@ -26,7 +26,6 @@ from roaml.project.paths import full
 from roaml.suggest import close_names, did_you_mean
 from roaml.toml import Path
 
-SCHEDULERS = ("uniform",)
 SEVERITIES = {severity.label: severity for severity in Severity}
 
 
@@ -44,8 +43,8 @@ class Settings:
         ignore: the codes of the rules that are not reported.
         severities: code -> the severity that replaces the default of the rule.
         warnings_as_errors: whether warnings are reported as errors.
-        scheduler: "uniform" if `verify` assumes uniform choices even if a property requests the minimum or maximum over
-            all schedulers; otherwise "".
+        only_uniform: whether `verify` assumes uniform choices even if a property requests the minimum or maximum over
+            all schedulers.
         expectations: name of a property -> the result that `verify` expects.
         limits: the maximum size of a system that is translated.
         overrides: parameters that replace those in system files; they are not read from a configuration.
@@ -61,7 +60,7 @@ class Settings:
     ignore: frozenset[str] = frozenset()
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
-    scheduler: str = ""
+    only_uniform: bool = False
     expectations: Mapping[str, Comparison] = field(default_factory=dict)
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
@@ -245,11 +244,10 @@ def _verify(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str,
             close = close_names(key, ("scheduler", "expect"))
             message = f"there is no setting `verify.{key}`; valid settings are `expect` and `scheduler`"
             problems.append(SettingProblem((*path, key), message, is_key=True, instead=close))
-        elif setting not in SCHEDULERS:
-            message = f"`verify.scheduler` must be {' or '.join(f'`{name}`' for name in SCHEDULERS)}"
-            problems.append(SettingProblem((*path, key), message))
+        elif setting != "uniform":
+            problems.append(SettingProblem((*path, key), "`verify.scheduler` must be `uniform`"))
         else:
-            fields["scheduler"] = setting
+            fields["only_uniform"] = True
     return fields
 
 

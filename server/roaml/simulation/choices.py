@@ -160,9 +160,9 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
         return "time passes"
     event = sent_by(action)
     spoken = event or received_by(action)
-    told = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), clients) if names else ""
-    if told:
-        return told
+    description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), clients) if names else ""
+    if description:
+        return description
     if event:
         return f"{_listed(names)} {_verb(names, 'sends', 'send')} {said(event, clients)}"
     event = received_by(action)

@@ -92,16 +92,16 @@ class Run:
     def __init__(
         self,
         checker: ModelChecker,
-        asked: CompiledProperty,
+        property_: CompiledProperty,
         seed: int,
         trace: int = 0,
         decisions: Iterable[ByHand | None] = (),
     ) -> None:
         self.checker = checker
-        self.asked = asked
+        self.compiled_property = property_
         self.seed = seed
         self.trace = trace
-        compiled = checker.compiled(asked)
+        compiled = checker.compiled(property_)
         self._program = compiled.program
         self._kernel = Kernel(compiled.program, compiled.goal)
         self.legend = checker.legend

@@ -12,22 +12,24 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
-from roaml.smc.record import VERDICTS
+from roaml.smc.record import VERDICTS, TraceVerdict
 
 
 class Decided(NamedTuple):
-    """A property is decided in the state after `position` steps; `verdict` is `passed` or `failed`."""
+    """A property is decided in the state after `position` steps; `verdict` is `PASSED` or `FAILED`."""
 
     name: str
     position: int
-    verdict: str
+    verdict: TraceVerdict
 
 
 class Verdicts:
     """Follows a run, and stores where each property is decided."""
 
     def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
-        self._followers = [_PropertyFollower(checker, asked, seed, trace) for asked in checker.asked]
+        self._followers = [
+            _PropertyFollower(checker, property_, seed, trace) for property_ in checker.compiled_properties
+        ]
 
     def follow(self, decisions: Sequence[ByHand | None], position: int, has_ended: bool) -> list[Decided]:
         """Follow the run up to a position; return the properties that are decided exactly there.
@@ -50,15 +52,15 @@ class Verdicts:
         for follower in self._followers:
             follower.discard(position)
 
-    def verdicts(self, position: int) -> dict[str, str]:
+    def verdicts(self, position: int) -> dict[str, TraceVerdict]:
         """The verdict of each property at a position. The run must have been followed up to it."""
         return {follower.name: follower.verdict(position) for follower in self._followers}
 
 
 class _PropertyFollower:
-    def __init__(self, checker: ModelChecker, asked: CompiledProperty, seed: int, trace: int) -> None:
-        compiled = checker.compiled(asked)
-        self.name = asked.question.name
+    def __init__(self, checker: ModelChecker, property_: CompiledProperty, seed: int, trace: int) -> None:
+        compiled = checker.compiled(property_)
+        self.name = property_.question.name
         self.decided: Decided | None = None
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._seed, self._trace = seed, trace
@@ -96,6 +98,6 @@ class _PropertyFollower:
         if status not in (UNKNOWN, FAULTY):
             self.decided = Decided(self.name, self._position, VERDICTS[status])
 
-    def verdict(self, position: int) -> str:
+    def verdict(self, position: int) -> TraceVerdict:
         is_known = self.decided is not None and self.decided.position <= position
-        return self.decided.verdict if self.decided is not None and is_known else VERDICTS[UNKNOWN]
+        return self.decided.verdict if self.decided is not None and is_known else TraceVerdict.UNDECIDED

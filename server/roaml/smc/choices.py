@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Model, ModelType
 from roaml.smc.batch import Payload
 from roaml.smc.lss import candidates, described, probe
@@ -22,16 +23,21 @@ from roaml.smc.program import Program
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
 
-EXPLORATION, SAMPLING, UNIFORM = "all states", "sampled schedulers", "uniform choices"
-"""The method by which an extreme was found."""
 NO_NONDETERMINISM = "the model has no nondeterminism"
 """The reason why all schedulers of a model of type `dtmc` agree."""
-
 _RESULT_STEPS_PER_PROBE_STEP = 5
 """The effort for the result, divided by the effort for schedulers."""
 _MIN_STEPS, _MAX_STEPS = 50_000, 400_000
 _MAX_CHEAP_REGISTERS = 200
 """The number of registers and automata up to which a step has the normal cost; with more, a step costs more."""
+
+
+class ExtremeMethod(Vocabulary):
+    """The method by which an extreme was found."""
+
+    EXPLORATION = "all states"
+    SAMPLING = "sampled schedulers"
+    UNIFORM = "uniform choices"
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,20 +48,20 @@ class Extreme:
         value: the estimate, or the exact value.
         bounds: an interval that contains a probability which some scheduler achieves: with the confidence of the
             method, or certainly if all states were explored.
-        method: the method: `EXPLORATION`, `SAMPLING` or `UNIFORM`.
+        method: the method by which the extreme was found.
         scheduler: a description of the scheduler that achieves the value; empty if all schedulers were considered.
         traces: the number of traces on which the estimate is based.
     """
 
     value: float
     bounds: Bounds
-    method: str
+    method: ExtremeMethod
     scheduler: str = ""
     traces: int = 0
 
     @property
     def is_exact(self) -> bool:
-        return self.method == EXPLORATION
+        return self.method is ExtremeMethod.EXPLORATION
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +87,7 @@ class Choices:
         return self.minimum.bounds.upper < self.maximum.bounds.lower
 
 
-def look_at_choices(
+def check_choices(
     model: Model,
     program: Program,
     payload: Payload,
@@ -114,7 +120,7 @@ def look_at_choices(
     if extremes is None:
         return Choices("", own_least, own_greatest)
     sampled = [
-        Extreme(extreme.value, extreme.bounds, SAMPLING, described(by, automata), extreme.tally.traces)
+        Extreme(extreme.value, extreme.bounds, ExtremeMethod.SAMPLING, described(by, automata), extreme.tally.traces)
         for extreme, by in ((extremes.least, extremes.least_by), (extremes.greatest, extremes.greatest_by))
     ]
     least = sampled[0] if sampled[0].bounds.upper < own_least.bounds.lower else own_least
@@ -123,5 +129,5 @@ def look_at_choices(
 
 
 def _of_answer(answer: Answer) -> tuple[Extreme, Extreme]:
-    own = Extreme(answer.value, answer.bounds, UNIFORM, traces=answer.tally.traces)
+    own = Extreme(answer.value, answer.bounds, ExtremeMethod.UNIFORM, traces=answer.tally.traces)
     return own, own

@@ -21,11 +21,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary
 from roaml.smc.batch import Payload, Task
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import ADAPTIVE, FIXED, SPRT, Answer, Options, Tally, TraceFaultError, answer
+from roaml.smc.run import Answer, EstimationMethod, Options, Tally, TraceFaultError, answer
 
 INITIAL_SCHEDULERS = 256
 """The initial number of memoryless schedulers."""
@@ -100,11 +101,14 @@ def candidates(
     return [*range(1, memoryless + 1), *biased, *remembering]
 
 
-LEAST, GREATEST = "least", "greatest"
-SIDES = (LEAST, GREATEST)
+class Side(Vocabulary):
+    """The probability that is searched for."""
+
+    LEAST = "least"
+    GREATEST = "greatest"
 
 
-class Side(NamedTuple):
+class SelectedScheduler(NamedTuple):
     """The selected scheduler for the minimum or the maximum probability, and its traces."""
 
     scheduler: int
@@ -126,14 +130,14 @@ class Search:
         selected: the selected scheduler of each side and its traces so far.
     """
 
-    side: str = LEAST
+    side: Side = Side.LEAST
     round: int = 0
     rounds: int = 0
     left: int = 0
     done: int = 0
     best: float | None = None
     tried: int = 0
-    selected: dict[str, Side] = field(default_factory=dict)
+    selected: dict[Side, SelectedScheduler] = field(default_factory=dict)
 
 
 def search(
@@ -156,18 +160,18 @@ def search(
         TraceFaultError: a trace failed.
     """
     state.tried = len(schedulers)
-    told = watch or (lambda _: None)
+    report = watch or (lambda _: None)
     usual = answer(
-        payload, question, replace(options, method=FIXED, max_traces=UNIFORM_TRACES), pool, pulse=pulse
+        payload, question, replace(options, method=EstimationMethod.FIXED, max_traces=UNIFORM_TRACES), pool, pulse=pulse
     ).tally
     longest = min(options.max_steps, _longest(usual.steps / usual.traces))
-    for side in SIDES:
+    for side in Side:
         state.side, state.round, state.best = side, 0, None
-        best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, told, pulse)
-        state.selected[side] = Side(best, Tally())
+        best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, report, pulse)
+        state.selected[side] = SelectedScheduler(best, Tally())
         plain = sampling_options(options)
         tally = state.selected[side].tally
-        answer(payload, question, plain, pool, tally, lambda _: told(state), pulse, scheduler=best)
+        answer(payload, question, plain, pool, tally, lambda _: report(state), pulse, scheduler=best)
 
 
 def _longest(length: float) -> int:
@@ -182,7 +186,7 @@ def _longest(length: float) -> int:
 
 def sampling_options(options: Options) -> Options:
     """The options for the estimate under a selected scheduler, without a threshold."""
-    return replace(options, method=ADAPTIVE) if options.method == SPRT else options
+    return replace(options, method=EstimationMethod.ADAPTIVE) if options.method is EstimationMethod.SPRT else options
 
 
 def probe(
@@ -236,7 +240,7 @@ def probe(
     answers = []
     for best in (min(shares, key=shares.__getitem__), max(shares, key=shares.__getitem__)):
         max_traces = max(20, min(400, int(budget / 2 / max(1.0, lengths[best]))))
-        fixed = replace(options, method=FIXED, max_traces=max_traces, max_steps=longest)
+        fixed = replace(options, method=EstimationMethod.FIXED, max_traces=max_traces, max_steps=longest)
         answers.append((answer(payload, question, fixed, pool, pulse=pulse, scheduler=best), best))
     (least, least_by), (greatest, greatest_by) = answers
     return Extremes(least, greatest, least_by, greatest_by, len(shares))
@@ -248,11 +252,11 @@ def _best(
     pool: Pool,
     schedulers: Sequence[int],
     state: Search,
-    told: Callable[[Search], None],
+    report: Callable[[Search], None],
     pulse: Pulse | None,
 ) -> int:
     """The scheduler with the smallest or greatest share of successes; an abandoned trace is half a success."""
-    sign = 1 if state.side == GREATEST else -1
+    sign = 1 if state.side is Side.GREATEST else -1
     candidates = dict.fromkeys(schedulers, (0.0, 0))
     tried, first = FIRST_ROUND_TRACES, FIRST_SELECTION_TRACE
     state.rounds = (len(candidates) - 1).bit_length()
@@ -267,7 +271,7 @@ def _best(
             good = verdicts.count(TRUE) + verdicts.count(UNKNOWN) / 2
             candidates[task.scheduler] = successes + good, traces + tried
             state.done += 1
-            told(state)
+            report(state)
         ranked = sorted(candidates, key=lambda n: (-sign * candidates[n][0] / candidates[n][1], n))
         successes, traces = candidates[ranked[0]]
         state.best = successes / traces

@@ -45,6 +45,7 @@ from roaml.observers.properties import (
     once,
 )
 from roaml.smc.normal_form import (
+    TRUE,
     Disjunction,
     NestingError,
     are_opposite,
@@ -216,10 +217,11 @@ class _Recogniser:
             case [BinaryPath(left=left, right=right) as path]:
                 close = _close_of_existence(trigger, left, right)
                 if close is not None:
+                    # Each trigger needs an event of its own before `close`, so this is a response.
                     is_until = path.operator is BinaryPathOperator.UNTIL
                     scope = ScopeKind.AFTER_UNTIL if is_until else ScopeKind.BETWEEN
-                    event = {LEFT: _condition(right), OPEN: trigger, CLOSE: close}
-                    return self.pattern(Pattern.EXISTENCE, scope, event)
+                    request = _Request(trigger, _condition(right))
+                    return self.response(request, scope, {OPEN: TRUE, CLOSE: close})
                 stays = self.after_until(trigger, left, _condition(right))
                 if path.operator is BinaryPathOperator.UNTIL:
                     ends = self.response(_Request(trigger, _condition(right)), ScopeKind.GLOBALLY)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
+from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Destination, Edge, System
 from roaml.smc.batch import TraceProblem
 from roaml.smc.compile import Legend
@@ -25,7 +26,23 @@ Plain: TypeAlias = "bool | int | float | list[Plain]"
 SHORTEST = -1
 """The number of a trace that was not generated at random: the shortest possible one."""
 
-VERDICTS = {TRUE: "passed", FALSE: "failed", UNKNOWN: "undecided"}
+
+class TraceVerdict(Vocabulary):
+    """The verdict of a trace on a property, as the results name it."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    UNDECIDED = "undecided"
+    FAULT = "fault"
+
+
+VERDICTS = {
+    TRUE: TraceVerdict.PASSED,
+    FALSE: TraceVerdict.FAILED,
+    UNKNOWN: TraceVerdict.UNDECIDED,
+    FAULTY: TraceVerdict.FAULT,
+}
+"""The verdicts of the kernel."""
 
 
 class RecordedVariable(NamedTuple):
@@ -155,12 +172,12 @@ class Recorder:
     """Simulates single traces of a question."""
 
     def __init__(
-        self, checker: ModelChecker, asked: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
+        self, checker: ModelChecker, property_: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
     ) -> None:
-        compiled = checker.compiled(asked)
+        compiled = checker.compiled(property_)
         self.legend = checker.legend
         self.system = checker.model.system
-        self.asked = asked
+        self.compiled_property = property_
         self.seed = seed
         self.max_steps = max_steps
         self.scheduler = scheduler

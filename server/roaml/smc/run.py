@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from roaml.exhaustive import Vocabulary
 from roaml.smc.batch import Payload, Rows, Task, TraceProblem
 from roaml.smc.end import End
 from roaml.smc.goal import Activity, Question
@@ -20,8 +21,16 @@ from roaml.smc.pool import Pulse, Runner
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
 
-ADAPTIVE, OKAMOTO, SPRT, FIXED = "adaptive", "okamoto", "sprt", "fixed"
-METHODS = (ADAPTIVE, OKAMOTO, SPRT, FIXED)
+
+class EstimationMethod(Vocabulary):
+    """What determines the number of traces: the width of the interval, Okamoto's bound, a sequential test, or the
+    user."""
+
+    ADAPTIVE = "adaptive"
+    OKAMOTO = "okamoto"
+    SPRT = "sprt"
+    FIXED = "fixed"
+
 
 FIRST_BATCH_TRACES = 100
 MAX_BATCH_TRACES = 5000
@@ -59,16 +68,18 @@ class Options:
     max_traces: int | None = None
     max_steps: int = 1_000_000
     seed: int = 0
-    method: str = ADAPTIVE
+    method: EstimationMethod = EstimationMethod.ADAPTIVE
 
     def __post_init__(self) -> None:
         if not 0 < self.confidence < 1:
             raise ValueError("the confidence must be a number between 0 and 1")
         if not MIN_EPSILON <= self.epsilon < 1:
             raise ValueError(f"epsilon must be a number of at least {MIN_EPSILON:g} and less than 1")
-        if self.method not in METHODS:
-            raise ValueError(f"there is no method `{self.method}`; the methods are {', '.join(METHODS)}")
-        if self.method == FIXED and self.max_traces is None:
+        if not isinstance(self.method, EstimationMethod):
+            raise ValueError(
+                f"there is no method `{self.method}`; the methods are {', '.join(map(str, EstimationMethod))}"
+            )
+        if self.method is EstimationMethod.FIXED and self.max_traces is None:
             raise ValueError("the method `fixed` needs a number of traces (--max-traces)")
 
 
@@ -383,7 +394,9 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
     """
     error = 1 - options.confidence
     confidence = (
-        1 - error * STOPPING_ERROR_SHARE if options.method == ADAPTIVE and not is_anytime else options.confidence
+        1 - error * STOPPING_ERROR_SHARE
+        if options.method is EstimationMethod.ADAPTIVE and not is_anytime
+        else options.confidence
     )
     if question.is_reward:
         lower, upper = tally.mean.anytime_bounds(confidence) if is_anytime else tally.mean.bounds(confidence)
@@ -398,20 +411,22 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
 def _stops_freely(tally: Tally, options: Options) -> bool:
     """Whether the number of traces depends on the results in a way for which only an anytime-valid interval is correct.
     This is the case after a sequential test, or if the options were changed after results were known."""
-    return options.method == SPRT or tally.is_revised
+    return options.method is EstimationMethod.SPRT or tally.is_revised
 
 
 def wanted_traces(options: Options) -> int | None:
     """The number of traces of a method that is not adaptive; `None` for an adaptive one."""
-    if options.method == OKAMOTO:
+    if options.method is EstimationMethod.OKAMOTO:
         return okamoto(options.confidence, options.epsilon)
-    return options.max_traces if options.method == FIXED else None
+    return options.max_traces if options.method is EstimationMethod.FIXED else None
 
 
 def _limit(question: Question, options: Options) -> int | None:
     """The maximum number of traces; `None` if there is no limit. Okamoto's number is not a limit for a question with
     assumptions, because it is not known in advance how many traces they accept."""
-    required = None if question.is_conditional and options.method == OKAMOTO else wanted_traces(options)
+    required = (
+        None if question.is_conditional and options.method is EstimationMethod.OKAMOTO else wanted_traces(options)
+    )
     limits = [limit for limit in (options.max_traces, required) if limit is not None]
     return min(limits) if limits else None
 
@@ -490,7 +505,7 @@ def _add_end(tally: Tally, reason: int, seen: Seen) -> None:
 
 def ratio_of(question: Question, options: Options) -> Ratio | None:
     """The sequential test, if one is required."""
-    if options.method != SPRT or question.threshold is None or question.is_reward:
+    if options.method is not EstimationMethod.SPRT or question.threshold is None or question.is_reward:
         return None
     return Ratio(question.threshold.number, options.epsilon, 1 - options.confidence)
 
@@ -499,11 +514,11 @@ def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
     if question.is_conditional:
         if tally.traces == 0 and tally.simulated >= MAX_REJECTED:
             return True
-        if options.method == OKAMOTO:
+        if options.method is EstimationMethod.OKAMOTO:
             return tally.traces >= okamoto(options.confidence, options.epsilon)
-    if options.method in (OKAMOTO, FIXED):
+    if options.method in (EstimationMethod.OKAMOTO, EstimationMethod.FIXED):
         return False
-    if options.method == SPRT and ratio_of(question, options) is not None:
+    if options.method is EstimationMethod.SPRT and ratio_of(question, options) is not None:
         return tally.accepted is not None
     if question.is_reward and tally.traces - tally.successes - tally.undecided:
         return True

@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import MAX_KEPT_TRACES, SPRT, Options, Seen, Tally
+from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, Seen, Tally
 
 _MAX_COUNT = 1 << 62
 """A limit that no counter reaches."""
@@ -51,7 +51,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
-        raise ValueError("it is not a tally") from None
+        raise ValueError("it does not contain the state of a verification") from None
     _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
     _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
     _check_sums(tally, question, options)
@@ -69,7 +69,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     _expect(mean.number == (tally.successes if question.is_reward else 0), "mean")
     _expect(math.isfinite(mean.mean) and math.isfinite(mean.squares) and mean.squares >= 0, "mean")
     _expect(mean.number > 0 or (mean.mean, mean.squares) == (0, 0), "mean")
-    _expect(tally.accepted is None or options.method == SPRT or tally.is_finished, "accepted")
+    _expect(tally.accepted is None or options.method is EstimationMethod.SPRT or tally.is_finished, "accepted")
     counts = {TRUE: tally.successes, FALSE: failures, UNKNOWN: tally.undecided}
     numbers: set[int] = set()
     total = 0

@@ -19,12 +19,11 @@ from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.model import Variable
 from roaml.jani.semantics import evaluate
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
-from roaml.text import Location, Span
+from roaml.text import NO_SPAN, Location
 from roaml.to_jani.assignments import stored_in
 from roaml.to_jani.shapes import ArrayShape, jani_type, shape_of, zero
 from roaml.to_jani.values import JaniScope, Listed, elements_as, lengths_as
 
-_NOWHERE = Span(0, 0)
 _CONSTANTS = JaniScope({}, "", {})
 
 
@@ -88,12 +87,12 @@ class ObservedValues:
     def _sent(self, event: PortEvent, variable: ObservedVariable) -> Expr:
         constant = dict(event.constants).get(variable.kind)
         if constant is not None:
-            return Boolean(_NOWHERE, constant) if isinstance(constant, bool) else Number(_NOWHERE, constant, False)
+            return Boolean(NO_SPAN, constant) if isinstance(constant, bool) else Number(NO_SPAN, constant, False)
         parameter = f"{event.name}__{variable.parameter}"
         if parameter in self.shapes:
-            return Name(_NOWHERE, parameter)
+            return Name(NO_SPAN, parameter)
         # No automaton sends this parameter, so it has its default value.
-        return Boolean(_NOWHERE, False) if is_kind(variable.type, ScalarKind.BOOL) else Number(_NOWHERE, 0, False)
+        return Boolean(NO_SPAN, False) if is_kind(variable.type, ScalarKind.BOOL) else Number(NO_SPAN, 0, False)
 
 
 def observed_values(
@@ -119,7 +118,7 @@ def observed_values(
                 copy = _Copy(f"{prefix}__{variable.id}", shape)
                 copies[variable.id] = copy
                 declared += _declared(copy, variable.initial, property_.origin)
-                value = Name(_NOWHERE, copy.name)
+                value = Name(NO_SPAN, copy.name)
             values[variable.id] = value
     known = {**shapes, **{copy.name: copy.shape for copy in copies.values()}}
     return ObservedValues(property_, values, copies, known, tuple(declared))
@@ -136,10 +135,10 @@ def _stored(
     parameter = f"{event.name}__{variable.parameter}"
     if event.sender or event.constants or parameter not in shapes:
         return None
-    value = Name(_NOWHERE, parameter)
+    value = Name(NO_SPAN, parameter)
     if _is_zero(initial, shape):
         return value
-    return Conditional(_NOWHERE, Name(_NOWHERE, f"{event.name}.valid"), value, initial)
+    return Conditional(NO_SPAN, Name(NO_SPAN, f"{event.name}.valid"), value, initial)
 
 
 def _declared(copy: _Copy, initial: Expr, origin: Location) -> Iterator[Variable]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import VERDICTS
+from roaml.smc.record import VERDICTS, TraceVerdict
 from roaml.smc.run import Seen
 from roaml.text import Location
 from roaml.verification.results import Result
@@ -24,20 +24,20 @@ class Counterexample:
 
     Attributes:
         heading: a summary of the trace, in one sentence.
-        verdict: "failed", "passed" (if that contradicts the expectation) or "undecided".
+        verdict: the verdict of the trace; `PASSED` if that contradicts the expectation.
         trace: the number of the trace.
         lines: one line for each turn of an automaton.
     """
 
     heading: str
-    verdict: str
+    verdict: TraceVerdict
     trace: int
     lines: tuple[StoryLine, ...]
 
 
 def unwanted_verdict(result: Result) -> int:
     """The verdict of the traces that contradict an expectation."""
-    if result.asks_stuck:
+    if result.includes_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
     return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE
@@ -71,24 +71,26 @@ def counterexample(result: Result, place_of: Callable[[Location], str] | None = 
     Args:
         place_of: formats a position; the default is `path:line`.
     """
-    return _told(result, unwanted_trace(result), place_of)
+    return _counterexample(result, unwanted_trace(result), place_of)
 
 
 def witness(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
     """Simulate the trace of `witness_trace` again; `None` if there is none. See `counterexample`."""
-    return _told(result, witness_trace(result), place_of)
+    return _counterexample(result, witness_trace(result), place_of)
 
 
-def _told(result: Result, seen: Seen | None, place_of: Callable[[Location], str] | None) -> Counterexample | None:
+def _counterexample(
+    result: Result, seen: Seen | None, place_of: Callable[[Location], str] | None
+) -> Counterexample | None:
     traces = result.traces
     if seen is None or traces is None:
         return None
     story = traces.story(seen.trace)
-    verdict = VERDICTS.get(story.recording.verdict, "fault")
+    verdict = VERDICTS[story.recording.verdict]
     from roaml.views.story import heading, lines  # noqa: PLC0415 - most verifications do not need a story
 
-    told = lines(story, place_of or _path_and_line(traces.target))
-    return Counterexample(heading(story), verdict, seen.trace, tuple(told))
+    story_lines = lines(story, place_of or _path_and_line(traces.target))
+    return Counterexample(heading(story), verdict, seen.trace, tuple(story_lines))
 
 
 def _path_and_line(target: VerificationTarget) -> Callable[[Location], str]:

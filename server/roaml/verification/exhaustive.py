@@ -12,8 +12,8 @@ from roaml.smc.goal import NOT, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.verification.expectations import Expectation, Verdict
-from roaml.verification.results import ALL, NONE, Exact, ShortestTrace
-from roaml.verification.schedulers import asks_for_minimum
+from roaml.verification.results import Exact, Proof, ShortestTrace
+from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
 """The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
@@ -25,7 +25,7 @@ class UndecidedError(Exception):
 
 def exact_values(
     checker: ModelChecker,
-    asked: CompiledProperty,
+    property_: CompiledProperty,
     limits: StateLimits,
     watch: Watch | None = None,
 ) -> Exact:
@@ -35,16 +35,16 @@ def exact_values(
         UndecidedError: a limit was reached, or the property has no value.
         FaultError: an undefined operation is executed in some state.
     """
-    if asked.question.is_conditional:
+    if property_.question.is_conditional:
         raise UndecidedError(
             "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exhaustive to "
             "estimate the probability under uniform choices"
         )
-    reduced = checker.reduced(asked)
+    reduced = checker.reduced(property_)
     if reduced is not checker:
-        checker, asked = reduced, reduced.asked[0]
+        checker, property_ = reduced, reduced.compiled_properties[0]
     try:
-        space = explore(checker, asked, limits, watch)
+        space = explore(checker, property_, limits, watch)
     except LimitError as error:
         raise UndecidedError(str(error)) from None
     if space.problem is not None:
@@ -67,18 +67,18 @@ def exact_values(
     )
 
 
-def _proof(space: Space, values: GoalValues) -> str:
-    """What all states prove in addition to a probability of 0 or 1: `ALL`, `NONE` or "" (see `Exact`)."""
-    goal = space.asked.goal
-    if space.asked.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
-        return ""
+def _proof(space: Space, values: GoalValues) -> Proof | None:
+    """What all states prove in addition to a probability of 0 or 1 (see `Exact`)."""
+    goal = space.compiled_property.goal
+    if space.compiled_property.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
+        return None
     is_negated = goal.formula.count(NOT) % 2 == 1
     if values.maximum.upper == 0.0 and not is_negated:
-        return NONE
-    return ALL if values.minimum.lower == 1.0 and is_negated else ""
+        return Proof.NONE
+    return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
-def judge_exactly(
+def check_exactly(
     expectation: Expectation,
     exact: Exact,
     question: Question,
@@ -97,7 +97,7 @@ def judge_exactly(
     missed_by = f"by the least value, which is {value:.6g}"
     if only_uniform:
         bounds, value, missed_by = exact.uniform, exact.average, ""
-    elif not asks_for_minimum(question):
+    elif not is_minimised(question):
         bounds, value = exact.maximum, exact.greatest
         missed_by = f"by the greatest value, which is {value:.6g}"
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)

@@ -6,20 +6,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from enum import Enum
 
 from roaml.explicit.path import Path, PathRecorder
 from roaml.explicit.space import Space
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
+from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
-from roaml.smc.story import Story, tell
+from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
-from roaml.verification.schedulers import asks_for_minimum
+from roaml.verification.schedulers import is_minimised
 from roaml.verification.stuck import Stuck
 from roaml.verification.target import VerificationTarget
 
@@ -44,16 +46,22 @@ class ShortestTrace:
         """The whole trace, with the steps that are relevant for the property.
 
         Args:
-            clock: see `roaml.smc.story.tell`.
+            clock: see `roaml.smc.story.build_story`.
         """
         recorder = PathRecorder(self.space, self.path)
         names = {storage.name for storage in recorder.shared}
-        return tell(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
+        return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
-ALL, NONE = "all", "none"
 _SAME = 1e-6
 """The relative distance up to which values are equal."""
+
+
+class Proof(Enum):
+    """What all states prove about the condition of a property."""
+
+    ALL = "the condition holds in all states"
+    NONE = "the condition holds in no state"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +73,8 @@ class Exact:
         uniform: the value with uniform choices.
         states: the number of states.
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
-        proof: for a property about one condition that is always or never reached: `ALL` if the condition holds in all
-            states, `NONE` if it holds in no state; "" otherwise.
+        proof: for a property about one condition that is always or never reached: whether the condition holds in all
+            states or in none; `None` otherwise.
         can_get_stuck: whether a trace can get stuck before the property is decided.
         traces: the shortest traces in which the property fails or holds, if there are any.
     """
@@ -76,7 +84,7 @@ class Exact:
     uniform: Bounds
     states: int
     is_precise: bool = True
-    proof: str = ""
+    proof: Proof | None = None
     can_get_stuck: bool = False
     traces: tuple[ShortestTrace, ...] = field(default=(), repr=False, compare=False)
 
@@ -125,12 +133,12 @@ class SampledResult:
     """The probability under a scheduler that was sampled for the minimum or the maximum.
 
     Attributes:
-        side: `LEAST` or `GREATEST` of `roaml.smc.lss`.
+        side: whether it is the minimum or the maximum.
         scheduler: the number of the scheduler; `words` describes it.
         stuck: the traces that got stuck, if any.
     """
 
-    side: str
+    side: Side
     answer: Answer
     scheduler: int
     words: str
@@ -143,12 +151,12 @@ class Traces:
 
     target: VerificationTarget
     checker: ModelChecker
-    asked: CompiledProperty
+    compiled_property: CompiledProperty
     options: Options
 
     def recorder(self) -> Recorder:
         """A recorder that simulates single traces. It must not be used by several threads at a time."""
-        return Recorder(self.checker, self.asked, self.options.seed, self.options.max_steps)
+        return Recorder(self.checker, self.compiled_property, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
         """The steps of a trace.
@@ -160,7 +168,7 @@ class Traces:
 
     def story(self, trace: int) -> Story:
         """A whole trace, with the steps that are relevant for the property."""
-        return tell(self.recorder(), trace, self.target.clock)
+        return build_story(self.recorder(), trace, self.target.clock)
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,19 +209,21 @@ class Result:
     @property
     def comment(self) -> str:
         """A description of what the property requires, if the model contains one."""
-        return (self.traces.asked.property.comment or "") if self.traces is not None else ""
+        return (self.traces.compiled_property.property.comment or "") if self.traces is not None else ""
 
     @property
-    def asks_stuck(self) -> bool:
+    def includes_stuck(self) -> bool:
         """Whether the question is about stuck traces."""
         traces = () if self.exact is None else self.exact.traces
-        questions = [answer.question for answer in self._answers()] + [t.space.asked.question for t in traces]
+        questions = [answer.question for answer in self._answers()] + [
+            t.space.compiled_property.question for t in traces
+        ]
         return any(question.is_stuck for question in questions)
 
     @property
     def is_uniform(self) -> bool:
         """Whether the result is only about uniform choices."""
-        return self.answer is not None and self.choices is None and not self.asks_stuck
+        return self.answer is not None and self.choices is None and not self.includes_stuck
 
     def asked_value(self) -> tuple[Bounds, float] | None:
         """The exact value that the property asks for, with its bounds: its minimum, its maximum, or its value under
@@ -223,7 +233,7 @@ class Result:
             return None
         if self.is_uniform:
             return exact.uniform, exact.average
-        if asks_for_minimum(answer.question):
+        if is_minimised(answer.question):
             return exact.minimum, exact.least
         return exact.maximum, exact.greatest
 

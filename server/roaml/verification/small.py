@@ -8,7 +8,7 @@ these limits, exploring the states takes less time than a tenth of the default t
 from __future__ import annotations
 
 from roaml.explicit.space import StateLimits
-from roaml.smc.choices import EXPLORATION, Choices, Extreme
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
@@ -21,12 +21,12 @@ EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
 
 
-def values_if_small(checker: ModelChecker, asked: CompiledProperty) -> Exact | None:
+def values_if_small(checker: ModelChecker, property_: CompiledProperty) -> Exact | None:
     """The exact values of a property; `None` if the model is too large, or if only traces can answer the property."""
-    if asked.question.is_conditional:
+    if property_.question.is_conditional:
         return None
     try:
-        exact = exact_values(checker, asked, LIMITS)
+        exact = exact_values(checker, property_, LIMITS)
     except (FaultError, UndecidedError):
         return None
     return exact if exact.is_precise else None
@@ -41,6 +41,6 @@ def choices_of(exact: Exact, agreement: str = "") -> Choices:
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     return Choices(
         agreement or (f"all {states} were explored" if exact.agrees else ""),
-        Extreme(exact.least, exact.minimum, EXPLORATION),
-        Extreme(exact.greatest, exact.maximum, EXPLORATION),
+        Extreme(exact.least, exact.minimum, ExtremeMethod.EXPLORATION),
+        Extreme(exact.greatest, exact.maximum, ExtremeMethod.EXPLORATION),
     )

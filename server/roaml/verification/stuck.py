@@ -12,21 +12,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from roaml.exhaustive import Vocabulary
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import FIXED, Answer, Options, Seen, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, Seen, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 
-WARNING, ERROR = "warning", "error"
-LEVELS = (WARNING, ERROR)
-"""The severities with which a stuck trace can be reported."""
 MAX_TRACES = 100
 """The number of traces that are generated to check whether a system gets stuck."""
 MAX_STEPS_PER_TRACE = 100_000
@@ -34,6 +32,13 @@ MAX_STEPS = 1_000_000
 """The number of steps after which no further traces are generated; this many steps take a tenth of a second."""
 BATCH_SIZE = 10
 """The number of traces in a batch. The number of steps is checked after each batch."""
+
+
+class StuckLevel(Vocabulary):
+    """The severity with which a stuck trace is reported."""
+
+    WARNING = "warning"
+    ERROR = "error"
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +95,7 @@ def chain_of(waiting: Sequence[Wait]) -> Chain:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class StuckResult:
     """The result of the check for stuck traces.
 
     Attributes:
@@ -102,34 +107,37 @@ class Look:
 
     answer: Answer | None
     stuck: Stuck | None
-    level: str = WARNING
+    level: StuckLevel = StuckLevel.WARNING
     fault: str = ""
 
     @property
     def is_met(self) -> bool:
-        return self.stuck is None or self.level != ERROR
+        return self.stuck is None or self.level is not StuckLevel.ERROR
 
 
-def look(
-    target: VerificationTarget, checker: ModelChecker, options: Options, level: str, pulse: Pulse | None = None
-) -> Look:
+def check_stuck(
+    target: VerificationTarget, checker: ModelChecker, options: Options, level: StuckLevel, pulse: Pulse | None = None
+) -> StuckResult:
     """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
     except FaultError as fault:
-        return Look(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
-    return Look(answer, stuck_in(target, checker, checker.stuck, answer), level)
+        return StuckResult(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
+    return StuckResult(answer, stuck_in(target, checker, checker.stuck, answer), level)
 
 
 def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Answer:
-    asked, tally = checker.stuck, Tally()
-    alone = Alone(checker.compiled(asked))
+    property_, tally = checker.stuck, Tally()
+    alone = Alone(checker.compiled(property_))
     for traces in range(BATCH_SIZE, MAX_TRACES + BATCH_SIZE, BATCH_SIZE):
         limits = replace(
-            options, method=FIXED, max_traces=traces, max_steps=min(options.max_steps, MAX_STEPS_PER_TRACE)
+            options,
+            method=EstimationMethod.FIXED,
+            max_traces=traces,
+            max_steps=min(options.max_steps, MAX_STEPS_PER_TRACE),
         )
         tally.is_finished = False
-        answer = checker.answer(asked, limits, alone, tally, pulse=pulse)
+        answer = checker.answer(property_, limits, alone, tally, pulse=pulse)
         if tally.steps >= MAX_STEPS:
             break
     return answer
@@ -141,7 +149,11 @@ def can_be_stuck(checker: ModelChecker) -> bool:
 
 
 def stuck_in(
-    target: VerificationTarget, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
+    target: VerificationTarget,
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    answer: Answer,
+    scheduler: int = 0,
 ) -> Stuck | None:
     """The traces of an answer that got stuck; `None` if none did."""
     ended = answer.tally.ends.get(End.STUCK)
@@ -149,7 +161,7 @@ def stuck_in(
         return None
     from roaml.views.waiting import waits  # noqa: PLC0415 - most systems do not get stuck
 
-    recorder = Recorder(checker, asked, answer.options.seed, answer.options.max_steps, scheduler)
+    recorder = Recorder(checker, property_, answer.options.seed, answer.options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
     time = time_of(target, recorder)
     return Stuck(ended.count, answer.tally.traces, ended.shortest, time, waits(recorder.standstill(), time))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from roaml.comparison import read_comparison
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
-from roaml.verification.verifier import judged_again
+from roaml.verification.verifier import with_expectations
 
 
 def suggestions(result: Result) -> tuple[str, ...]:
@@ -68,5 +68,5 @@ def _rounded(number: float, rounding: Callable[[float], int]) -> str:
 def _is_met(result: Result, text: str) -> bool:
     comparison = read_comparison(text)
     assert comparison is not None
-    judged = judged_again(result, [expectation_of(result.name, comparison)])
-    return bool(judged.verdicts) and judged.verdicts[-1].is_met
+    checked = with_expectations(result, [expectation_of(result.name, comparison)])
+    return bool(checked.verdicts) and checked.verdicts[-1].is_met

@@ -11,7 +11,7 @@ from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.smc.record import SHORTEST, VERDICTS, Plain, VariableChange
+from roaml.smc.record import SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
 from roaml.smc.story import Story
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
@@ -47,16 +47,17 @@ class StoryLine(NamedTuple):
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     """The lines of a story. If it gets stuck, the waiting automata follow at its end."""
-    return [*_told(story, place_of), *_waiting(story, place_of)]
+    return [*_turn_lines(story, place_of), *_waiting(story, place_of)]
 
 
-def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    told = turns(story)
-    folded = _folded(story, told)
-    story_lines = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
+def _turn_lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
+    shown_turns = turns(story)
+    folded = _folded(story, shown_turns)
+    story_lines = [_line(turn, place_of) for number, turn in enumerate(shown_turns) if number not in folded]
     if folded:
         story_lines.insert(
-            FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", (), last_step=told[folded[-1]].last)
+            FIRST,
+            StoryLine(shown_turns[FIRST].number, "", "", _more(folded), "", (), last_step=shown_turns[folded[-1]].last),
         )
     return story_lines
 
@@ -99,7 +100,7 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
         shown: where the waiting automata have already been shown; "" to show them here.
     """
     waiting = waits_of(story)
-    table = [*_told(story, place_of), *([] if shown else _waiting(story, place_of))]
+    table = [*_turn_lines(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
     text = f"{heading(story)}\n" + (f"  {story.comment}\n" if story.comment else "")
     for row in table:
@@ -113,10 +114,11 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
 
 def heading(story: Story) -> str:
     """A sentence that summarises the trace."""
-    verdict = VERDICTS.get(story.recording.verdict, "went wrong")
+    verdict = VERDICTS[story.recording.verdict]
+    outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     trace = "the shortest trace" if story.recording.trace == SHORTEST else f"trace {story.recording.trace}"
-    text = f"{story.property} {verdict} in {trace} after {steps}"
+    text = f"{story.property} {outcome} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
         text = f"{story.property}: {trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):
@@ -138,9 +140,9 @@ def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
 
 
 def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
-    told = [turn for turn in turns(story) if turn.last >= first]
-    folded = _folded(story, told)
-    lanes = {turn.instance for turn in told}
+    shown_turns = [turn for turn in turns(story) if turn.last >= first]
+    folded = _folded(story, shown_turns)
+    lanes = {turn.instance for turn in shown_turns}
     names: dict[str, str] = {}
     body: list[str] = []
     moment: float | None = None
@@ -148,7 +150,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
     def actor(turn: Turn) -> str:
         return names.setdefault(turn.who, f"A{len(names)}")
 
-    for number, turn in enumerate(told):
+    for number, turn in enumerate(shown_turns):
         if number in folded:
             if number == FIRST:
                 body.append(f"Note over {actor(turn)}: {_more(folded)}")
@@ -222,9 +224,9 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 """
 
 
-def _folded(story: Story, told: Sequence[Turn]) -> range:
+def _folded(story: Story, shown_turns: Sequence[Turn]) -> range:
     """The indexes of the turns that are folded, and not shown."""
-    return range(0) if story.is_whole else range(FIRST, len(told) - LAST)
+    return range(0) if story.is_whole else range(FIRST, len(shown_turns) - LAST)
 
 
 def _more(folded: range) -> str:
@@ -238,7 +240,7 @@ def _what(turn: Turn) -> str:
     move = _short(source if stays else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
     if turn.is_answered and turn.status:
-        return f"answers {turn.status}"
+        return f"returns {turn.status}"
     if turn.is_ticked:
         return f"is ticked in {move}{answer}"
     if turn.is_halted:

@@ -151,8 +151,8 @@ def turns(story: Story) -> list[Turn]:
     for index in range(len(story.steps)):
         reader.read(index)
     own = {f"{variable.rpartition('__')[0]}{OBSERVER_SUFFIX}" for variable in story.variables}
-    told = (turn for turn in reader.turns if turn.ends or _is_told(turn, reader.inner))
-    return [turn for turn in told if not _observes_another(turn, own)]
+    shown = (turn for turn in reader.turns if turn.ends or _is_shown(turn, reader.inner))
+    return [turn for turn in shown if not _observes_another(turn, own)]
 
 
 def _observes_another(turn: Turn, own: Collection[str]) -> bool:
@@ -160,7 +160,7 @@ def _observes_another(turn: Turn, own: Collection[str]) -> bool:
     return turn.automaton.endswith(OBSERVER_SUFFIX) and turn.automaton not in own
 
 
-def _is_told(turn: Turn, inner: Collection[int]) -> bool:
+def _is_shown(turn: Turn, inner: Collection[int]) -> bool:
     if is_generated(turn.automaton):
         return False
     if turn.instance in inner:

@@ -18,7 +18,7 @@ from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.pool import Alone
-from roaml.smc.run import FIXED, Options
+from roaml.smc.run import EstimationMethod, Options
 
 MAX_STATES = 20_000
 TRACES = 2_000
@@ -36,16 +36,16 @@ class Network(NetworkCase):
         assert model is not None
         try:
             checker = api.checker(model)
-            asked = checker.asked[0]
-            space = explore(checker, asked, StateLimits(states=MAX_STATES))
+            property_ = checker.compiled_properties[0]
+            space = explore(checker, property_, StateLimits(states=MAX_STATES))
             if space.problem is not None:
                 return
             exact = values_of(space)
         except (FaultError, LimitError, NoValueError):
             return
-        options = Options(method=FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
+        options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
         try:
-            tally = checker.answer(asked, options, Alone(checker.compiled(asked))).tally
+            tally = checker.answer(property_, options, Alone(checker.compiled(property_))).tally
         except FaultError as error:
             yield Failure("a trace has an error, and no state has", str(error))
             return

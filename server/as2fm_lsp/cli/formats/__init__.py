@@ -7,15 +7,30 @@ from __future__ import annotations
 import importlib
 
 from as2fm_lsp.cli.formats.report import CheckReport
+from roaml.exhaustive import Vocabulary
 
-FORMATS = ("text", "json", "github", "gitlab", "sarif", "junit")
+
+class Format(Vocabulary):
+    """A format. Its value is the name of its module."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+    GITLAB = "gitlab"
+    SARIF = "sarif"
+    JUNIT = "junit"
+
+    @property
+    def encoding(self) -> str | None:
+        """The encoding of standard output; `None` for that of the terminal."""
+        return None if self is Format.TEXT else "utf-8"
 
 
-def render(report: CheckReport, name: str) -> str:
+def render(report: CheckReport, format_: Format) -> str:
     """The report in one of the formats. Only the module of that format is imported."""
-    text = importlib.import_module(f"as2fm_lsp.cli.formats.{name}").render(report)
+    text = importlib.import_module(f"as2fm_lsp.cli.formats.{format_.value}").render(report)
     assert isinstance(text, str)
     return text
 
 
-__all__ = ["FORMATS", "CheckReport", "render"]
+__all__ = ["CheckReport", "Format", "render"]

@@ -22,11 +22,12 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.system import System, SystemAutomaton, sanitise
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, period
 from roaml.model.value_types import TypedMachine, ValueUse
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import sanitise
 from roaml.text import Span
 from roaml.xml_syntax import Element
 

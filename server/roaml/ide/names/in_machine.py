@@ -41,10 +41,9 @@ from roaml.model.machine import (
     statements,
 )
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
-from roaml.model.system import sanitise
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS, Environment, bindings, find_handle, interface_part
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.scxml.names import STATUSES
+from roaml.scxml.names import STATUSES, sanitise
 from roaml.text import Span
 
 """Kind of ROS type -> the kind of symbol that a declaration of this type names."""

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
-from roaml.lower.blackboard import ANSWER, REQUEST, blackboard_write
+from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs import assembly
@@ -48,14 +48,16 @@ from roaml.lower.programs.steps import (
 from roaml.lower.programs.values import RESULT, ProgramValues, expr, negated
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Statement, Target, Transition
+from roaml.scxml.names import TreeEventKind
 
 MAX_STATES = 20_000
 """The maximum number of states of one node."""
 
 
-MACHINE = "machine"
-"""The name of the program that evaluates the conditions of a node with a machine. Machines are also halted after they
-have ended (docs/spec/nodes.md#library)."""
+MACHINE, CONDITION_MACHINE = "machine", "condition_machine"
+"""The names of the programs that evaluate the conditions of an action and of a condition whose behaviour is a machine.
+Machines are also halted after they have ended (docs/spec/nodes.md#library)."""
+MACHINES = (MACHINE, CONDITION_MACHINE)
 
 
 class NodeTooLargeError(Exception):
@@ -226,19 +228,19 @@ class _Explorer:
         transitions: list[Transition] = []
         match key:
             case _Rest(fixed):
-                transitions += self.on(self.event("tick"), ("before", 0), dict(fixed))
+                transitions += self.on(self.event(TreeEventKind.TICK), ("before", 0), dict(fixed))
                 if not self.code.program.is_stateless or self.has_conditions or self.code.is_halted_always:
                     transitions += self.on_halt(dict(fixed))
             case _Ticking(place, fixed, number, target):
                 child = self.code.children[number]
-                answer = tree_event(child.address, "response")
+                answer = tree_event(child.address, TreeEventKind.RESPONSE)
                 for status in sorted(child.answers):
                     after = {**dict(fixed), target: status}
                     touched = int(after[_TOUCHED])
                     after[_TOUCHED] = touched & ~(1 << number) if status == SKIPPED else touched | (1 << number)
                     transitions += self.on(answer, place, after, equal(event_data("status"), integer(status)))
             case _Halting(place, fixed, number):
-                event = tree_event(self.code.children[number].address, "halt_response")
+                event = tree_event(self.code.children[number].address, TreeEventKind.HALT_RESPONSE)
                 transitions += self.on(event, place, dict(fixed))
             case _Asking(place, fixed, entries):
                 body = []
@@ -256,18 +258,23 @@ class _Explorer:
     def has_conditions(self) -> bool:
         return any(script.startswith("_") for script in self.code.scripts)
 
-    def event(self, kind: str) -> ScxmlEvent:
+    def event(self, kind: TreeEventKind) -> ScxmlEvent:
         return tree_event(self.code.address, kind)
 
     def on_halt(self, fixed: dict[str, Known]) -> list[Transition]:
         if fixed["status"] == RUNNING:
-            return self.on(self.event("halt"), ("halt", 0), fixed)
-        if self.code.program.name == MACHINE and fixed[_TOUCHED]:
-            return self.on(self.event("halt"), ("halt", 0), {**fixed, _ENDED: True})
+            return self.on(self.event(TreeEventKind.HALT), ("halt", 0), fixed)
+        if self.code.program.name in MACHINES and fixed[_TOUCHED]:
+            return self.on(self.event(TreeEventKind.HALT), ("halt", 0), {**fixed, _ENDED: True})
         target = self.rest({**fixed, "status": IDLE})
-        answer = Send(self.event("halt_response"), (), self.code.origin)
+        answer = Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin)
         return [
-            Transition(self.event("halt"), None, (Target(target, 1.0, (answer,), self.code.origin),), self.code.origin)
+            Transition(
+                self.event(TreeEventKind.HALT),
+                None,
+                (Target(target, 1.0, (answer,), self.code.origin),),
+                self.code.origin,
+            )
         ]
 
     # --------------------------------------------------------------- execution
@@ -349,7 +356,7 @@ class _Explorer:
             case "halt":
                 way.fixed["status"] = IDLE
                 if way.fixed.pop(_ENDED, False):
-                    way.body.append(Send(self.event("halt_response"), (), self.code.origin))
+                    way.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
                     return self.rest(way.fixed)
                 way.place = ("halted", 0)
             case "halted":
@@ -357,7 +364,7 @@ class _Explorer:
                     way.fixed[RESULT] = SKIPPED
                     way.place = ("after", 0)
                     return None
-                way.body.append(Send(self.event("halt_response"), (), self.code.origin))
+                way.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
                 return self.rest(way.fixed)
             case "after":
                 return self.answer(way)
@@ -373,7 +380,7 @@ class _Explorer:
             result = HELD
         self.answers.add(result)
         status = Param("status", integer(result), self.code.origin)
-        way.body.append(Send(self.event("response"), (status,), self.code.origin))
+        way.body.append(Send(self.event(TreeEventKind.RESPONSE), (status,), self.code.origin))
         return self.rest(way.fixed)
 
     def execute(self, instruction: Instruction, following: Place, way: _Way) -> _Stop | None:
@@ -449,7 +456,7 @@ class _Explorer:
 
     def tick(self, number: int, target: str, following: Place, way: _Way) -> str:
         child = self.code.children[number]
-        way.body.append(Send(tree_event(child.address, "tick"), (), self.code.origin))
+        way.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), self.code.origin))
         return self.state("ticking", _Ticking(following, _frozen(way.fixed), number, target))
 
     def reset(self, number: int, following: Place, way: _Way) -> str | None:
@@ -458,7 +465,7 @@ class _Explorer:
         way.fixed[_TOUCHED] = touched & ~(1 << number)
         if child.is_stateless or not touched & (1 << number):
             return None
-        way.body.append(Send(tree_event(child.address, "halt"), (), self.code.origin))
+        way.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), self.code.origin))
         return self.state("halting", _Halting(following, _frozen(way.fixed), number))
 
     # -------------------------------------------------------------- blackboard

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
 from roaml.lower.build import binary, integer
-from roaml.lower.program import NOWHERE
+from roaml.text import NO_SPAN
 
 
 class EntryKind(enum.Enum):
@@ -47,11 +47,11 @@ class BoardEntry:
     def start(self) -> Expr:
         """The initial value of the variable of the blackboard."""
         value = self.zero if self.initial is None else constant(self.kind, self.initial)
-        return Boolean(NOWHERE, bool(self.initial)) if self.type == "bool" else value
+        return Boolean(NO_SPAN, bool(self.initial)) if self.type == "bool" else value
 
     def read(self, value: Expr) -> Expr:
         """`value`, read from the variable of the blackboard, as a value of `kind`. A boolean becomes 0 or 1."""
-        return Conditional(NOWHERE, value, integer(1), integer(0)) if self.type == "bool" else value
+        return Conditional(NO_SPAN, value, integer(1), integer(0)) if self.type == "bool" else value
 
     def written(self, value: Expr) -> Expr:
         """`value`, of the kind `kind`, as a value for the variable of the blackboard."""
@@ -67,10 +67,10 @@ class BoardEntry:
 def constant(kind: EntryKind, value: int | float | str) -> Expr:
     """A literal of the kind `kind` for `value`."""
     if kind is EntryKind.TEXT:
-        return String(NOWHERE, str(value))
+        return String(NO_SPAN, str(value))
     number = float(value) if kind is EntryKind.REAL else int(value)
-    literal = Number(NOWHERE, abs(number), kind is EntryKind.REAL)
-    return literal if number >= 0 else Unary(NOWHERE, UnaryOperator.NEGATE, literal)
+    literal = Number(NO_SPAN, abs(number), kind is EntryKind.REAL)
+    return literal if number >= 0 else Unary(NO_SPAN, UnaryOperator.NEGATE, literal)
 
 
 def kind_of_cpp(type_: str) -> EntryKind | None:

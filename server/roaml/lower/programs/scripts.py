@@ -17,11 +17,10 @@ from roaml.expr.tree import Call, Expr, Member
 from roaml.expr.tree import Conditional as ConditionalExpr
 from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, integer, name
-from roaml.lower.program import NOWHERE
 from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.lower.programs.refusal import INVALID_SCRIPT
 from roaml.script import tree as syntax
-from roaml.text import Span
+from roaml.text import NO_SPAN, Span
 
 
 class ScriptRefusal(Exception):  # noqa: N818 - the script may be correct
@@ -122,7 +121,7 @@ class _Compiler:
                 kind = EntryKind.INTEGER if isinstance(number, int) else EntryKind.REAL
                 return _Value(constant(kind, number), kind)
             case syntax.Boolean(value=truth):
-                return _Value(BooleanExpr(NOWHERE, truth), None)
+                return _Value(BooleanExpr(NO_SPAN, truth), None)
             case syntax.String(value=text):
                 return _Value(constant(EntryKind.TEXT, text), EntryKind.TEXT)
             case syntax.Name():
@@ -147,10 +146,10 @@ class _Compiler:
         operand = self.value(expr.operand)
         match expr.operator:
             case "!":
-                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NOT, self.truth(operand, expr.operand.span)), None)
+                return _Value(UnaryExpr(NO_SPAN, UnaryOperator.NOT, self.truth(operand, expr.operand.span)), None)
             case "-":
                 number = self.number(operand, expr.operand)
-                return _Value(UnaryExpr(NOWHERE, UnaryOperator.NEGATE, number.expr), number.kind)
+                return _Value(UnaryExpr(NO_SPAN, UnaryOperator.NEGATE, number.expr), number.kind)
         raise ScriptRefusal(expr.span, f"`{expr.operator}` works on bits, which JANI does not support")
 
     def binary(self, expr: syntax.Binary) -> _Value:
@@ -218,17 +217,17 @@ class _Compiler:
         if len(self.assignments) > before:
             self.refuse(expr, "an assignment inside `? :` cannot be translated; use a condition of the node instead")
         condition = (
-            UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(test.expr, constant(EntryKind.TEXT, "")))
+            UnaryExpr(NO_SPAN, UnaryOperator.NOT, equal(test.expr, constant(EntryKind.TEXT, "")))
             if test.kind is EntryKind.TEXT
             else self.truth(test, expr.test.span)
         )
         if EntryKind.TEXT in (yes.kind, no.kind):
             if yes.kind is not no.kind:
                 self.refuse(expr, "the two results of `? :` must both be texts or both be numbers")
-            return _Value(ConditionalExpr(NOWHERE, condition, yes.expr, no.expr), EntryKind.TEXT)
+            return _Value(ConditionalExpr(NO_SPAN, condition, yes.expr, no.expr), EntryKind.TEXT)
         first, second = self.number(yes, expr.yes), self.number(no, expr.no)
         kind = EntryKind.REAL if EntryKind.REAL in (first.kind, second.kind) else EntryKind.INTEGER
-        return _Value(ConditionalExpr(NOWHERE, condition, first.expr, second.expr), kind)
+        return _Value(ConditionalExpr(NO_SPAN, condition, first.expr, second.expr), kind)
 
     def assignment(self, expr: syntax.Assignment) -> _Value:
         value = self.value(expr.value)
@@ -255,7 +254,7 @@ class _Compiler:
             self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the value has another type")
         number = self.number(value, expr.value)
         if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
-            floor = Call(NOWHERE, Member(NOWHERE, name("Math"), "floor", NOWHERE), (number.expr,))
+            floor = Call(NO_SPAN, Member(NO_SPAN, name("Math"), "floor", NO_SPAN), (number.expr,))
             if self.assignments:
                 reason = f"a real number is assigned to the integer `{expr.target.name}` after another assignment"
                 self.refuse(expr, f"{reason}; use separate scripts")
@@ -265,7 +264,7 @@ class _Compiler:
 
     def number(self, value: _Value, expr: syntax.Expr) -> _Value:
         if value.kind is None:
-            as_number = ConditionalExpr(NOWHERE, value.expr, integer(1), integer(0))
+            as_number = ConditionalExpr(NO_SPAN, value.expr, integer(1), integer(0))
             return _Value(as_number, EntryKind.INTEGER)
         if value.kind is EntryKind.TEXT:
             self.refuse(expr, "a number is needed here, but the value is a text")
@@ -276,4 +275,4 @@ class _Compiler:
             return value.expr
         if value.kind is EntryKind.TEXT:
             raise ScriptRefusal(span, "the value is a text, which is neither true nor false")
-        return UnaryExpr(NOWHERE, UnaryOperator.NOT, equal(value.expr, integer(0)))
+        return UnaryExpr(NO_SPAN, UnaryOperator.NOT, equal(value.expr, integer(0)))

@@ -60,6 +60,9 @@ def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Pl
         Ask((flag,)),
         Decide(equal(name(flag.local), integer(1)), (segment, 2), otherwise),
         Update(((flag.local, integer(0)),), (flag,)),
+        # The blackboard receives pending writes in any order, and a read waits for all of them. Without a read here,
+        # the entry could be written before its flag is reset, and the flag would lose that write.
+        Ask((flag,)),
         Decide(True, following, otherwise),
     )
 

@@ -15,8 +15,8 @@ from typing import Any
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Call, Conditional, Expr, Member, Number, String, Unary
 from roaml.lower.build import binary, equal, integer, name
-from roaml.lower.program import NOWHERE
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
+from roaml.text import NO_SPAN
 
 RESULT = "*result"
 """The name of the known variable that contains the status which the program has returned."""
@@ -118,7 +118,7 @@ class ProgramValues:
         result = expr(self.code.elements[-1])
         for index in reversed(range(len(self.code.elements) - 1)):
             test = equal(expr(position), integer(index))
-            result = Conditional(NOWHERE, test, expr(self.code.elements[index]), result)
+            result = Conditional(NO_SPAN, test, expr(self.code.elements[index]), result)
         return result
 
 
@@ -165,19 +165,19 @@ def computed(left: Value, kind: type[ast.operator], right: Value) -> Value:
 def expr(value: Value) -> Expr:
     match value:
         case bool():
-            return Boolean(NOWHERE, value)
+            return Boolean(NO_SPAN, value)
         case int():
-            return integer(value) if value >= 0 else Unary(NOWHERE, UnaryOperator.NEGATE, integer(-value))
+            return integer(value) if value >= 0 else Unary(NO_SPAN, UnaryOperator.NEGATE, integer(-value))
         case float():
-            return Number(NOWHERE, value, True)
+            return Number(NO_SPAN, value, True)
         case str():
-            return String(NOWHERE, value)
+            return String(NO_SPAN, value)
     return value
 
 
 def negated(condition: Expr) -> Expr:
-    return Unary(NOWHERE, UnaryOperator.NOT, condition)
+    return Unary(NO_SPAN, UnaryOperator.NOT, condition)
 
 
 def _math(function: str, *arguments: Expr) -> Expr:
-    return Call(NOWHERE, Member(NOWHERE, name("Math"), function, NOWHERE), arguments)
+    return Call(NO_SPAN, Member(NO_SPAN, name("Math"), function, NO_SPAN), arguments)

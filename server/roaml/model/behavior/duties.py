@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, ChartConfiguration
+from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, ChartConfiguration
 from roaml.model.behavior.phases import Duty, DutyKind, Phase
 from roaml.roles import ProtocolPart
 
@@ -51,7 +51,7 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
     """Whether a configuration owes the answer to `duty`. It is false if there are several goals at once, because it is
     unknown to which of them an answer belongs."""
-    if configuration.state == NOWHERE or configuration.answering(duty) is Phase.SEVERAL:
+    if configuration.state == UNKNOWN_STATE or configuration.answering(duty) is Phase.SEVERAL:
         return False
     return configuration.owes(duty)
 
@@ -65,10 +65,10 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
     waiting = frozenset(
         n
         for n, c in enumerate(behavior.configurations)
-        if c.state != NOWHERE and not c.owes(duty) and c.tree not in (Phase.TICKED, Phase.HALTING)
+        if c.state != UNKNOWN_STATE and not c.owes(duty) and c.tree not in (Phase.TICKED, Phase.HALTING)
     )
     taking = {step.source for step in behavior.steps if step.event and step.event.part is _TAKING[duty.kind]}
-    known = {n for n, c in enumerate(behavior.configurations) if c.state == NOWHERE}
+    known = {n for n, c in enumerate(behavior.configurations) if c.state == UNKNOWN_STATE}
     between = [
         step
         for step in behavior.steps

@@ -66,7 +66,7 @@ MAX_CONFIGURATIONS = 4000
 MAX_KNOWLEDGE_VARIANTS = 12
 """The maximum number of configurations that differ only in the knowledge about values."""
 
-NOWHERE = "?"
+UNKNOWN_STATE = "?"
 """The name of an unknown state, in which anything may happen."""
 
 
@@ -707,12 +707,12 @@ class _Explorer:
         for choice, target in enumerate(handler.targets):
             if only is not None and choice != only:
                 continue
-            name = target.state.value if target.state else NOWHERE
+            name = target.state.value if target.state else UNKNOWN_STATE
             entered = self.states.get(name)
             enter = entered.entry.statements if entered and entered.entry else ()
             for path in self._bodies([leave, target.body, enter], paths):
                 known = self._kept(path.knowledge) if entered else NOTHING
-                after = name if entered else NOWHERE
+                after = name if entered else UNKNOWN_STATE
                 done = path._replace(knowledge=known)
                 # After the decision on a later goal, the earlier goal is an accepted goal again.
                 if event is not None and event.part is ProtocolPart.GOAL:

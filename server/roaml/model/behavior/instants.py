@@ -19,8 +19,9 @@ from roaml.model.behavior.explore import BehaviorStep
 from roaml.model.behavior.phases import DutyKind, ProtocolEvent
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import Act, GapAct, InterfaceAct
-from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import sanitise
 
 _PROMISED = {
     ProtocolPart.RESPONSE: DutyKind.REQUEST,

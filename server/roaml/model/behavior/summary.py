@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from roaml.model.behavior.explore import NOWHERE, Behavior, BehaviorStep, explore
+from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, explore
 from roaml.model.behavior.phases import Duty, DutyKind, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
@@ -143,7 +143,7 @@ class _Summary:
         configurations = self.behavior.configurations
         owing = [c.owes(duty) for c in configurations]
         on_the_way = [edge for edge in self.edges if owing[edge.source]]
-        answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == NOWHERE]
+        answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == UNKNOWN_STATE]
         needs = _needs(_incoming(on_the_way), answers)
         for number, alternatives in needs.items():
             if configurations[number].answering(duty) is not Phase.SEVERAL:

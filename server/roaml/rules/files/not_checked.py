@@ -20,6 +20,7 @@ from roaml.model.vocabulary import FOREIGN_TYPES
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
+from roaml.scxml.names import topic_message
 from roaml.text import Span
 
 _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
@@ -119,7 +120,7 @@ def _questions(system: System, interface: Callable[[str, str], InterfaceType | N
         if system.plugin(name)[1] is None:
             yield _Question(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
-        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg"):
+        if not topic.users and not system.is_observed(topic_message(topic.name)):
             question = f"which machine subscribes to the topic `{topic.name}`"
             yield _Question(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name, question)
         if not has_publisher(system, topic) and any(user.use.receives for user in topic.users):

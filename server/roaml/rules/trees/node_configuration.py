@@ -17,7 +17,7 @@ from roaml.text import Decoded
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report settings with which a node of BehaviorTree.CPP stops answering (docs/spec/nodes.md#common)."""
+    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
     is_library_tree = context.system is not None and context.system.is_library_tree
     for node, key, text in _settings(context):
@@ -106,4 +106,4 @@ def _number(text: str) -> int | None:
     return value
 
 
-RULE = Rule("node-configuration", Severity.ERROR, "A node never answers because of its settings.", tree=check)
+RULE = Rule("node-configuration", Severity.ERROR, "A node never returns a status because of its settings.", tree=check)
