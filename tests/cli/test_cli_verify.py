@@ -431,7 +431,7 @@ def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_
         while b"schedulers tried" not in seen:
             seen += os.read(ours, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=60)
+        out, _ = running.communicate(timeout=TIMEOUT_S)
     os.close(ours)
     assert re.search(rb"p, least probability: round \d+ of \d+, [\d,]+ of [\d,]+ schedulers tried", seen)
     assert running.returncode == 130
