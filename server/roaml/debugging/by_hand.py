@@ -18,6 +18,7 @@ from roaml.scxml.names import (
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
+    flag_of,
     is_timer,
     read_tree_event,
     sent_by,
@@ -136,7 +137,7 @@ def _written(
             if cells.has(f"{form.event}{SEPARATOR}{prefix}{name}"):
                 cells.set(f"{form.event}{SEPARATOR}{prefix}{name}", type_, value, (), path)
                 break
-    valid = f"{form.event}.valid"
+    valid = flag_of(form.event)
     if cells.has(valid):
         cells.set(valid, None, True, (), valid)
     yield from cells.changes(-1)

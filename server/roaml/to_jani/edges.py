@@ -19,7 +19,7 @@ from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
 from roaml.scxml.events import Role
 from roaml.scxml.model import Assign, Body, If, Send, State
-from roaml.scxml.names import on_receive, on_send
+from roaml.scxml.names import flag_of, on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import EventUsage
@@ -232,7 +232,7 @@ class _FlowBuilder:
                 shape = shape_of(params[param.name], self.max_array_size, sent=True)
                 variable = f"{statement.event.name}__{param.name}"
                 following.send(stored_in(variable, shape, param.value, scope), param.origin)
-            following.send([(jani.Name(f"{statement.event.name}.valid"), jani.Boolean(True))], statement.origin)
+            following.send([(jani.Name(flag_of(statement.event.name)), jani.Boolean(True))], statement.origin)
         return following
 
     def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: JaniScope) -> _Way:

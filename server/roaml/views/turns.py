@@ -29,7 +29,6 @@ from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
 
-_VALID = ".valid"
 _ENDS = ("SUCCESS", "FAILURE")
 
 
