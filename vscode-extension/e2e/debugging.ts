@@ -68,54 +68,6 @@ export function debugging(stage: Stage): void {
         await button(window, "Stop").click();
         await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
     });
-
-    stage.test("lit pictures and a timeline follow the run, which is changed by hand", robot, async (window) => {
-        const { page } = window;
-        await window.openFile("main_with_bug.xml");
-        await window.running();
-        await page.keyboard.press("F5");
-        // The last part of the stop takes the focus; before, it would close the palette.
-        await page.locator(".exception-widget").waitFor();
-
-        // At the end all is lit, side by side.
-        await window.run("AS2FM: Show Whole System");
-        const machines = await window.picture('.node[data-look][data-label="still"]');
-        const tree = await window.picture('.node[data-look="success"]');
-        await tree.locator('.node[data-look="ticked"]').first().waitFor();
-        await window.picture('.node[data-label="/arm/command"]');
-        await window.screenshot("debugging-system");
-
-        // The timeline shows the whole run; a click goes to another step.
-        await page.getByRole("tab", { name: "Timeline of the Run" }).click();
-        const timeline = await window.picture(".rows .drawing .state");
-        const step = async () => Number(await timeline.locator("body").getAttribute("data-step"));
-        const end = await window.until(step);
-        await timeline.getByRole("button", { name: "Steps", exact: true }).click();
-        await timeline.locator(".event[data-step]").first().waitFor({ state: "attached" });
-        await timeline.locator(".rows").click({ position: { x: 300, y: 60 } });
-        await window.until(async () => (await step()) < end);
-        await machines.locator('.node[data-label="moving"][data-look]').first().waitFor();
-        await tree.locator('.node[data-look="running"]').first().waitFor();
-        const middle = await step();
-        await timeline.locator(".rows").press("ArrowRight");
-        await window.until(async () => (await step()) === middle + 1);
-        await window.screenshot("debugging-timeline");
-
-        // A message published by hand is a step of the run, which then says nothing about the model.
-        await window.run("AS2FM: Publish Message by Hand");
-        const input = page.locator(".quick-input-widget input");
-        await input.fill("/arm/command");
-        await page.locator(".quick-input-list .focused", { hasText: "/arm/command" }).first().waitFor();
-        await page.keyboard.press("Enter");
-        await page.locator(".quick-input-widget", { hasText: "The fields of" }).waitFor();
-        await input.fill("{data: 0}");
-        await page.keyboard.press("Enter");
-        await page.locator('.pane-header[aria-label^="Choices"]', { hasText: "changed by hand" }).waitFor();
-        await window.until(async () => (await step()) === middle + 2);
-        await button(window, "Stop").click();
-        await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
-        await machines.locator(".node[data-look]").first().waitFor({ state: "detached" });
-    });
 }
 
 function button(window: Window, name: string) {
