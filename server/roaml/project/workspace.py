@@ -138,7 +138,7 @@ class Workspace:
         self._disk = self._new_disk()
         self._registry = self._new_registry()
 
-    def look_for_packages_in(self, folders: Iterable[str]) -> None:
+    def set_package_folders(self, folders: Iterable[str]) -> None:
         """Replace the folders that are searched for ROS packages."""
         self._packages = tuple(os.path.abspath(folder) for folder in folders)
         self._disk = self._new_disk()

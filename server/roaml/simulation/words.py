@@ -71,13 +71,13 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
         case TreeEventKind.HALT:
             return f"{actor} halts {child}" if is_sent else f"{actor} is halted"
         case TreeEventKind.RESPONSE if is_sent:
-            return f"{actor} answers its tick"
+            return f"{actor} returns its status"
         case TreeEventKind.RESPONSE:
             status = parameters.get("status")
-            answer = STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
-            return f"{actor} receives {answer} from {child}"
+            name = STATUS_NAMES.get(status, "a status") if isinstance(status, int) else "a status"
+            return f"{actor} receives {name} from {child}"
         case TreeEventKind.HALT_RESPONSE if is_sent:
-            return f"{actor} answers that it has halted"
+            return f"{actor} reports that it has halted"
         case TreeEventKind.HALT_RESPONSE:
             return f"{actor} receives from {child} that it has halted"
         case _:

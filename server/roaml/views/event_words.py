@@ -24,8 +24,8 @@ from roaml.scxml.names import (
 _TREE_PHRASES = {
     TreeEventKind.TICK: "its tick",
     TreeEventKind.HALT: "its halt",
-    TreeEventKind.RESPONSE: "the answer to its tick",
-    TreeEventKind.HALT_RESPONSE: "the answer to its halt",
+    TreeEventKind.RESPONSE: "the status of its tick",
+    TreeEventKind.HALT_RESPONSE: "the end of its halt",
 }
 _PHRASES = {
     InterfaceEventKind.MESSAGE: "a message on the topic",
@@ -33,7 +33,7 @@ _PHRASES = {
     InterfaceEventKind.RESPONSE: "the response of the service",
     InterfaceEventKind.CANCEL: "a request to cancel a goal of the action",
     InterfaceEventKind.GOAL: "a goal of the action",
-    InterfaceEventKind.GOAL_ANSWER: "the answer to the goal of the action",
+    InterfaceEventKind.GOAL_ANSWER: "the response to the goal of the action",
     InterfaceEventKind.FEEDBACK: "feedback of the action",
     InterfaceEventKind.RESULT: "the result of the action",
     InterfaceEventKind.THREAD_START: "the start of a thread of the action",
@@ -41,7 +41,7 @@ _PHRASES = {
 }
 
 
-def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
+def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
     """A phrase for an event.
 
     Args:

@@ -37,7 +37,7 @@ from roaml.scxml.names import (
 )
 from roaml.smc.standstill import Standstill
 from roaml.views.ends import is_event
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.turns import is_inner, name_of
 
 
@@ -88,7 +88,7 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     Args:
         time: the time of the model, in s.
     """
-    return tuple(_Chain(standstill, time).told())
+    return tuple(_Chain(standstill, time).waits())
 
 
 NEEDS_TIME = "answer-needs-time"
@@ -107,8 +107,9 @@ def advice(waiting: Sequence[Wait]) -> str:
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
     if late.unanswered is TreeEventKind.HALT:
-        return f"a halt must be answered before time passes; let {late.whom} answer it at once"
-    return f"a tick must be answered before time passes; let {late.whom} return RUNNING, and the result at a later tick"
+        return f"a halt must end before time passes; let {late.whom} confirm it at once"
+    what = f"let {late.whom} return RUNNING, and the result at a later tick"
+    return f"a tick must return a status before time passes; {what}"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
@@ -136,7 +137,7 @@ class _Chain:
 
     # ------------------------------------------------------------------ the search
 
-    def told(self) -> Iterator[Wait]:
+    def waits(self) -> Iterator[Wait]:
         clock = self.index.get(CLOCK)
         if clock is not None:
             self.follow(clock, "")
@@ -311,22 +312,23 @@ class _Chain:
         if link.event is None:
             does = "takes" if received_by(link.action) else "sends"
             event = received_by(link.action) or sent_by(link.action)
-            text = f"stays{where} and never {does} {said(event, self.clients(), role)}"
+            text = f"stays{where} and never {does} {event_phrase(event, self.clients(), role)}"
         elif not link.event:
             text = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
             takers = {self.role(other) for other, _ in shown}
             taker = Role.TREE_ROOT if takers == {Role.TREE_ROOT} else Role.MACHINE
-            text = f"waits{where} for {them or 'nobody'} to take {said(link.event, self.clients(), taker, taken=True)}"
+            event = event_phrase(link.event, self.clients(), taker, taken=True)
+            text = f"waits{where} for {them or 'nobody'} to take {event}"
         elif answered_by(link.event):
             is_halt = any(event.endswith("_halt_response") for _, event in shown)
             unanswered = TreeEventKind.HALT if is_halt else TreeEventKind.TICK
             origin = self.place_in_tree(shown[0][1]) or origin
-            text = f"waits{where} for {them} to answer its {unanswered.value}"
+            text = f"waits{where} for {them} to {'halt' if is_halt else 'return a status'}"
         else:
             is_message = link.event.startswith(TOPIC_PREFIX)
             senders = f" from {' or '.join(others)}" if is_message and others else ""
-            text = f"waits{where} for {said(link.event, self.clients(), role)}{senders}"
+            text = f"waits{where} for {event_phrase(link.event, self.clients(), role)}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
                 text += ", which ticks when the clock advances"

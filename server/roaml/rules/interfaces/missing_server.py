@@ -40,7 +40,7 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
     message = (
-        f"no machine serves the {kind_name} `{channel.name}`, so its clients never get an answer{did_you_mean(close)}"
+        f"no machine serves the {kind_name} `{channel.name}`, so its clients never get a response{did_you_mean(close)}"
     )
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
