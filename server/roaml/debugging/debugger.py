@@ -15,7 +15,7 @@ from functools import cached_property
 
 from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
 from roaml.debugging.evaluate import Scope
-from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, Stacks, node_of, threads
+from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, threads
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
@@ -165,7 +165,7 @@ class Debugger:
 
     def scope(self, instance: int) -> Scope:
         """The values of names in expressions, as an instance sees them."""
-        return self.values.names(Frame(0, "", None, instance, 0, "statement"))
+        return self.values.names(Frame(0, "", None, instance, 0, FrameRole.STATEMENT))
 
     @property
     def verdicts(self) -> dict[str, TraceVerdict]:
@@ -308,17 +308,19 @@ class Debugger:
         tick = tree_event_name(frame.node, TreeEventKind.TICK)
         for index in range(position - 1, -1, -1):
             step = steps[index]
-            if frame.role == "node":
+            if frame.role is FrameRole.NODE:
                 if received_by(step.action or "") == tick:
                     return self.go_to(index)
                 continue
             for part in step.parts:
                 if part.instance != frame.instance:
                     continue
-                is_handler = frame.role in ("handler", "statement") and received_by(step.action or "")
+                is_handler = frame.role in (FrameRole.HANDLER, FrameRole.STATEMENT) and received_by(step.action or "")
                 if is_handler:
                     return self.go_to(index)
-                if frame.role == "state" and self._enters(part.source, part.destination.location, part.instance):
+                if frame.role is FrameRole.STATE and self._enters(
+                    part.source, part.destination.location, part.instance
+                ):
                     return self.go_to(index + 1)
         return self.go_to(0)
 
