@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
@@ -20,7 +21,6 @@ from roaml.verification import small
 from roaml.verification.small import LIMITS, values_if_small
 from roaml.verification.target import target_of
 from roaml.verification.verifier import verifier_of
-from twin import plain_kernel
 
 GOAL = op("F", "done")
 

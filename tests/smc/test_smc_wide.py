@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import difference
 from examples import examples
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
@@ -18,7 +19,6 @@ from roaml.smc.explore import Explorer, TooManyChoicesError
 from roaml.smc.model import ModelChecker
 from roaml.smc.statistics import clopper_pearson
 from roaml.verification.small import values_if_small
-from twin import difference
 
 SURE = 1 - 1e-9
 """The probability that a test which compares a frequency with an interval fails by chance."""

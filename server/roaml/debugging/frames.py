@@ -19,7 +19,7 @@ from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, NodeState, NodeStatus, SystemState
 from roaml.simulation.words import who
 from roaml.smc.record import AutomatonStep, TraceStep
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 
 TREE_THREAD = 1
 FIRST_MACHINE_THREAD = 2
@@ -133,7 +133,7 @@ class Stacks:
             handler, event = None, ""
         states = self._sources.states(automaton)
         if handler is not None and handler != states.get(machine.state):
-            text = said(event, self._session.automata, taken=True)
+            text = event_phrase(event, self._session.automata, taken=True)
             yield Frame(thread, f"{machine.name}: {text}", handler, instance, node, FrameRole.HANDLER)
         origin = states.get(machine.state, machine.origin)
         yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, FrameRole.STATE)
