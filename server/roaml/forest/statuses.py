@@ -121,10 +121,14 @@ class PossibleStatuses:
             case "RetryUntilSuccessful":
                 endless = (child - {F}) | {R}
                 return endless if _number(node, "num_attempts") == "-1" else child | {R, F}
-            case "Delay":
+            case "Delay" | "RateController" | "DistanceController" | "SpeedController" | "GoalUpdatedController":
                 return child | {R}
-            case "Timeout":
+            case "Timeout" | "SingleTrigger":
                 return child | {F}
+            case "PathLongerOnApproach":
+                return child | {S}
+            case "GoalUpdater":
+                return child
         return ANY_STATUS
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
