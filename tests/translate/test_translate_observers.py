@@ -331,6 +331,7 @@ VACUOUS = f"""
 {ANSWERED.format("answered", "tails", "whistle", "globally")}
 {ANSWERED.format("dead", "count == 70", "whistle", "globally")}
 <property id="unopened" pattern="absence"><event>tails</event><scope type="after" event="count == 70" /></property>
+<property id="opened" pattern="absence"><event>tails</event><scope type="after" event="count == 1" /></property>
 """
 
 
@@ -352,6 +353,9 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     assert warning(results["dead"]) == "the property is vacuous: it was not triggered in any trace"
     assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
     assert warning(results["unopened"]) == "the property is vacuous: its scope was not evaluated in any trace"
+    assert rows["opened"]["vacuous"]["scope_not_judged"] / 300 == pytest.approx(0.7**6, abs=0.1)
+    assert rows["opened"]["vacuous"]["not_triggered"] == 0
+    assert rows["opened"]["failed"] > 0
     text = one_as_text(results["scoped"], str)
     assert re.search(r"\n  its scope was not evaluated in [0-9]+ of 300 traces \(", text)
     assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)
