@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from functools import cache
@@ -18,10 +19,19 @@ from examples import TIMES, examples
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+# As in the program (as2fm_lsp.__main__): parsed files and models live long, so frequent collections find little.
+gc.set_threshold(50_000)
+
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:
     """Do not collect tests of the conformance cases if there are none. `pytest_terminal_summary` reports this."""
     return True if not conformance.PRESENT and collection_path.match("test_*conformance*.py") else None
+
+
+def pytest_collection_finish() -> None:
+    """Exclude the tests themselves from garbage collection."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter) -> None:  # type: ignore[no-untyped-def]

@@ -199,7 +199,7 @@ def hospital(*, mended: bool = False) -> dict[str, str]:
     """File name -> text.
 
     Args:
-        mended: whether `Fetch` answers RUNNING, and SUCCESS at a later tick.
+        mended: whether `Fetch` returns RUNNING, and SUCCESS at a later tick.
     """
     files = split_files(HOSPITAL)
     return {**files, "fetch.ascxml": _ANSWERS_AT_ONCE} if mended else files

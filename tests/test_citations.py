@@ -53,9 +53,9 @@ def test_citations_refer_only_to_the_repository() -> None:
 @pytest.mark.parametrize("code", [rule.code for rule in RULES])
 def test_the_document_of_a_rule_links_its_definition(code: str) -> None:
     text = document(code)
-    found = _DEFINITION.findall(text)
-    assert len(found) == text.count("docs/spec/") <= 1
-    for target in found:
+    definitions = _DEFINITION.findall(text)
+    assert len(definitions) == text.count("docs/spec/") <= 1
+    for target in definitions:
         path, _, anchor = target.partition("#")
         folder = next((ROOT / "server" / "roaml" / "rules").rglob(f"{code.replace('-', '_')}.md")).parent
         page = (folder / path).resolve()

@@ -45,8 +45,8 @@ def expanded(body: list[str]) -> str:
     """A snippet with its default texts in place of the placeholders."""
     text = "\n".join(body)
     words = dict(re.findall(r"\$\{(\d+)[:|]([^},|]*)[^}]*\}", text))
-    text = re.sub(r"\$\{(\d+)[^}]*\}", lambda found: words[found[1]], text)
-    return re.sub(r"\$(\d+)", lambda found: words.get(found[1], ""), text)
+    text = re.sub(r"\$\{(\d+)[^}]*\}", lambda match: words[match[1]], text)
+    return re.sub(r"\$(\d+)", lambda match: words.get(match[1], ""), text)
 
 
 def check(folder: Path, files: dict[str, str], *names: str) -> list[Diagnostic]:

@@ -134,7 +134,9 @@ def listing(automaton: Any) -> str:
         guard = f"  [{infix(edge['guard']['exp'])}]" if "guard" in edge else ""
         lines.append(f"    {edge['location']}  {edge['action']}{guard}")
         for way in edge["destinations"]:
-            stored = [f"{each['ref']} := {infix(each['value'])}" for each in way.get("assignments", ())]
+            stored = [
+                f"{assignment['ref']} := {infix(assignment['value'])}" for assignment in way.get("assignments", ())
+            ]
             chance = f"{way['probability']['exp']}: " if len(edge["destinations"]) > 1 else ""
             lines.append(f"        {chance}{way['location']}{'  ' if stored else ''}{'; '.join(stored)}")
     return "\n".join(lines) + "\n"

@@ -100,10 +100,10 @@ class Diagnostics:
     async def _prepare(self) -> None:
         """Compute, while the user is idle, data that the next request is likely to need, and collect garbage."""
         moment = self.session.moment()
-        for path in await self._giving_way(moment.files):
+        for path in await self._interruptible(moment.files):
             analysis = moment.snapshot(path).analysis
             for system in analysis.memberships.get(path, (None,)):
-                await self._giving_way(partial(uses, analysis, path, system))
+                await self._interruptible(partial(uses, analysis, path, system))
         await self._let_messages_by()
         gc.collect(1)
 
@@ -112,27 +112,27 @@ class Diagnostics:
         moment = self.session.moment()
         for path in [path for path in self._waiting if path in moment.versions]:
             await self._check(moment, path)
-        there = await self._giving_way(moment.files)
+        there = await self._interruptible(moment.files)
         async with AsyncExitStack() as shown:
-            told: Progress | None = None
+            bar: Progress | None = None
             for number, path in enumerate(there):
-                if told is None and self._all_waiting and time.monotonic() - started > PROGRESS_DELAY_S:
-                    told = await shown.enter_async_context(self._progress.show(TITLE))
-                if told is not None:
-                    told.report(number, len(there))
+                if bar is None and self._all_waiting and time.monotonic() - started > PROGRESS_DELAY_S:
+                    bar = await shown.enter_async_context(self._progress.show(TITLE))
+                if bar is not None:
+                    bar.report(number, len(there))
                 await self._check(moment, path)
         for path in self._sent.keys() - set(there):
             self._send(path, [], None)
 
     async def _check(self, moment: Moment, path: str) -> None:
         try:
-            diagnostics = await self._giving_way(lambda: self.of(moment, path))
+            diagnostics = await self._interruptible(lambda: self.of(moment, path))
         except Exception:  # a crash in one file must not prevent the check of the others
             log.exception("%s cannot be checked", path)
         else:
             self._send(path, diagnostics, moment.versions.get(path))
 
-    async def _giving_way(self, compute: Callable[[], T]) -> T:
+    async def _interruptible(self, compute: Callable[[], T]) -> T:
         """The result of a computation that stops when a message arrives and begins again afterwards. After
         `MAX_INTERRUPTIONS` attempts it runs to its end, so that a steady stream of messages cannot delay it for ever.
         """

@@ -50,7 +50,7 @@ class Inbox:
         self._cancelled: set[object] = set()
         self._news = asyncio.Event()
         self._ended = False
-        self._tell: Callable[[], None] = lambda: None
+        self._wake: Callable[[], None] = lambda: None
 
     # ---------------------------------------------------------------- filling
 
@@ -58,19 +58,19 @@ class Inbox:
         """Read a stream to its end, in a daemon thread."""
         loop = asyncio.get_running_loop()
 
-        def tell() -> None:
+        def wake() -> None:
             try:
                 loop.call_soon_threadsafe(self._news.set)
             except RuntimeError:  # the loop is closed: there is no receiver left
                 return
 
-        self._tell = tell
+        self._wake = wake
 
         def read() -> None:
             try:
                 for body in bodies(stream):
                     self.put(body)
-                    tell()
+                    wake()
             except (OSError, ValueError) as error:  # the connection is lost, or the stream was closed
                 log.debug("reading from the client failed: %s", error)
             finally:
@@ -81,7 +81,7 @@ class Inbox:
     def end(self) -> None:
         """Signal the end of the messages, from any thread."""
         self._ended = True
-        self._tell()
+        self._wake()
 
     def put(self, body: bytes) -> None:
         try:

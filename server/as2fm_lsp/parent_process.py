@@ -41,7 +41,7 @@ def wait_for_end(process_id: int) -> None:
     elif hasattr(os, "pidfd_open"):
         _wait_on_linux(process_id)
     else:
-        _look_again_and_again(process_id)
+        _poll(process_id)
 
 
 def _wait_on_linux(process_id: int) -> None:
@@ -52,7 +52,7 @@ def _wait_on_linux(process_id: int) -> None:
     except ProcessLookupError:
         return
     except (OSError, OverflowError):  # old kernels do not support this, others may forbid it
-        _look_again_and_again(process_id)
+        _poll(process_id)
         return
     try:
         select.select([descriptor], [], [])
@@ -60,7 +60,7 @@ def _wait_on_linux(process_id: int) -> None:
         os.close(descriptor)
 
 
-def _look_again_and_again(process_id: int) -> None:
+def _poll(process_id: int) -> None:
     while _is_alive(process_id):
         time.sleep(POLL_INTERVAL_S)
 

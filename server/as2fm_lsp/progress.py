@@ -45,11 +45,11 @@ class Progress:
         Raises:
             Interrupted: the work is no longer needed.
         """
-        self.say(message)
+        self.set_message(message)
         await asyncio.sleep(0)
         self._requests.checkpoint()
 
-    def say(self, message: str) -> None:
+    def set_message(self, message: str) -> None:
         """Show a text."""
         if self.token:
             self._client.report_progress(self.token, types.WorkDoneProgressReport(message=message))

@@ -25,7 +25,7 @@ class Refresh:
         self._results = results
         self._known: object = None
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Request hints and lenses again if something has changed."""
         workspace = self._client.capabilities.workspace
         hints = bool(workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support)

@@ -20,7 +20,7 @@ from as2fm_lsp.convert import Converter
 from as2fm_lsp.diagnostics import Diagnostics
 from as2fm_lsp.handlers import diagnostic
 from as2fm_lsp.handlers.configuration import fetch_settings
-from as2fm_lsp.handlers.workspace import WATCHED, tell_problems, use_folders
+from as2fm_lsp.handlers.workspace import WATCHED, show_problems, use_folders
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import ProgressReporter
 from as2fm_lsp.refresh import Refresh
@@ -44,7 +44,7 @@ class Server:
         progress = ProgressReporter(client, self.inbox, self.requests)
         self.diagnostics = Diagnostics(client, self.session, self.inbox, progress)
         refresh = Refresh(client, self.session, results)
-        self.diagnostics.finished = refresh.look
+        self.diagnostics.finished = refresh.update
         self.context = Context(
             self.endpoint,
             self.session,
@@ -120,7 +120,7 @@ def _register(server: Server) -> None:
         if session.client_settings:  # without them, a check follows when they have arrived
             diagnostics.schedule()
         await asyncio.gather(client.watch_files(WATCHED), fetch_settings(context))
-        tell_problems(context)
+        show_problems(context)
         diagnostics.schedule()
 
     @context.feature(types.SHUTDOWN)

@@ -110,7 +110,7 @@ class Session:
             self._taken = now
         return self._moment
 
-    def look_again(self) -> None:
+    def invalidate(self) -> None:
         """Discard the current moment, because a file has changed in the editor or on the disk."""
         self._moment = None
 
@@ -143,7 +143,7 @@ class Session:
         self._texts.pop(path, None)
         self._versions.pop(path, None)
         self.convert.mark(path, False)
-        self.look_again()
+        self.invalidate()
         needed = {_surroundings(path) for path in self._texts}
         self._around = {root: workspace for root, workspace in self._around.items() if root in needed}
         for workspace in self._workspaces():
@@ -153,7 +153,7 @@ class Session:
         self._texts[path] = text
         self._versions[path] = version
         self.convert.mark(path, text.startswith(MARK))
-        self.look_again()
+        self.invalidate()
         for workspace in self._workspaces():
             workspace.open(path, text.removeprefix(MARK))
 
@@ -163,14 +163,14 @@ class Session:
         """Set the open folders of the client. Workspaces of folders that remain open keep their caches."""
         folders = tuple(dict.fromkeys(os.path.normpath(folder) for folder in folders))
         known, self._around = self._folders, {}
-        self.look_again()
+        self.invalidate()
         self._folders = {f: known[f] if f in known else self._new_workspace(f) for f in folders}
         for folder, workspace in self._folders.items():
-            workspace.look_for_packages_in(self._packages(folder, workspace.roots))
+            workspace.set_package_folders(self._packages(folder, workspace.roots))
 
     def refresh(self) -> None:
         """List the folders again, because files were created or deleted."""
-        self.look_again()
+        self.invalidate()
         for workspace in self._workspaces():
             workspace.refresh()
 
@@ -179,7 +179,7 @@ class Session:
         if client_settings is not None:
             self._client_settings = client_settings
         self.problems.clear()
-        self.look_again()
+        self.invalidate()
         for folder, workspace in (*self._folders.items(), *self._around.items()):
             settings = self._settings(folder)
             workspace.configure(settings, _roots(folder, settings))

@@ -162,7 +162,7 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
     admitted: list[Connection] = []
     claimed = threading.Lock()
     waiting = threading.Semaphore(MAX_WAITING_CONNECTIONS)
-    news, told = socket.socketpair()
+    news, wake_up = socket.socketpair()
 
     def greet(connection: socket.socket) -> None:
         try:
@@ -174,11 +174,11 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
             waiting.release()
         if client is not None and claimed.acquire(blocking=False):
             admitted.append(client)
-            told.send(b"!")
+            wake_up.send(b"!")
         else:
             connection.close()
 
-    with news, told, selectors.DefaultSelector() as ready:
+    with news, wake_up, selectors.DefaultSelector() as ready:
         for listener in listeners:
             listener.setblocking(False)
             ready.register(listener, selectors.EVENT_READ, listener)

@@ -32,6 +32,26 @@ def did_you_mean(names: tuple[str, ...], most: int = 1) -> str:
     return f"; did you mean {' or '.join(f'`{name}`' for name in names[:most])}?" if names else ""
 
 
+MAX_LISTED = 6
+"""The maximum number of known names that a message lists."""
+
+
+def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str) -> str:
+    """What a message about an unknown name suggests: the most similar name; or all known names, if none is similar.
+
+    Args:
+        close: the similar names, the most similar first.
+        noun: what the names are, in the singular, such as `state`.
+
+    Returns:
+        A clause such as ``; the states are `a` and `b` ``; "" if there are no names, or more than `MAX_LISTED`.
+    """
+    names = tuple(dict.fromkeys(known))
+    if close or not 0 < len(names) <= MAX_LISTED:
+        return did_you_mean(close)
+    return f"; the only {noun} is `{names[0]}`" if len(names) == 1 else f"; the {noun}s are {listing(names)}"
+
+
 def listing(names: Iterable[str]) -> str:
     """The names in quotes, as in `a`, `b` and `c`; "none" if there are no names."""
     quoted = [f"`{name}`" for name in names]

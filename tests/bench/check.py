@@ -49,7 +49,7 @@ def editing() -> list[Row]:
         f"{len(took[0])} keys in a machine of {lines} lines in a system of {SYSTEM_FILES} files, each from `didChange` "
         f"to the file's diagnostics, over stdio; median of {SESSIONS} sessions"
     )
-    middle, slow = median(map(median, took)), median(percentile(each, 95) for each in took)
+    middle, slow = median(map(median, took)), median(percentile(durations, 95) for durations in took)
     return [
         Row("keystroke, median", seconds(middle), "", how),
         Row("keystroke, 95th percentile", seconds(slow), "< 60 ms", "the same keys"),
@@ -113,9 +113,9 @@ def large_file() -> list[Row]:
             with started() as server:
                 server.initialize(path.parent)
                 sent = server.open(path, text)
-                arrived, found = server.diagnostics(path, 1)
+                arrived, diagnostics = server.diagnostics(path, 1)
                 took.append(arrived - sent)
-    answer = " and ".join(f"`{each['code']}`: {each['message']}" for each in found)
+    answer = " and ".join(f"`{diagnostic['code']}`: {diagnostic['message']}" for diagnostic in diagnostics)
     how = f"a machine of {len(text) / 1e6:.1f} MB, from `didOpen` to its diagnostics, over stdio. {answer}"
     return [Row("10 MB opened", seconds(median(took)), "< 10 s", how)]
 
@@ -152,7 +152,7 @@ def growth() -> list[Row]:
     for machines in GROWTH:
         with system(machines + 3) as folder:
             medians.append(median(checks(folder / "main.xml", RUNS)[1]))
-    rates = [f"{each / machines * 1000:.1f}" for each, machines in zip(medians, GROWTH, strict=True)]
+    rates = [f"{duration / machines * 1000:.1f}" for duration, machines in zip(medians, GROWTH, strict=True)]
     how = f"generated systems of {listed(GROWTH)} machines: {listed(rates)} ms a machine; median of {RUNS}"
     return [Row("growth", listed(map(seconds, medians)), "linear", how)]
 

@@ -20,7 +20,7 @@ def growth() -> list[Row]:
     rows = []
     for dimension in DIMENSIONS:
         size = min(LARGEST, dimension.most)
-        small, large = (_time(dimension, each) for each in (max(1, size // 10), size))
+        small, large = (_time(dimension, length) for length in (max(1, size // 10), size))
         method = f"{dimension.name}: {size // 10:,} and {size:,}; `api.check` of one system"
         rows.append(Row("check, growth", f"{seconds(small)}, {seconds(large)}", "at most ten times", method))
     return rows

@@ -28,7 +28,7 @@ def svg(
 
 
 def _lines(series: Mapping[str, Sequence[Point]], across: str, up: str) -> Iterator[str]:
-    points = [point for each in series.values() for point in each]
+    points = [point for line_points in series.values() for point in line_points]
     (left, right), (low, high) = (_decades([point[axis] for point in points]) for axis in (0, 1))
 
     def place(size: float, took: float) -> str:
@@ -54,10 +54,10 @@ def _lines(series: Mapping[str, Sequence[Point]], across: str, up: str) -> Itera
     yield f'<polyline points="{" ".join(place(*corner) for corner in frame)}" stroke="black" fill="none"/>'
     yield f'<text x="{WIDTH / 2}" y="{HEIGHT - 14}" text-anchor="middle">{across}</text>'
     yield f'<text x="14" y="{MARGIN - 24}">{up}</text>'
-    for number, (name, found) in enumerate(series.items()):
+    for number, (name, curve) in enumerate(series.items()):
         color = COLORS[number % len(COLORS)]
-        yield f'<polyline points="{" ".join(place(*p) for p in found)}" stroke="{color}" fill="none" stroke-width="2"/>'
-        for point in found:
+        yield f'<polyline curve="{" ".join(place(*p) for p in points)}" stroke="{color}" fill="none" stroke-width="2"/>'
+        for point in curve:
             x, _, y = place(*point).partition(",")
             yield f'<circle cx="{x}" cy="{y}" r="3.5" fill="{color}"/>'
         yield f'<text x="{MARGIN + 14}" y="{MARGIN + 16 * number}" fill="{color}">{name}</text>'

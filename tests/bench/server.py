@@ -55,21 +55,21 @@ class Server:
         """
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
         params = {"processId": None, "workspaceFolders": folders, "capabilities": capabilities or {}}
-        self.tell("initialize", {**params, "initializationOptions": options}, 1)
+        self.send("initialize", {**params, "initializationOptions": options}, 1)
         self.capabilities = self.answer(1)[1]["result"]["capabilities"]
-        self.tell("initialized", {})
+        self.send("initialized", {})
 
     def open(self, path: Path, text: str) -> float:
         """Open a document; return the time directly before."""
         document = {"uri": path.as_uri(), "languageId": "ascxml", "version": 1, "text": text}
-        return self.tell("textDocument/didOpen", {"textDocument": document})
+        return self.send("textDocument/didOpen", {"textDocument": document})
 
     def change(self, path: Path, version: int, change: dict[str, Any]) -> float:
         """Send a change of a document; return the time directly before."""
         document = {"uri": path.as_uri(), "version": version}
-        return self.tell("textDocument/didChange", {"textDocument": document, "contentChanges": [change]})
+        return self.send("textDocument/didChange", {"textDocument": document, "contentChanges": [change]})
 
-    def tell(self, method: str, params: object, id_: int | None = None) -> float:
+    def send(self, method: str, params: object, id_: int | None = None) -> float:
         """Send a message; return the time directly before."""
         message = {"jsonrpc": "2.0", "method": method, "params": params}
         body = json.dumps(message if id_ is None else {**message, "id": id_}).encode()
@@ -83,35 +83,35 @@ class Server:
     def diagnostics(self, path: Path, version: int) -> tuple[float, list[dict[str, Any]]]:
         """Wait for the diagnostics of a version of a document. Return when they arrived, and the diagnostics."""
         at, message = self.wait(is_diagnostics(path, version))
-        found: list[dict[str, Any]] = message["params"]["diagnostics"]
-        return at, found
+        diagnostics: list[dict[str, Any]] = message["params"]["diagnostics"]
+        return at, diagnostics
 
     def answer(self, id_: int) -> tuple[float, dict[str, Any]]:
         """Wait for the answer to a request. Return when it arrived."""
         return self.wait(is_answer(id_))
 
-    def wait(self, wanted: Wanted) -> tuple[float, dict[str, Any]]:
+    def wait(self, predicate: Wanted) -> tuple[float, dict[str, Any]]:
         """The next message that is expected, and when it arrived. Other messages are discarded.
 
         Raises:
             TimeoutError: the message does not arrive.
         """
-        return self.wait_for_all(wanted)[0]
+        return self.wait_for_all(predicate)[0]
 
-    def wait_for_all(self, *wanted: Wanted) -> list[tuple[float, dict[str, Any]]]:
+    def wait_for_all(self, *predicates: Wanted) -> list[tuple[float, dict[str, Any]]]:
         """Like `wait`, for several messages in any order."""
-        found: dict[Wanted, tuple[float, dict[str, Any]]] = {}
-        while len(found) < len(wanted):
+        messages: dict[Wanted, tuple[float, dict[str, Any]]] = {}
+        while len(messages) < len(predicates):
             try:
                 at, message = self._answers.get(timeout=TIMEOUT_S)
             except queue.Empty:
                 raise TimeoutError(
-                    f"no such answer in {TIMEOUT_S} s: {listed(w.__qualname__ for w in wanted)}"
+                    f"no such answer in {TIMEOUT_S} s: {listed(w.__qualname__ for w in predicates)}"
                 ) from None
-            for each in wanted:
-                if each not in found and each(message):
-                    found[each] = (at, message)
-        return [found[each] for each in wanted]
+            for predicate in predicates:
+                if predicate not in messages and predicate(message):
+                    messages[predicate] = (at, message)
+        return [messages[predicate] for predicate in predicates]
 
     def resident_memory(self) -> int | None:
         """The resident memory in bytes; `None` on systems without /proc."""
@@ -140,11 +140,11 @@ def is_diagnostics(path: Path, version: int) -> Wanted:
     """Whether a message contains the diagnostics of a version of a document."""
     uri = path.as_uri()
 
-    def is_it(message: dict[str, Any]) -> bool:
+    def matches(message: dict[str, Any]) -> bool:
         params = message.get("params")
         return isinstance(params, dict) and (params.get("uri"), params.get("version")) == (uri, version)
 
-    return is_it
+    return matches
 
 
 def _bodies(stream: IO[bytes]) -> Iterator[tuple[float, bytes]]:

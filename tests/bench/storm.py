@@ -41,7 +41,7 @@ print(json.dumps(exact(api.to_jani(api.load(sys.argv[2], sys.argv[4:]), [sys.arg
 
 
 def probabilities() -> list[Row]:
-    return [_row(each) for each in EXPECTED] if conformance.PRESENT else []
+    return [_row(expected) for expected in EXPECTED] if conformance.PRESENT else []
 
 
 def _row(expected: Expected) -> Row:
@@ -52,11 +52,11 @@ def _row(expected: Expected) -> Row:
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     took = time.perf_counter() - before
     least, greatest, states = json.loads(output.splitlines()[-1])
-    same = all(abs(found - expected.probability) < 1e-6 for found in (least, greatest)) and states == expected.states
-    found = f"{least:g} to {greatest:g}, {states} states" + ("" if same else ", NOT AS EXPECTED")
+    same = all(abs(result - expected.probability) < 1e-6 for result in (least, greatest)) and states == expected.states
+    result = f"{least:g} to {greatest:g}, {states} states" + ("" if same else ", NOT AS EXPECTED")
     target = f"{expected.probability:g}, {expected.states} states"
     how = f"property {expected.property} of {expected.system}, least and greatest; {seconds(took)}"
-    return Row("Storm", found, target, how)
+    return Row("Storm", result, target, how)
 
 
 BENCHMARKS: dict[str, Benchmark] = {"storm": probabilities}

@@ -12,7 +12,7 @@ from bench.check import opened
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys
 from bench.report import Row, percentile, seconds, table
-from bench.requests import REQUESTS, REST, at_rest
+from bench.requests import REQUESTS, REST, idle_times
 from bench.server import started
 from bench.trees import NODES, write_tree
 from roaml import api
@@ -56,10 +56,10 @@ def test_keys_change_what_is_wrong(tmp_path: Path) -> None:
         assert key.before == last
         assert key.text == key.before[: key.start] + key.inserted + key.before[key.end :]
         workspace.open(path, key.text)
-        found = workspace.snapshot().checker.diagnostics(path)
-        assert found or known, f"a server would not answer {key.change()}"
-        changes += found != known
-        known, last = found, key.text
+        diagnostics = workspace.snapshot().checker.diagnostics(path)
+        assert diagnostics or known, f"a server would not answer {key.change()}"
+        changes += diagnostics != known
+        known, last = diagnostics, key.text
     assert known == ()
     assert changes > 0.9 * len(pressed)
 
@@ -81,8 +81,8 @@ def test_the_server_answers(tmp_path: Path) -> None:
     with started() as server:
         server.initialize(tmp_path)
         sent = server.open(path, text.replace('"speed"', '"sped"', 1))
-        arrived, found = server.diagnostics(path, 1)
-        assert {each["code"] for each in found} == {"undeclared-variable", "unused-variable"}
+        arrived, diagnostics = server.diagnostics(path, 1)
+        assert {diagnostic["code"] for diagnostic in diagnostics} == {"undeclared-variable", "unused-variable"}
         assert server.started < sent < arrived
         server.change(path, 2, {"text": text})
         assert server.diagnostics(path, 2)[1] == []
@@ -94,7 +94,7 @@ def test_every_request_is_answered(tmp_path: Path) -> None:
     with opened(tmp_path, REST) as (server, text):
         for request in REQUESTS:
             assert request.capability in server.capabilities
-            took = list(islice(at_rest(server, path, text, request), 8))
+            took = list(islice(idle_times(server, path, text, request), 8))
             assert len(took) == 8
             assert min(took) > 0
 

@@ -135,7 +135,7 @@ def capacities() -> list[Row]:
 
 def _grows(measure: str, runs: list[Run], what: str) -> Row:
     took = [run.translate + run.write for run in runs]
-    rates = [f"{each / run.size * 1e9:.0f}" for each, run in zip(took, runs, strict=True)]
+    rates = [f"{duration / run.size * 1e9:.0f}" for duration, run in zip(took, runs, strict=True)]
     sizes = listed(f"{run.size / 1e6:.1f}" for run in runs)
     how = f"{what}, translated and written: {sizes} MB of JANI; {listed(rates)} ms for each MB"
     return Row(measure, listed(map(seconds, took)), "linear in the output", how)

@@ -102,14 +102,14 @@ def grid(folder: Path, size: int) -> str:
 def grids() -> dict[int, tuple[float, float | None, float]]:
     """Size -> time in s for 20,000 traces, time in s of Storm (`None`: too many states, or too long), and the
     probability."""
-    found = {}
+    results = {}
     for size in SIZES:
         with tempfile.TemporaryDirectory() as folder:
             main = grid(Path(folder), size)
             cost = call(main, "--method", "fixed", "--max-traces", "20000", "--jobs", "1")
             (result,) = json.loads(cost.output)["results"]
-            found[size] = (result["seconds"], _exhaustively(main), result["probability"])
-    return found
+            results[size] = (result["seconds"], _exhaustively(main), result["probability"])
+    return results
 
 
 def _exhaustively(main: str) -> float | None:
@@ -146,12 +146,12 @@ def growth() -> list[Row]:
 def confidences() -> dict[float, tuple[int, float]]:
     """Confidence -> number of traces and time in s for the assembly robot with its bug, with an epsilon of 0.01."""
     main = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
-    found = {}
+    results = {}
     for confidence in CONFIDENCES:
         options = ("--property", "block_placed", "--confidence", str(confidence), "--jobs", "1")
         (result,) = json.loads(call(main, *options).output)["results"]
-        found[confidence] = (result["traces"], result["seconds"])
-    return found
+        results[confidence] = (result["traces"], result["seconds"])
+    return results
 
 
 def confidence() -> list[Row]:

@@ -21,8 +21,8 @@ def test_what_it_writes_is_clean(command: Command, tmp_path: Path, name: str) ->
     written = files(tmp_path / name)
     assert {"main.xml", "tree.xml", "properties.jani"} <= written.keys()
     lines = done.out.splitlines()
-    told = {line.removeprefix("wrote ") for line in lines[:-2]}
-    assert told == {os.path.normpath(os.path.join(name, file)) for file in written}
+    announced = {line.removeprefix("wrote ") for line in lines[:-2]}
+    assert announced == {os.path.normpath(os.path.join(name, file)) for file in written}
     quoted = f"'{name}/main.xml'" if " " in name else f"{name}/main.xml"
     assert lines[-1] == f"next: as2fm-lsp --check {quoted}"
     checked = command("--check", tmp_path / name / "main.xml", "--warnings-as-errors", "--severity", "information")

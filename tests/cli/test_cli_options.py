@@ -101,10 +101,10 @@ def test_wrong_use(command: Command, arguments: list[str], complaint: str) -> No
 
 def test_all_commands_count_the_same_files(command: Command, tmp_path: Path) -> None:
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
-    told = "3 files checked: 1 error"
-    assert command("--check", "main.xml").out.splitlines()[-1] == told
+    summary = "3 files checked: 1 error"
+    assert command("--check", "main.xml").out.splitlines()[-1] == summary
     for name in ("translate", "verify"):
-        assert told in command(name, "main.xml").err.splitlines(), name
+        assert summary in command(name, "main.xml").err.splitlines(), name
     (tmp_path / "clock.ascxml").write_text(clock.CLOCK)
     command("translate", "main.xml")
     (tmp_path / "main.jani").write_text((tmp_path / "main.jani").read_text().replace('"automata"', '"automaton"'))

@@ -33,8 +33,8 @@ def write(folder: Path, files: dict[str, str]) -> Path:
 
 
 def parsed(text: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(text)
-    return found
+    report: dict[str, Any] = json.loads(text)
+    return report
 
 
 def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) -> None:
@@ -47,7 +47,7 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
         lines[1],
     )
     assert lines[2].startswith("    the clock waits at 2 s for the tree")
-    assert lines[6].startswith("    help: a tick must be answered before time passes")
+    assert lines[6].startswith("    help: a tick must return a status before time passes")
     assert lines[6].endswith(" [answer-needs-time]")
     assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[7])
     assert done.out.count("the clock waits") == 1
@@ -115,14 +115,14 @@ def test_getting_stuck_can_be_an_error(command: Command, ward: Path, level: str)
 
 
 def test_json(command: Command, ward: Path) -> None:
-    found = parsed(command("verify", "main.xml", "--format", "json", "--stuck", "error").out)
-    (result,) = found["results"]
+    report = parsed(command("verify", "main.xml", "--format", "json", "--stuck", "error").out)
+    (result,) = report["results"]
     assert result["ends"] == {
         **{reason.key: 0 for reason in End},
         "goal_decided": result["passed"],
         "stuck": result["failed"],
     }
-    known = found["stuck"]
+    known = report["stuck"]
     assert (known["level"], known["traces"], known["cut"]) == ("error", 100, 0)
     assert known["lower"] < known["stuck"] / 100 < known["upper"]
     waits = known["example"]["waits"]
@@ -141,7 +141,7 @@ def test_json(command: Command, ward: Path) -> None:
 
 def line(folder: Path, name: str, text: str) -> int:
     lines = (folder / name).read_text(encoding="utf-8").splitlines()
-    return next(number for number, each in enumerate(lines, 1) if text in each)
+    return next(number for number, other_line in enumerate(lines, 1) if text in other_line)
 
 
 @pytest.mark.parametrize("level", ["warning", "error"])
@@ -153,8 +153,8 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
     assert (failure is not None) == (level == "error")
     assert suites.get("failures") == ("1" if level == "error" else "0")
     assert suites.get("tests") == "2"
-    told = cases["does not get stuck"].findtext("failure" if level == "error" else "system-out") or ""
-    assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in told
+    output = cases["does not get stuck"].findtext("failure" if level == "error" else "system-out") or ""
+    assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in output
     beneath = cases["delivered"].findtext("skipped") or ""
     assert "ends: goal decided" in beneath
     assert f"  {level}: " in beneath
@@ -165,15 +165,15 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
 
 
 def test_the_property_stuck_can_be_verified(command: Command, ward: Path) -> None:
-    found = parsed(command("verify", "main.xml", "--property", "stuck", "--format", "json").out)
-    (result,) = found["results"]
+    report = parsed(command("verify", "main.xml", "--property", "stuck", "--format", "json").out)
+    (result,) = report["results"]
     assert result["property"] == "stuck"
     assert result["upper"] - result["lower"] < 0.021
     assert result["passed"] == result["ends"]["stuck"]
     assert result["failed"] == result["ends"]["tree_finished"]
     # The property `stuck` was requested, so no further traces are generated.
-    assert "traces" not in found["stuck"]
-    assert found["stuck"]["example"]["waits"]
+    assert "traces" not in report["stuck"]
+    assert report["stuck"]["example"]["waits"]
 
 
 def test_it_can_be_expected_not_to_get_stuck(command: Command, tmp_path: Path) -> None:
@@ -190,7 +190,7 @@ def test_explained_to_the_end(command: Command, ward: Path) -> None:
         story = command("verify", "main.xml", *options, "--explain").out
         assert re.search(r": trace \d+ gets stuck after \d+ steps; \d+ turns matter", story)
         *last, advice, legend = story.rstrip().splitlines()[-6:]
-        assert advice.startswith("  help: a tick must be answered")
+        assert advice.startswith("  help: a tick must return a status")
         assert "bt_1002 is Fetch (tree.xml:5)" in legend
         assert [re.sub(r" {2,}", "  ", text).split("  ")[2] for text in last] == [
             "the clock",
@@ -263,7 +263,7 @@ def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path)
     steps = [edge("s", way("e", 0.3, x=1), way("e", 0.7))]
     written = document(automaton("a", "s e", steps), variables=[variable("x")], properties=goals)
     (tmp_path / "model.jani").write_text(json.dumps(written), encoding="utf-8")
-    done = command("verify", "model.jani")
+    done = command("verify", "model.jani", "--method", "adaptive")
     assert re.search(r"\n  ends: goal decided [\d,]+, no step possible [\d,]+\n", done.out)
     assert "stuck" not in done.out
     assert command("verify", "model.jani", "--property", "stuck").status == 2

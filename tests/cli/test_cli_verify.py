@@ -60,10 +60,10 @@ def rows(text: str) -> dict[str, dict[str, Any]]:
 def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--format", "json", "--seed", 1)
     assert (done.status, done.err) == (0, "")
-    found = rows(done.out)
+    results = rows(done.out)
     names = {"all_delivered", "never_empty", "docks_only_when_low", "never_delivers_when_empty"}
-    assert {name: row["probability"] for name, row in found.items()} == dict.fromkeys(names, 1.0)
-    assert set(found["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
+    assert {name: row["probability"] for name, row in results.items()} == dict.fromkeys(names, 1.0)
+    assert set(results["all_delivered"]) >= {"lower", "upper", "traces", "undecided", "seed", "method", "confidence"}
     assert not (robot / "main.jani").exists()
 
 
@@ -79,11 +79,15 @@ def test_expectations_decide_the_exit_status(command: Command, tmp_path: Path) -
     name = write(tmp_path, coin())
     met = command("verify", name, "--expect", "heads <= 0.4", "--expect", "never >= 1")
     assert (met.status, "expected ≤ 0.4: met" in met.out) == (0, True)
-    missed = command("verify", name, "--expect", "heads >= 0.4", "--format", "json")
+    missed = command("verify", name, "--expect", "heads >= 0.4", "--format", "json", "--method", "adaptive")
     assert missed.status == 1
     (judged,) = rows(missed.out)["heads"]["expectations"]
     assert judged == {"expected": "≥ 0.4", "met": False, "certain": True, "under_uniform_choices_only": False}
+    exactly = rows(command("verify", name, "--expect", "heads >= 0.4", "--format", "json").out)["heads"]
+    assert exactly["expectations"] == [{**judged, "not_met": "by the least value, which is 0.3"}]
     assert command("verify", name, "--expect", "heads = 0.3").status == 0
+    assert command("verify", name, "--expect", "heads = 0.305").status == 0, "within epsilon, as for traces"
+    assert command("verify", name, "--expect", "heads = 0.32").status == 1
 
 
 def test_a_threshold_of_the_property_is_an_expectation(command: Command, tmp_path: Path) -> None:
@@ -121,8 +125,8 @@ def test_results_do_not_depend_on_jobs(command: Command, tmp_path: Path) -> None
     name = write(tmp_path, coin())
 
     def numbers(*options: object) -> dict[str, dict[str, Any]]:
-        found = rows(command("verify", name, "--format", "json", *options).out)
-        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in found.items()}
+        results = rows(command("verify", name, "--format", "json", *options).out)
+        return {key: {k: v for k, v in row.items() if k != "seconds"} for key, row in results.items()}
 
     assert numbers("--jobs", 1) == numbers("--jobs", 2) == numbers()
     assert numbers("--seed", 1) != numbers()
@@ -197,11 +201,11 @@ def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Pat
 
 
 def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
-    name = write(tmp_path, coin())
-    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1")
+    name, traces = write(tmp_path, coin()), ("--method", "adaptive")
+    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1", *traces)
     assert "expected ≥ 1: met; no trace against it in 200; the interval reaches down to 0.98\n" in done.out
     assert "expected ≥ 0.1: met\n" in done.out
-    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads")
+    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads", *traces)
     assert re.search(r"expected ≤ 0: met; no trace against it in 200; the interval reaches up to 0\.0[12]", done.out)
 
 
@@ -245,6 +249,9 @@ def test_explains_why_something_bad_happens(command: Command, tmp_path: Path) ->
     """If the expected probability is low, the trace in which the property holds is shown."""
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.1", "--explain")
     assert done.status == 1
+    assert "heads passed in the shortest trace after 1 step" in done.out
+    assert "x: 0 → 1" in done.out
+    done = command("verify", "model.jani", "--expect", "heads <= 0.1", "--explain", "--method", "adaptive")
     assert "heads passed in trace " in done.out
     assert "x: 0 → 1" in done.out
 
@@ -424,7 +431,7 @@ def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_
         while b"schedulers tried" not in seen:
             seen += os.read(ours, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=60)
+        out, _ = running.communicate(timeout=TIMEOUT_S)
     os.close(ours)
     assert re.search(rb"p, least probability: round \d+ of \d+, [\d,]+ of [\d,]+ schedulers tried", seen)
     assert running.returncode == 130
@@ -493,6 +500,8 @@ def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
         out = command("verify", write(tmp_path, written), "--exhaustive").out
         states = "all 3 states" if symbol == "G" else "none of the 3 states"
         assert f"  proof: its condition holds in {states}\n" in out
+        row = rows(command("verify", "model.jani", "--exhaustive", "--format", "json").out)["p"]
+        assert row["exact"]["proof"] == ("all" if symbol == "G" else "none")
 
 
 def test_schedulers(command: Command, tmp_path: Path) -> None:
@@ -500,9 +509,9 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     written["automata"][0]["edges"].append(edge("s", way("e", 0.8, x=1), way("e", 0.2)))
     name = write(tmp_path, written)
     options = ("--scheduler", "lss", "--epsilon", 0.03, "--property", "heads")
-    found = rows(command("verify", name, *options, "--format", "json").out)["heads"]
-    assert found["least"]["probability"] == pytest.approx(0.3, abs=0.05)
-    assert found["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
+    result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
+    assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
+    assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
     assert "least probability found 0." in command("verify", name, *options).out
 
 
@@ -522,9 +531,9 @@ def test_expected_rewards(command: Command, tmp_path: Path) -> None:
 
 
 def errors(text: str) -> list[dict[str, Any]]:
-    found = json.loads(text)["errors"]
-    assert isinstance(found, list)
-    return found
+    entries = json.loads(text)["errors"]
+    assert isinstance(entries, list)
+    return entries
 
 
 def place(folder: Path, text: str, name: str = "model.jani") -> int:

@@ -144,7 +144,9 @@ class Client:
         """The variables of a scope, by their names."""
         scopes = self.ask("scopes", frameId=frame)["scopes"]
         reference = next(scope["variablesReference"] for scope in scopes if scope["name"] == name)
-        return {each["name"]: each for each in self.ask("variables", variablesReference=reference)["variables"]}
+        return {
+            variable["name"]: variable for variable in self.ask("variables", variablesReference=reference)["variables"]
+        }
 
     def step(self) -> int:
         step = self.ask("choices")["step"]

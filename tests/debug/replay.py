@@ -37,11 +37,11 @@ def sources_of(main: Path) -> Sources:
     return Sources(api.as_target(system), system.analysis)
 
 
-def replay(sources: Sources, checker: ModelChecker, asked: CompiledProperty, trace: int) -> Iterator[str]:
+def replay(sources: Sources, checker: ModelChecker, property_: CompiledProperty, trace: int) -> Iterator[str]:
     """The differences between a trace and its replay."""
-    name = asked.question.name
+    name = property_.question.name
     recording = Recording(trace)
-    Recorder(checker, asked, SEED, MAX_STEPS).rush(recording)
+    Recorder(checker, property_, SEED, MAX_STEPS).rush(recording)
     debugger = start(sources, Start(name, SEED, trace), lambda *_: None)
     session = debugger.session
     states = [session.state()]
@@ -84,14 +84,17 @@ def main(traces: int, name: str) -> int:
         started = time.perf_counter()
         sources = sources_of(path)
         checker = api.checker(sources.target.model)
-        for asked in checker.asked:
+        for property_ in checker.compiled_properties:
             for trace in range(traces):
                 replayed += 1
-                for difference in replay(sources, checker, asked, trace):
+                for difference in replay(sources, checker, property_, trace):
                     differences += 1
-                    print(f"{path.parent.name}: {asked.question.name}, trace {trace}: {difference}", flush=True)
+                    print(
+                        f"{path.parent.name}: {property_.question.name}, trace {trace}: {difference}",
+                        flush=True,
+                    )
         spent = time.perf_counter() - started
-        print(f"{conformance.label(path)}: {len(checker.asked)} properties, {spent:.0f} s", flush=True)
+        print(f"{conformance.label(path)}: {len(checker.compiled_properties)} properties, {spent:.0f} s", flush=True)
     print(f"{replayed} traces, {differences} differences")
     return 1 if differences else 0
 

@@ -69,7 +69,7 @@ def test_the_console_publishes_and_completes(client: Client) -> None:
         ({"data": 300}, "`data` must be between 0 and 255, not 300"),
         ({"data": 0.5}, "`data` must be an integer"),
         ({"data": True}, "`data` must be a number, not true"),
-        ({"x": 1}, "there is no field `x`; there are data"),
+        ({"x": 1}, "there is no field `x`; the only field is `data`"),
         ([1], "must be an object"),
         ("{data: ", "a value"),
     ],
@@ -77,7 +77,7 @@ def test_the_console_publishes_and_completes(client: Client) -> None:
 def test_fields_that_do_not_fit(client: Client, fields: object, reason: str) -> None:
     client.begin(BUG)
     assert reason in client.refusal("publish", event="/arm/command", fields=fields)
-    assert "no topic, service, action or event" in client.refusal("publish", event="/nothing", fields={})
+    assert "there is no such topic, service, action or event" in client.refusal("publish", event="/nothing", fields={})
     assert client.step() == 0
 
 

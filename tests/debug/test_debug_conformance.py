@@ -18,9 +18,12 @@ FOLDERS = ("ros_add_int_srv_example", "probabilistic_transitions", "robot_naviga
 def test_traces_are_the_same_forwards_and_backwards(folder: str) -> None:
     sources = sources_of(next(path for path in systems() if path.parent == ROOT / "models" / folder))
     checker = api.checker(sources.target.model)
-    for asked in checker.asked[:2]:
+    for property_ in checker.compiled_properties[:2]:
         for trace in range(2):
-            assert list(replay(sources, checker, asked, trace)) == [], (asked.question.name, trace)
+            assert list(replay(sources, checker, property_, trace)) == [], (
+                property_.question.name,
+                trace,
+            )
 
 
 @pytest.mark.parametrize("folder", ["array_of_strings", "array_of_data_structs", "ros_add_int_srv_example"])

@@ -26,7 +26,7 @@ from roaml.smc.record import SHORTEST, Recording
 
 def space_of(written: Json, limits: StateLimits | None = None, modules: Any = None) -> Space:
     checker = ModelChecker(model(written))
-    return explore(checker, checker.asked[0], limits or StateLimits(), modules=modules)
+    return explore(checker, checker.compiled_properties[0], limits or StateLimits(), modules=modules)
 
 
 def plainly(written: Json) -> Space:
@@ -45,7 +45,7 @@ def choices(space: Space) -> list[Any]:
 @settings(max_examples=60, deadline=None, derandomize=True)
 def test_all_states_are_those_of_a_simple_search(written: Json) -> None:
     checker = ModelChecker(model(written))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     try:
         expected = {(*s.place, *s.ints) for s in Explorer(compiled).reachable(100_000)}
     except StateFaultError:
@@ -206,7 +206,7 @@ def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> 
     space = space_of(written)
     if space.problem is not None:
         return
-    explorer = Explorer(space.checker.compiled(space.asked))
+    explorer = Explorer(space.checker.compiled(space.compiled_property))
     layers, seen = [{explorer.initial}], {explorer.initial}
     path = shortest(space, TRUE)
     length = 10_000 if path is None else len(path.steps)

@@ -18,7 +18,7 @@ from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
 from roaml.verification.exhaustive import exact_values
-from roaml.verification.schedulers import asks_for_minimum
+from roaml.verification.schedulers import is_minimised
 
 FOLDER = conformance.ROOT.parent / "qvbs"
 MAX_STATES = 6_000
@@ -61,11 +61,14 @@ def load(name: str) -> Model:
 @pytest.mark.parametrize("row", rows())
 def test_values_are_those_of_storm(row: dict[str, Any]) -> None:
     model = load(row["model"])
-    checker = ModelChecker(model, [asked for asked in model.properties if asked.name == row["property"]])
-    asked = checker.asked[0]
-    exact = exact_values(checker, asked, StateLimits())
+    checker = ModelChecker(
+        model,
+        [property_ for property_ in model.properties if property_.name == row["property"]],
+    )
+    property_ = checker.compiled_properties[0]
+    exact = exact_values(checker, property_, StateLimits())
     assert exact.is_precise
-    extreme = exact.minimum if asks_for_minimum(asked.question) else exact.maximum
+    extreme = exact.minimum if is_minimised(property_.question) else exact.maximum
     for bounds, value in ((extreme, row["asked"]), (exact.uniform, row["uniform"])):
         assert bounds.upper - bounds.lower <= WIDTH
         assert bounds.lower - STORM <= value <= bounds.upper + STORM

@@ -248,7 +248,7 @@ a in b
 """,
     """
 /ab+c/g
-^^^^^^^ regular expressions are not supported
+^^^^^^^ regular expressions are not supported; compare strings with `==`
 => _
 """,
     """
@@ -336,13 +336,13 @@ f(a, , b)
 """,
     """
 a + b)
-     ^ `)` closes nothing
+     ^ `)` closes no bracket; remove it
 => (+ a b)
 """,
     """
 (a]
 ^ `(` is never closed with `)`
-  ^ `]` closes nothing
+  ^ `]` closes no bracket; remove it
 => a
 """,
     """
@@ -424,7 +424,7 @@ a @ b
 """,
     """
 @a
-^ `@` has no meaning in an expression
+^ `@` is not allowed in an expression; remove it
 => a
 """,
     """

@@ -162,7 +162,7 @@ def test_fixes_can_be_applied(text: str) -> None:
         for fix in finding.fixes:
             after = parse(Decoded(apply_edits(text, fix.edits).replace("&amp;", "&").replace("&lt;", "<"), 0))[1]
             if fix.preferred and len(findings) == 1:
-                assert finding.message not in {each.message for each in after}
+                assert finding.message not in {other.message for other in after}
 
 
 @given(TEXTS, st.booleans())

@@ -74,11 +74,11 @@ def many(chosen: Sequence[Strategy], cases: int, first: int, jobs: int, slowest:
             print(f"{len(done)} cases, {rate:.0f} a second, {len(kinds)} kinds of failure", flush=True)
     spent = time.perf_counter() - started
     print(f"{len(done)} cases in {spent:.0f} s on {jobs} processes: {len(done) / spent:.0f} a second")
-    for ran in sorted(done, key=lambda each: -each.seconds)[:slowest]:
+    for ran in sorted(done, key=lambda case: -case.seconds)[:slowest]:
         print(f"{ran.name} took {ran.seconds:.2f} s")
-    for kind, found in kinds.items():
-        smallest = min(found, key=lambda each: each[0].size)[0].name
-        print(f"{len(found)} cases, the smallest is {smallest}: {kind}")
+    for kind, failures in kinds.items():
+        smallest = min(failures, key=lambda case: case[0].size)[0].name
+        print(f"{len(failures)} cases, the smallest is {smallest}: {kind}")
     return 1 if kinds else 0
 
 
@@ -87,14 +87,14 @@ def pairs(seeds: range) -> int:
     counts = dict.fromkeys(Outcome, 0)
     for number, seed in enumerate(seeds, 1):
         mistakes = choose(seed)
-        found, details = outcome(*mistakes)
-        counts[found] += 1
-        if found is not Outcome.BOTH:
+        result, details = outcome(*mistakes)
+        counts[result] += 1
+        if result is not Outcome.BOTH:
             shown = " and ".join(f"{mistake.file}, {mistake.what}" for mistake in mistakes)
-            print(f"seed {seed}: {found.value}: {details}\n    {shown}", flush=True)
+            print(f"seed {seed}: {result.value}: {details}\n    {shown}", flush=True)
         if number % 500 == 0 or number == len(seeds):
             print(
-                f"{number} pairs: " + ", ".join(f"{count} {each.value}" for each, count in counts.items()), flush=True
+                f"{number} pairs: " + ", ".join(f"{count} {kind.value}" for kind, count in counts.items()), flush=True
             )
     return 1 if counts[Outcome.LOST] else 0
 

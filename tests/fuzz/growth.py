@@ -37,8 +37,8 @@ def _system(
 ) -> Files:  # fmt: skip
     files = {name.replace("_", "."): text for name, text in files.items()}
     main = SYSTEM.format(types=types, tree=tree, nodes=nodes, parameters=parameters)
-    found = {"main.xml": main, "p.jani": PROPERTIES, **files}
-    return found | {"m.ascxml": machine} if machine else found
+    texts = {"main.xml": main, "p.jani": PROPERTIES, **files}
+    return texts | {"m.ascxml": machine} if machine else texts
 
 
 def _machine(head: str = "", body: str = "", more: str = "") -> str:

@@ -68,7 +68,7 @@ def _automaton(random: Random, number: int) -> Json:
 
 def _destinations(random: Random, locations: list[str], names: tuple[str, ...]) -> list[Json]:
     count = random.choice([1, 1, 1, 2, 3])
-    found = []
+    branches = []
     for share in {1: (1.0,), 2: (0.25, 0.75), 3: (0.5, 0.125, 0.375)}[count]:
         targets = random.sample([*names, "v"], random.randint(0, 3))
         assignments = []
@@ -79,8 +79,8 @@ def _destinations(random: Random, locations: list[str], names: tuple[str, ...]) 
         way: Json = {"location": random.choice(locations), "assignments": assignments}
         if count > 1:
             way["probability"] = {"exp": share}
-        found.append(way)
-    return found
+        branches.append(way)
+    return branches
 
 
 def _number(random: Random, names: tuple[str, ...], depth: int = 1) -> Any:

@@ -140,7 +140,7 @@ class _Worker:
                 ran: Ran = self.pipe.recv()
                 return ran
         except (EOFError, OSError):
-            self._process.join(5.0)
+            self._process.join(TIMEOUT_S)  # it is ending, which takes long on a busy machine
             return self._lost(f"the process died (exit code {self._process.exitcode})")
         if time.monotonic() - self._since > TIMEOUT_S:
             assert self._process.pid is not None

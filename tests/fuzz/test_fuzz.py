@@ -104,9 +104,11 @@ class _Bad:
 
 def test_what_no_case_may_do_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(strategies(), "bad", Strategy("bad", "", _Bad))
-    ran = {each.seed: each.failures for each in run_all([("bad", seed) for seed in range(7) if seed != 3], jobs=2)}
+    ran = {
+        outcome.seed: outcome.failures for outcome in run_all([("bad", seed) for seed in range(7) if seed != 3], jobs=2)
+    }
     monkeypatch.setattr(runner, "TIMEOUT_S", 0.5)  # of the case that never comes back, and of no other
-    ran |= {each.seed: each.failures for each in run_all([("bad", 3)], jobs=1)}
+    ran |= {outcome.seed: outcome.failures for outcome in run_all([("bad", 3)], jobs=1)}
     kinds = {seed: [failure.kind.partition(":")[0].partition(" at ")[0] for failure in ran[seed]] for seed in ran}
     died = ["the process died (exit code -6)"]
     assert kinds == {

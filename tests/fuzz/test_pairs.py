@@ -21,9 +21,9 @@ def test_there_are_many_mistakes_in_all_files() -> None:
 
 
 def test_sample() -> None:
-    found = {seed: outcome(*choose(seed)) for seed in range(SAMPLE)}
-    assert {seed: each for seed, each in found.items() if each[0] is Outcome.LOST} == {}
-    assert sum(each[0] is Outcome.BOTH for each in found.values()) >= 0.95 * SAMPLE
+    outcomes = {seed: outcome(*choose(seed)) for seed in range(SAMPLE)}
+    assert {seed: pair_outcome for seed, pair_outcome in outcomes.items() if pair_outcome[0] is Outcome.LOST} == {}
+    assert sum(pair_outcome[0] is Outcome.BOTH for pair_outcome in outcomes.values()) >= 0.95 * SAMPLE
 
 
 def mistake(file: str, old: str, new: str) -> Mistake:

@@ -76,7 +76,7 @@ def names_of(model: Model) -> Iterator[str]:
     groups |= {f"locations of {a.name}": [location.name for location in a.locations] for a in model.automata}
     groups |= {f"variables of {a.name}": [variable.name for variable in a.variables] for a in model.automata}
     groups["actions"] = [action.name for action in model.actions]
-    groups["properties"] = [each.name for each in model.properties]
+    groups["properties"] = [property_.name for property_ in model.properties]
     for what, names in groups.items():
         if len(names) != len(set(names)):
             yield f"{what.partition(' of ')[0]} of the same name"

@@ -16,10 +16,9 @@ from roaml.ide.names.lookup import SymbolGroup, symbol_group
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
-from roaml.model.system import sanitise
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot
-from roaml.scxml.names import safe_name
+from roaml.scxml.names import safe_name, sanitise
 from roaml.text import TextEdit, apply_edits
 
 FRESH = "zqfresh"
@@ -49,9 +48,7 @@ class System:
 
     def __init__(self, main: str, ros_paths: tuple[str, ...] = ()) -> None:
         self.main = main
-        self.ros_paths = ros_paths
-        self.texts: dict[str, str] = {}
-        result = self.check({})
+        result = api.check([main], ros_paths, Settings())
         self.texts = {path: result.source(path).text for path in result.files}
         self.files = result.files
         self.snapshot: Snapshot = result.snapshot
@@ -60,7 +57,10 @@ class System:
         self.model = None if jani is None else _canonical(jani)
 
     def check(self, texts: Mapping[str, str]) -> api.CheckResult:
-        return api.check([self.main], self.ros_paths, Settings(), texts)
+        """The result with other texts, in which only what depends on them is computed again."""
+        snapshot = self.snapshot.with_texts(texts)
+        diagnostics = tuple(d for path in self.files for d in snapshot.checker.diagnostics(path))
+        return api.CheckResult(diagnostics, self.files, (), snapshot)
 
     def cases(self) -> Iterator[Case]:
         """Each symbol that can be renamed, once, at its first place."""
@@ -115,12 +115,12 @@ class System:
     def _findings(
         self, result: api.CheckResult, new: str, old: str, edits: Mapping[str, tuple[TextEdit, ...]] | None = None
     ) -> list[tuple[str, ...]]:
-        found = []
+        rows = []
         for diagnostic in result.diagnostics:
             line = result.source(diagnostic.path).lines.position(diagnostic.span.start).line
             message = diagnostic.message.replace(new, old) if new else diagnostic.message
-            found.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
-        return sorted(found)
+            rows.append((diagnostic.path, str(line), diagnostic.code, diagnostic.severity.label, message))
+        return sorted(rows)
 
     def _jani(self, result: api.CheckResult) -> str | None:
         try:
@@ -134,12 +134,12 @@ def _differences(before: list[tuple[str, ...]], after: list[tuple[str, ...]]) ->
     return gone, [" ".join(row[1:]) for row in after if row not in before]
 
 
-def _same(before: object, after: str | None, old: str) -> bool:
+def _same(before: str, after: str | None, old: str) -> bool:
     """Whether a translation is equal to one in canonical form, except for a name and the order of names."""
     return after is not None and _canonical(after.replace(FRESH, old)) == before
 
 
-def _canonical(jani: str) -> object:
+def _canonical(jani: str) -> str:
     """The canonical form of a translation. Actions with the same name in several automata are listed once, because a
     rename may separate them. Comments are removed, because they contain names as the user writes them."""
     model = json.loads(jani)
@@ -149,13 +149,13 @@ def _canonical(jani: str) -> object:
     return _unordered(model)
 
 
-def _unordered(value: object) -> object:
-    """A JSON value with its lists sorted."""
+def _unordered(value: object) -> str:
+    """A JSON value as text, with its lists and members sorted."""
     if isinstance(value, dict):
-        return {key: _unordered(each) for key, each in value.items()}
+        return "{" + ", ".join(sorted(f"{key!r}: {_unordered(member)}" for key, member in value.items())) + "}"
     if isinstance(value, list):
-        return sorted(map(_unordered, value), key=repr)
-    return value
+        return "[" + ", ".join(sorted(map(_unordered, value))) + "]"
+    return repr(value)
 
 
 def _moved(offset: int, edits: tuple[TextEdit, ...]) -> int:

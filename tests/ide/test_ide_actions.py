@@ -43,8 +43,8 @@ def done(written: str, title: str) -> dict[str, str]:
     assert len(chosen) == 1, [action.title for action in actions(snapshot, path, place, lambda _: True)]
     texts = applied(snapshot, chosen[0].make())
     before, after = (
-        Counter(d.code for d in found(each) if d.severity is Severity.ERROR)
-        for each in (snapshot, snapshot.with_texts(texts))
+        Counter(d.code for d in found(current) if d.severity is Severity.ERROR)
+        for current in (snapshot, snapshot.with_texts(texts))
     )
     assert not after - before
     folder = path_of("")
@@ -54,8 +54,8 @@ def done(written: str, title: str) -> dict[str, str]:
 def new_warnings(snapshot: Snapshot, texts: dict[str, str]) -> set[str]:
     """The codes of new findings of any severity except hints."""
     before, after = (
-        Counter(d.code for d in found(each) if d.severity >= Severity.INFORMATION)
-        for each in (snapshot, snapshot.with_texts(texts))
+        Counter(d.code for d in found(current) if d.severity >= Severity.INFORMATION)
+        for current in (snapshot, snapshot.with_texts(texts))
     )
     return set(after - before)
 

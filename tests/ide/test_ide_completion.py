@@ -506,8 +506,8 @@ def test_no_element_is_offered_that_is_reported_at_once(name: str, mark: str) ->
 
     def moment(text: str) -> Snapshot:
         workspace = Workspace((), Settings(), [path_of("main.xml")])
-        for each, content in {**files, name: text}.items():
-            workspace.open(path_of(each), content)
+        for file, content in {**files, name: text}.items():
+            workspace.open(path_of(file), content)
         return workspace.snapshot()
 
     completions = complete(moment(f"{before}<{after}"), path_of(name), len(before) + 1)
@@ -649,8 +649,8 @@ def test_every_item_is_documented_or_simple() -> None:
         assert completions is not None
         for item in completions.items:
             if item.about is not None:
-                told = document(texts.analysis, item.about)
-                assert told, item
+                documentation = document(texts.analysis, item.about)
+                assert documentation, item
                 documented.add(item.about.kind.value)
     assert documented >= {"element", "attribute", "variable", "field", "publisher", "machine", "tree", "port", "event"}
 
@@ -708,7 +708,7 @@ def snapshot(texts: dict[str, str]) -> Snapshot:
 
 def offered(slot: str, text: str) -> list[Completions | None]:
     """The completions at each caret of a text that replaces a mark."""
-    name = next(name for name, each in FILES.items() if slot in each)
+    name = next(name for name, file_text in FILES.items() if slot in file_text)
     new, carets, _ = marked(FILES[name].replace(slot, text))
     moment = snapshot({**FILES, name: new})
     completion_lists = [complete(moment, path_of(name), caret) for caret in carets]
@@ -722,11 +722,11 @@ def compare(completions: Completions | None, expected: list[str]) -> None:
     if expected == ["nothing"]:
         assert not items
         return
-    wanted = [line for line in expected if not line.startswith("no ") and line != "only"]
-    labels = [re.split(r" => | : ", line)[0] for line in wanted]
+    expected_labels = [line for line in expected if not line.startswith("no ") and line != "only"]
+    labels = [re.split(r" => | : ", line)[0] for line in expected_labels]
     order = [label for label in items if label in labels]
     assert order == labels, list(items)
-    for line, label in zip(wanted, labels, strict=True):
+    for line, label in zip(expected_labels, labels, strict=True):
         if expected_detail := re.search(r" : (.*?)(?: => |$)", line.split(" => ")[0]):
             assert items[label].detail.startswith(expected_detail[1]), items[label]
         if " => " in line:
@@ -739,4 +739,4 @@ def compare(completions: Completions | None, expected: list[str]) -> None:
         if line.startswith("no "):
             assert line.removeprefix("no ") not in items
     if "only" in expected:
-        assert len(items) == len(wanted), list(items)
+        assert len(items) == len(expected_labels), list(items)

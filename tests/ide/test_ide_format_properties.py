@@ -36,16 +36,16 @@ def model(number: int) -> Model:
 @settings(max_examples=examples(150))
 def test_formatting_is_idempotent_and_changes_white_space_only(number: int, seed: int, layout: FileLayout) -> None:
     chance = random.Random(seed)
-    each = model(number)
+    sample = model(number)
     # What a comment keeps quiet depends on its line, which formatting may change: such comments are made plain ones.
-    damaged = {path: damage(chance, path, text).replace("as2fm:", "") for path, text in each.texts.items()}
-    before = check(each, damaged)
+    damaged = {path: damage(chance, path, text).replace("as2fm:", "") for path, text in sample.texts.items()}
+    before = check(sample, damaged)
     results = {}
     for path, text in damaged.items():
         if path in before.files:
             results[path] = apply_edits(text, format_edits(before.snapshot.analysis, path, layout))
             assert content(path, results[path]) == content(path, text)
-    after = check(each, damaged | results)
+    after = check(sample, damaged | results)
     for path, result in results.items():
         assert format_edits(after.snapshot.analysis, path, layout) == ()
         if can_format(after.snapshot.analysis, path):
@@ -62,8 +62,8 @@ def is_verbatim(text: str) -> bool:
     return "<!" in text or "preserve" in text or any(texts) or any("\n" in string for string in strings)
 
 
-def check(each: Model, texts: dict[str, str]) -> api.CheckResult:
-    return api.check([each.main], each.ros_paths, Settings(), texts)
+def check(sample: Model, texts: dict[str, str]) -> api.CheckResult:
+    return api.check([sample.main], sample.ros_paths, Settings(), texts)
 
 
 def findings(result: api.CheckResult) -> list[tuple[str, str]]:
@@ -124,8 +124,8 @@ def content(path: str, text: str) -> object:
     return [*nodes(text, parse(text).nodes)]
 
 
-def nodes(text: str, found: tuple[Node, ...] | list[Node]) -> Iterator[object]:
-    for node in found:
+def nodes(text: str, siblings: tuple[Node, ...] | list[Node]) -> Iterator[object]:
+    for node in siblings:
         raw = text[node.span.start : node.span.end]
         if isinstance(node, Element):
             attributes = [

@@ -186,7 +186,7 @@ def test_every_operator_and_key_of_properties_is_called_something() -> None:
 
 def test_every_place_of_some_systems() -> None:
     """No place causes an exception or a range outside of the file, and many places have a hover text."""
-    told = 0
+    hovers = 0
     for model in systems()[-3:]:
         analysis = api.check([model.main], model.ros_paths, Settings(), model.texts).snapshot.analysis
         for path, text in model.texts.items():
@@ -194,8 +194,8 @@ def test_every_place_of_some_systems() -> None:
                 actual_hover = hover(analysis, path, offset)
                 if actual_hover is not None:
                     assert 0 <= actual_hover.span.start <= offset <= actual_hover.span.end <= len(text)
-                    told += 1
-    assert told > 100
+                    hovers += 1
+    assert hovers > 100
 
 
 def test_half_typed(tmp_path: Path) -> None:

@@ -78,15 +78,15 @@ def test_edits(tmp_path: Path, written: str) -> None:
         kept.open(path, text)
     before, different = found(kept.snapshot()), 0
     for _ in range(60):
-        path = chance.choice([each for each in texts if not each.endswith("main.xml")])
+        path = chance.choice([other_path for other_path in texts if not other_path.endswith("main.xml")])
         there = [word for word in WORDS if word in texts[path]]
         if not there:
             continue
         changed = texts[path].replace(chance.choice(there), chance.choice(WORDS), 1)
         kept.open(path, changed)
         fresh = Workspace([str(tmp_path)], Settings(), [str(tmp_path / "main.xml")])
-        for each, text in {**texts, path: changed}.items():
-            fresh.open(each, text)
+        for other_path, text in {**texts, path: changed}.items():
+            fresh.open(other_path, text)
         after = found(fresh.snapshot())
         assert found(kept.snapshot()) == after, (path, changed)
         different += any(before[key] != after.get(key) for key in before if key[0] != path)

@@ -93,18 +93,18 @@ def test_only_the_requested_hints(tmp_path: Path) -> None:
 
 def test_what_hints_name(tmp_path: Path) -> None:
     analysis = load(tmp_path, MODELS["robot"])
-    told = []
+    descriptions = []
     for name in ("a.ascxml", "tree.xml"):
         for hint in inlay_hints(analysis, str(tmp_path / name), Span(0, 10**6)):
             for part in hint.parts:
                 if part.symbol is not None:
                     explanation = explain(analysis, part.symbol)
                     place = Path(explanation.location.path).name if explanation.location else ""
-                    told.append(f"{part.text}: {plain(explanation.text).splitlines()[0]} ({place})")
-    assert "Pose: struct Pose (types.xml)" in told
-    assert "/a/b: topic a__b : std_msgs/Int32 (a.ascxml)" in told
-    assert "bt_1000: In JANI automaton BT_plugin_1000_Sequence (Sequence.ascxml)" in told
-    assert "bt_1002: In JANI automaton BT_plugin_1002_w (plugin.ascxml)" in told
+                    descriptions.append(f"{part.text}: {plain(explanation.text).splitlines()[0]} ({place})")
+    assert "Pose: struct Pose (types.xml)" in descriptions
+    assert "/a/b: topic a__b : std_msgs/Int32 (a.ascxml)" in descriptions
+    assert "bt_1000: In JANI automaton BT_plugin_1000_Sequence (Sequence.ascxml)" in descriptions
+    assert "bt_1002: In JANI automaton BT_plugin_1002_w (plugin.ascxml)" in descriptions
 
 
 LENSES = """
@@ -148,14 +148,14 @@ def test_lenses(tmp_path: Path, model: str, name: str, expected: list[str]) -> N
     analysis, path = load(tmp_path, MODELS[model]), str(tmp_path / name)
     source = analysis.source(path)
     assert source is not None
-    found = []
+    rows = []
     for lens in lenses(analysis, path):
         line = source.lines.position(lens.span.start).line + 1
-        told = counted(analysis, lens.symbol, path)
-        found.append(f"{line} {lens.symbol.kind.value} {lens.symbol.name}: {told.title}")
-        assert all(analysis.source(place.path) is not None for place in told.places)
-        assert told.places == tuple(sorted(set(told.places)))
-    assert found == expected
+        uses = counted(analysis, lens.symbol, path)
+        rows.append(f"{line} {lens.symbol.kind.value} {lens.symbol.name}: {uses.title}")
+        assert all(analysis.source(place.path) is not None for place in uses.places)
+        assert uses.places == tuple(sorted(set(uses.places)))
+    assert rows == expected
 
 
 # an expression with the caret, and what is called there: the active parameter in brackets

@@ -27,14 +27,14 @@ MARKS = ("``", "**")
 def test_places(main: Path) -> None:
     result = api.check([str(main)], (str(conformance.INTERFACES),), Settings())
     analysis = result.snapshot.analysis
-    told = set()
+    descriptions = set()
     for path in result.files:
         text = result.source(path).text
         for offset in range(0, len(text) + 1, 7):
             actual_hover = hover(analysis, path, offset)
             if actual_hover is not None:
                 assert 0 <= actual_hover.span.start <= offset <= actual_hover.span.end <= len(text)
-                told.add(actual_hover.text)
+                descriptions.add(actual_hover.text)
             called = signature_help(analysis, path, offset)
             assert called is None or called.label.split("(")[0].removeprefix("Math.") in FUNCTIONS
         hints = inlay_hints(analysis, path, Span(0, len(text)))
@@ -45,13 +45,13 @@ def test_places(main: Path) -> None:
                 assert part.symbol is None or explain(analysis, part.symbol).text, part
         for lens in lenses(analysis, path):
             assert counted(analysis, lens.symbol, path).title
-    assert len(told) > 20
-    for each in told:
-        shown = plain(each)
+    assert len(descriptions) > 20
+    for description in descriptions:
+        shown = plain(description)
         assert shown
-        assert not any(mark in shown for mark in MARKS), each
-        assert max(map(len, shown.splitlines())) < 800, each
-        assert len(shown.splitlines()) < 80, each
+        assert not any(mark in shown for mark in MARKS), description
+        assert max(map(len, shown.splitlines())) < 800, description
+        assert len(shown.splitlines()) < 80, description
 
 
 @pytest.mark.parametrize("main", conformance.systems(), ids=conformance.label)

@@ -30,19 +30,19 @@ OURS = ("https://", "http://")
 EVIL = '<img src="x" onerror="alert(1)"> <!-- --> <a@b.c> ![p](x.png) [l](x) [r]: x `<b>` \\`<i>` &lt;b&gt; ```'
 
 
-def live(text: str) -> list[str]:
+def active_markup(text: str) -> list[str]:
     """The tags, pictures and links that a Markdown parser finds."""
-    found = []
+    active = []
     for token in COMMONMARK.parse(text):
-        for each in (token, *(token.children or ())):
-            if each.type in ("html_inline", "html_block", "image", "link_open"):
-                found.append(f"{each.type}: {each.content or each.attrs}")
-    return found
+        for inner in (token, *(token.children or ())):
+            if inner.type in ("html_inline", "html_block", "image", "link_open"):
+                active.append(f"{inner.type}: {inner.content or inner.attrs}")
+    return active
 
 
 def test_the_reader_finds_them() -> None:
-    assert {token.partition(":")[0] for token in live(EVIL)} == {"html_inline", "image", "link_open"}
-    assert live("<div>\n\ntext")
+    assert {token.partition(":")[0] for token in active_markup(EVIL)} == {"html_inline", "image", "link_open"}
+    assert active_markup("<div>\n\ntext")
 
 
 FRAGMENTS = (
@@ -68,8 +68,8 @@ anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
 def test_pieces(first: str, second: str, third: str) -> None:
     """In any combination of the pieces."""
     made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))
-    assert live(made) == []
-    assert live(paragraphs(prose(first), code(second), prose(third))) == []
+    assert active_markup(made) == []
+    assert active_markup(paragraphs(prose(first), code(second), prose(third))) == []
 
 
 PROSE = [
@@ -139,11 +139,11 @@ def _of_file(snapshot: Snapshot, path: str, text: str) -> Iterator[str]:
 @pytest.mark.parametrize("model", [ROBOT, CORNERS], ids=["robot", "corners"])
 def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: str) -> None:
     texts = {path: hostile(text, suffix, pattern) for path, text in split_files(model).items()}
-    told = set(filter(None, shown(texts)))
-    assert len(told) > 20
-    for text in told:
+    rendered = set(filter(None, shown(texts)))
+    assert len(rendered) > 20
+    for text in rendered:
         # Links of our own lead to the documents of the languages.
-        assert [each for each in live(text) if not any(ours in each for ours in OURS)] == [], text
+        assert [tag for tag in active_markup(text) if not any(ours in tag for ours in OURS)] == [], text
 
 
 def test_analysis_of_hostile_models_is_one() -> None:

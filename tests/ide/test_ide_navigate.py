@@ -66,21 +66,21 @@ def caret(folder: Path, file: str, piece: str) -> tuple[str, int]:
 
 
 def shown(analysis: Analysis, places: Iterable[Location]) -> list[str]:
-    found = []
+    lines = []
     for path, span in places:
         source = analysis.source(path)
         assert source is not None
         line = source.lines.position(span.start).line + 1
-        found.append(f"{os.path.basename(path)}:{line}:{source.text[span.start : span.end]}")
-    return found
+        lines.append(f"{os.path.basename(path)}:{line}:{source.text[span.start : span.end]}")
+    return lines
 
 
 def rows() -> list[tuple[str, str, str, list[str]]]:
-    found = []
+    cases = []
     for line in CASES.strip().splitlines():
         file, piece, question, *expected = re.split(r"  +", line.strip())
-        found.append((file, piece, question, expected))
-    return found
+        cases.append((file, piece, question, expected))
+    return cases
 
 
 @pytest.mark.parametrize(("file", "piece", "question", "expected"), rows())
@@ -93,8 +93,8 @@ def test_places(file: str, piece: str, question: str, expected: list[str], tmp_p
 def test_references_without_declaration(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     place = caret(tmp_path, "a.ascxml", 'event="g|o" target')
-    found = navigation.references(analysis, *place, with_declaration=False)
-    assert shown(analysis, found) == ["a.ascxml:6:go", "properties.jani:1:go", "properties.jani:2:go"]
+    references = navigation.references(analysis, *place, with_declaration=False)
+    assert shown(analysis, references) == ["a.ascxml:6:go", "properties.jani:1:go", "properties.jani:2:go"]
 
 
 def test_highlights(tmp_path: Path) -> None:
@@ -110,7 +110,9 @@ def test_highlights(tmp_path: Path) -> None:
 def test_search(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     paths = analysis.files_of(str(tmp_path / "main.xml"))
-    entries = {(each.symbol.kind.value, each.symbol.name, each.container) for each in search(analysis, paths, "PO")}
+    entries = {
+        (result.symbol.kind.value, result.symbol.name, result.container) for result in search(analysis, paths, "PO")
+    }
     assert entries == {("struct", "Pose", "")}
     assert ("state", "s", "A") in {
         (e.symbol.kind.value, e.symbol.name, e.container) for e in search(analysis, paths, "")

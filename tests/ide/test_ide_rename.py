@@ -68,10 +68,10 @@ def edit_rows() -> list[tuple[str, str, str, list[str]]]:
 def test_edits(file: str, piece: str, new: str, expected: list[str], tmp_path: Path) -> None:
     files = split_files(ROBOT)
     analysis = load(tmp_path, files)
-    found = rename(analysis, *caret(tmp_path, file, piece), new)
-    assert isinstance(found, Renaming), found
-    texts = {name: apply_edits(text, found.edits.get(str(tmp_path / name), ())) for name, text in files.items()}
-    for name, text in (each.split(": ", 1) for each in expected):
+    renaming = rename(analysis, *caret(tmp_path, file, piece), new)
+    assert isinstance(renaming, Renaming), renaming
+    texts = {name: apply_edits(text, renaming.edits.get(str(tmp_path / name), ())) for name, text in files.items()}
+    for name, text in (row.split(": ", 1) for row in expected):
         assert text in texts[name], texts[name]
 
 
@@ -79,17 +79,17 @@ def test_edits(file: str, piece: str, new: str, expected: list[str], tmp_path: P
 def test_refusals(row: str, tmp_path: Path) -> None:
     file, piece, new, reason = (row[:17].strip(), row[17:41].strip(), row[41:51].strip(), row[51:])
     analysis = load(tmp_path, split_files(ROBOT))
-    found = rename(analysis, *caret(tmp_path, file, piece), new)
-    assert isinstance(found, RenameRefusal)
-    assert reason in found.reason
+    renaming = rename(analysis, *caret(tmp_path, file, piece), new)
+    assert isinstance(renaming, RenameRefusal)
+    assert reason in renaming.reason
 
 
 def test_prepared(tmp_path: Path) -> None:
     analysis = load(tmp_path, split_files(ROBOT))
     path, offset = caret(tmp_path, "a.ascxml", 'topic="/a|/b"')
-    found = prepare(analysis, path, offset)
-    assert isinstance(found, Prepared)
-    assert (found.name, found.span.start) == ("a/b", offset - 1)
+    prepared = prepare(analysis, path, offset)
+    assert isinstance(prepared, Prepared)
+    assert (prepared.name, prepared.span.start) == ("a/b", offset - 1)
 
 
 def test_a_file_of_two_systems(tmp_path: Path) -> None:
@@ -106,9 +106,9 @@ def test_a_file_of_two_systems(tmp_path: Path) -> None:
     }
     analysis = load(tmp_path, files)
     place = caret(tmp_path, "a.ascxml", 'event="|e"')
-    found = rename(analysis, *place, "f")
-    assert isinstance(found, Renaming)
-    assert {Path(path).name: len(edits) for path, edits in found.edits.items()} == {
+    renaming = rename(analysis, *place, "f")
+    assert isinstance(renaming, Renaming)
+    assert {Path(path).name: len(edits) for path, edits in renaming.edits.items()} == {
         "a.ascxml": 2,
         "b.ascxml": 1,
         "shared.ascxml": 2,
@@ -123,9 +123,9 @@ def test_an_interface_that_is_its_own_handle(tmp_path: Path) -> None:
 </ascxml>"""
     analysis = load(tmp_path, {"a.ascxml": text})
     place = caret(tmp_path, "a.ascxml", 'callback name="/|x"')
-    found = rename(analysis, *place, "w")
-    assert isinstance(found, Renaming)
-    assert apply_edits(text, found.edits[place[0]]) == text.replace("/x", "/w")
+    renaming = rename(analysis, *place, "w")
+    assert isinstance(renaming, Renaming)
+    assert apply_edits(text, renaming.edits[place[0]]) == text.replace("/x", "/w")
     assert isinstance(rename(analysis, *place, "y"), RenameRefusal)
     assert isinstance(rename(analysis, *place, "z"), RenameRefusal)
     assert isinstance(rename(analysis, *caret(tmp_path, "a.ascxml", 'publish name="|y"'), "/x"), RenameRefusal)

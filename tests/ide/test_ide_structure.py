@@ -93,9 +93,9 @@ def test_selections(name: str) -> None:
     written, expected = SELECTED[name]
     text, [offset], _ = marked(written)
     analysis, path = one_file(text)
-    found = selections(analysis, path, offset)
-    assert [text[span.start : span.end] for span in found][: len(expected)] == expected
-    assert found[-1] == (0, len(text))
+    spans = selections(analysis, path, offset)
+    assert [text[span.start : span.end] for span in spans][: len(expected)] == expected
+    assert spans[-1] == (0, len(text))
 
 
 # --------------------------------------------------------------- linked names

@@ -123,11 +123,11 @@ def test_a_type_that_moves_is_read_where_it_is(tmp_path: Path, registry: Registr
     (tmp_path / "std_msgs" / "msg").mkdir(parents=True)
     own = tmp_path / "std_msgs" / "msg" / "Int32.msg"
     own.write_text("string data\n")
-    found = [registry.message("std_msgs", "Int32")]
+    messages = [registry.message("std_msgs", "Int32")]
     own.unlink()
     registry.search_path.refresh()
-    found.append(registry.message("std_msgs", "Int32"))
-    types = [d.sections[0].fields[0].type.name for d in found if isinstance(d, Definition)]
+    messages.append(registry.message("std_msgs", "Int32"))
+    types = [d.sections[0].fields[0].type.name for d in messages if isinstance(d, Definition)]
     assert types == ["string", "int32"]
 
 

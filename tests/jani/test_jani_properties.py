@@ -175,10 +175,10 @@ def test_members_of_a_property_file() -> None:
 )
 def test_identifiers(expression: str, names: list[str]) -> None:
     text, property_ = read(expression)
-    found = list(identifiers(property_.expression))
-    assert [name for name, _ in found] == names
-    assert [text[slice(*span)] for _, span in found] == names
-    assert len({span for _, span in found}) == len(found)
+    pairs = list(identifiers(property_.expression))
+    assert [name for name, _ in pairs] == names
+    assert [text[slice(*span)] for _, span in pairs] == names
+    assert len({span for _, span in pairs}) == len(pairs)
 
 
 def test_identifiers_in_a_half_typed_file() -> None:

@@ -388,8 +388,8 @@ def test_mistakes(code: str, place: str, example: str, message: str | None) -> N
     # A quoted name is reported with or without its quotes.
     spans = [finding.span for finding in findings]
     assert [text[slice(*span)].strip('"') for span in spans] == [text[slice(*span)].strip('"') for span in expected]
-    for span, wanted in zip(spans, expected, strict=True):
-        assert wanted.start - 1 <= span.start <= wanted.start + 1
+    for span, expected_text in zip(spans, expected, strict=True):
+        assert expected_text.start - 1 <= span.start <= expected_text.start + 1
     if message is not None:
         assert all(message in finding.message for finding in findings)
         assert {finding.code for finding in findings} <= {code, "jani-syntax"}

@@ -65,7 +65,7 @@ MISTAKES = [
     (
         """
         {"a": 1 "b": 2}
-                ^ a comma is missing before this
+                ^ a comma is missing before this value
         """,
         {"a": 1, "b": 2},
         '{"a": 1, "b": 2}',
@@ -89,7 +89,7 @@ MISTAKES = [
     (
         """
         [,1]
-         ^ unexpected comma
+         ^ unexpected comma; remove it
         """,
         [1],
         "[1]",
@@ -123,7 +123,7 @@ MISTAKES = [
     (
         """
         {"fu
-         ^^^ the string is never closed
+         ^^^ the string has no closing `"`
          ^^^ `:` and a value must follow `fu`
         "b": 2}
         """,
@@ -135,7 +135,7 @@ MISTAKES = [
         {'a': 'it''s'}
          ^^^ a string needs double quotes
               ^^^^ a string needs double quotes
-                  ^ a comma is missing before this
+                  ^ a comma is missing before this value
                   ^^^ a string needs double quotes
                   ^^^ `:` and a value must follow `s`
         """,
@@ -176,7 +176,7 @@ MISTAKES = [
     (
         """
         {"a": "open,
-              ^^^^^ the string is never closed
+              ^^^^^ the string has no closing `"`
          "b": 1}
         """,
         {"a": "open", "b": 1},
@@ -195,7 +195,7 @@ MISTAKES = [
     (
         """
         ["a\tb"]
-           ^ inside a string this character must be written `\\t`
+           ^ inside a string this character must be written as `\\t`
         """,
         ["a\tb"],
         '["a\\tb"]',
@@ -210,8 +210,8 @@ MISTAKES = [
                                   ^^ this number must be written as `1.0` in JSON
                                       ^^ this number must be written as `2` in JSON
                                           ^^^^^ this number must be written as `-0.5e3` in JSON
-                                                 ^^^^ `0x10` is not a number
-                                                       ^^^ `1-2` is not a number
+                                                 ^^^^ `0x10` is not a number; write for example `1.5` or `-2`
+                                                       ^^^ `1-2` is not a number; write for example `1.5` or `-2`
         """,
         ["?", "?", 7, 0.5, 1.0, 2, -500.0, "?", "?"],
         "[NaN, -Infinity, 7, 0.5, 1.0, 2, -0.5e3, 0x10, 1-2]",
@@ -229,7 +229,7 @@ MISTAKES = [
     (
         """
         {"a": 1} and more
-                 ^^^^^^^^ unexpected text after the value
+                 ^^^^^^^^ unexpected text after the value; a file contains one value
         """,
         {"a": 1},
         '{"a": 1} ',
@@ -245,7 +245,7 @@ MISTAKES = [
     (
         """
         [1, 2}]
-             ^ `}` closes nothing
+             ^ `}` closes no bracket; remove it
         """,
         [1, 2],
         "[1, 2]",
@@ -262,7 +262,7 @@ MISTAKES = [
         """
         ["a": 1]
          ^^^ a name with a value is only allowed in `{ }`
-              ^ a comma is missing before this
+              ^ a comma is missing before this value
         """,
         ["a", 1],
         None,
@@ -289,7 +289,7 @@ MISTAKES = [
         """
         [1,\u00a02 :]
            ^ this character is not white space in JSON
-              ^ unexpected colon
+              ^ unexpected colon; remove it
         """,
         [1, 2],
         "[1, 2 ]",
@@ -407,7 +407,7 @@ def test_nulls_in_lists_and_elsewhere() -> None:
     value, findings = parse("[1 null,null,null , null,null]")
     assert isinstance(value, JsonArray)
     assert (plain(value), value.length) == ([1, None, None, None, None, None], 6)
-    assert [finding.message for finding in findings] == ["a comma is missing before this"]
+    assert [finding.message for finding in findings] == ["a comma is missing before this value"]
     value, findings = parse('{"a":null,null}')
     assert plain(value) == {"a": None, "": None}
     assert [finding.span for finding in findings] == [(10, 14)]

@@ -90,8 +90,10 @@ def test_violations(grammar: Grammar, marked: str, expected: str) -> None:
     start, end = marked.index("«"), marked.index("»") - 1
     document = parse(text)
     assert document.findings == ()
-    told = [(place(v), describe(v)) for v in validate(document, grammar)]
-    assert [where for where, _ in told if re.fullmatch(re.escape(expected).replace(r"\*", ".*"), _)] == [(start, end)]
+    violations = [(place(v), describe(v)) for v in validate(document, grammar)]
+    assert [where for where, _ in violations if re.fullmatch(re.escape(expected).replace(r"\*", ".*"), _)] == [
+        (start, end)
+    ]
 
 
 def place(violation: Violation) -> Span:
@@ -204,9 +206,9 @@ UNMET = [
 ]
 
 
-@pytest.mark.parametrize(("simple", "value", "wanted"), UNMET)
-def test_unmet(simple: SimpleType, value: str, wanted: str) -> None:
-    assert unmet(simple, value) == wanted
+@pytest.mark.parametrize(("simple", "value", "expected"), UNMET)
+def test_unmet(simple: SimpleType, value: str, expected: str) -> None:
+    assert unmet(simple, value) == expected
 
 
 ATTRIBUTES = [

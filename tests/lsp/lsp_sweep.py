@@ -263,7 +263,7 @@ class Sweep:
         self._next_id += len(sent)
         self.asked += len(sent)
         for number, (name, _, params) in enumerate(sent):
-            server.tell(name, params, first + number)
+            server.send(name, params, first + number)
         expected = [is_answer(first + number) for number in range(len(sent))]
         return [message for _, message in server.wait_for_all(*expected)] if expected else []
 
@@ -288,8 +288,8 @@ class Sweep:
     def _ranges(self, value: object, path: str) -> Iterator[str]:
         """The ranges in an answer that are outside their texts."""
         if isinstance(value, list):
-            for each in value:
-                yield from self._ranges(each, path)
+            for inner in value:
+                yield from self._ranges(inner, path)
         if not isinstance(value, dict):
             return
         if value.keys() == {"start", "end"}:
@@ -298,14 +298,14 @@ class Sweep:
         # The ranges of a call are in the file of the caller: the source of the call, or the item of the request.
         document = value.get("textDocument", value.get("from", value))
         here = _path(document, path)
-        for key, each in value.items():
-            if key == "changes" and isinstance(each, dict):
-                for uri, edits in each.items():
+        for key, inner in value.items():
+            if key == "changes" and isinstance(inner, dict):
+                for uri, edits in inner.items():
                     yield from self._ranges(edits, str(to_fs_path(uri)))
             elif key in ("targetRange", "targetSelectionRange"):
-                yield from self._ranges(each, str(to_fs_path(value["targetUri"])))
+                yield from self._ranges(inner, str(to_fs_path(value["targetUri"])))
             elif key != "data":
-                yield from self._ranges(each, here)
+                yield from self._ranges(inner, here)
 
     def _range(self, value: Json, path: str) -> Iterator[str]:
         source = self._source(path)

@@ -118,7 +118,7 @@ def test_edits(encoding: types.PositionEncodingKind, text: str, made: list[Edit]
         range_ = types.Range(start, end)
         client.edit(range_, edit.text)
         changes.append(types.TextDocumentContentChangePartial(range_, edit.text))
-    for change in [changes] if together else [[each] for each in changes]:
+    for change in [changes] if together else [[single] for single in changes]:
         session.change("untitled:1", change, 2)
     assert session.text("untitled:1") == client.text
 

@@ -28,16 +28,16 @@ async def asked(folder: Path, method: str, *files: str, **more: object) -> list[
     """The answers for some files, sent as bytes, because the library of the client would convert them to objects."""
     server = await start_raw()
     folders = [{"uri": folder.as_uri(), "name": "robot"}]
-    server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
-    server.tell("initialized", {})
+    server.send("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
+    server.send("initialized", {})
     for number, name in enumerate(files):
-        server.tell(method, {"textDocument": {"uri": (folder / name).as_uri()}, **more}, 10 + number)
+        server.send(method, {"textDocument": {"uri": (folder / name).as_uri()}, **more}, 10 + number)
     return await answers(server, len(files))
 
 
 async def answers(server: RawServer, count: int) -> list[Any]:
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, said, _ = await server.end()
     by_id = {message["id"]: message for message in said if "id" in message and "method" not in message}
     return [by_id[10 + number]["result"] for number in range(count)]
@@ -150,9 +150,9 @@ async def test_plain_scxml_of_a_broken_system(tmp_path: Path) -> None:
 async def test_migrate(tmp_path: Path) -> None:
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
-    (found,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
-    assert (found["files"], found["problem"]) == (["main.xml", "clock.scxml → clock.ascxml"], "")
-    changes = found["edit"]["documentChanges"]
+    (migrated,) = await asked(tmp_path, "as2fm/migrate", "main.xml")
+    assert (migrated["files"], migrated["problem"]) == (["main.xml", "clock.scxml → clock.ascxml"], "")
+    changes = migrated["edit"]["documentChanges"]
     old, new = (tmp_path / "clock.scxml").as_uri(), (tmp_path / "clock.ascxml").as_uri()
     assert {"kind": "rename", "oldUri": old, "newUri": new} in changes
     texts = {change["textDocument"]["uri"]: change["edits"][0]["newText"] for change in changes if "edits" in change}
@@ -178,8 +178,8 @@ async def test_unsaved_text_is_drawn(tmp_path: Path) -> None:
     async with connect(tmp_path) as client:
         path = tmp_path / "clock.ascxml"
         client.open(path, clock.CLOCK.replace('<state id="on">', '<state id="off"/><state id="on">'))
-        found = await _picture(client, path)
-    assert [node.label for node in found.nodes] == ["off", "on"]
+        picture = await _picture(client, path)
+    assert [node.label for node in picture.nodes] == ["off", "on"]
 
 
 async def _picture(client: Client, path: Path) -> Any:

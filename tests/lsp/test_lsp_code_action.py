@@ -57,8 +57,8 @@ async def ask(client: Client, path: Path, text: str, at: str, *only: str) -> lis
     context = types.CodeActionContext([], only=list(only) or None)
     range_ = types.Range(position, position)
     params = types.CodeActionParams(types.TextDocumentIdentifier(path.as_uri()), range_, context)
-    found = await client.text_document_code_action_async(params)
-    return [action for action in found or () if isinstance(action, types.CodeAction)]
+    actions = await client.text_document_code_action_async(params)
+    return [action for action in actions or () if isinstance(action, types.CodeAction)]
 
 
 def applied(text: str, edits: list[types.TextEdit]) -> str:
@@ -203,7 +203,7 @@ async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
         counted = next(d for d in client.published[main.as_uri()].diagnostics if d.code == "input-count")
         assert counted.data == {"kind": "TREE"}
 
-        async def mended_by(sent: types.Diagnostic) -> list[types.Diagnostic]:
+        async def fixed_by(sent: types.Diagnostic) -> list[types.Diagnostic]:
             actions = await client.fixes(main, counted.range, [sent])
             [action] = [action for action in actions if action.title == "List `tree.xml`"]
             resolved = await client.code_action_resolve_async(action)
@@ -211,6 +211,6 @@ async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
             return list(resolved.diagnostics or ())
 
         translated = attrs.evolve(counted, message="in another language")
-        assert await mended_by(translated) == [translated]
+        assert await fixed_by(translated) == [translated]
         for data in (None, {"kind": "NONSENSE"}, {"kind": ["TREE"]}, [1, 2], "TREE", {"kind": "TREE", "more": 1}):
-            assert await mended_by(attrs.evolve(translated, data=data)) == [counted]
+            assert await fixed_by(attrs.evolve(translated, data=data)) == [counted]

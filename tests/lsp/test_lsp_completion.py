@@ -43,10 +43,10 @@ async def items(
     path = folder / "a.ascxml"
     async with connect(folder, capabilities=capabilities) as client:
         client.open(path, text)
-        found = await client.text_document_completion_async(params(path, position))
-        assert isinstance(found, types.CompletionList)
-        resolved = [await client.completion_item_resolve_async(item) for item in found.items[:5]]
-        return {item.label: item for item in (*resolved, *found.items[5:])}
+        completions = await client.text_document_completion_async(params(path, position))
+        assert isinstance(completions, types.CompletionList)
+        resolved = [await client.completion_item_resolve_async(item) for item in completions.items[:5]]
+        return {item.label: item for item in (*resolved, *completions.items[5:])}
 
 
 async def test_with_snippets(tmp_path: Path) -> None:
@@ -111,9 +111,9 @@ async def test_an_accepted_attribute_opens_its_values(tmp_path: Path) -> None:
             text = TEXT.replace(' type="std_msgs/Int32"', " ")
             client.open(path, text)
             position = types.Position(1, text.splitlines()[1].index("/>"))
-            found = await client.text_document_completion_async(params(path, position))
-            assert isinstance(found, types.CompletionList)
-            (item,) = (each for each in found.items if each.label == "type")
+            completions = await client.text_document_completion_async(params(path, position))
+            assert isinstance(completions, types.CompletionList)
+            (item,) = (candidate for candidate in completions.items if candidate.label == "type")
             assert isinstance(item.text_edit, types.TextEdit)
             assert item.text_edit.new_text == 'type="$1"'
             commands.append(item.command and item.command.command)

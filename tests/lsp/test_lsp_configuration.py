@@ -79,5 +79,5 @@ async def test_errors_in_settings_of_the_editor_are_reported(tmp_path: Path) -> 
     async with connect(tmp_path, options={"settings": {"ignore": ["no-such-rule"]}}) as client:
         client.open(tmp_path / "clock.ascxml")
         await client.until_codes(tmp_path / "clock.ascxml", "undeclared-variable")
-        told = [message.message for message in client.messages]
-        assert told == ["In the editor's settings: there is no rule `no-such-rule`."]
+        messages = [message.message for message in client.messages]
+        assert messages == ["In the editor's settings: there is no rule `no-such-rule`."]

@@ -111,7 +111,7 @@ async def test_lenses_say_how_much_is_used(tmp_path: Path) -> None:
         async with connect(tmp_path, options={"showReferences": command}) as client:
             lenses = await client.text_document_code_lens_async(types.CodeLensParams(document(plugin)))
             assert lenses
-            assert all(each.command is None for each in lenses)
+            assert all(lens.command is None for lens in lenses)
             resolved = await client.code_lens_resolve_async(lenses[0])
             assert resolved.command is not None
             assert (resolved.command.title, resolved.command.command) == ("2 uses in trees", command)
@@ -195,8 +195,8 @@ async def test_what_types_are_made_of(tmp_path: Path) -> None:
         assert [holder.name for holder in holders or ()] == ["geometry_msgs/Twist"]
         tree = tmp_path / "tree.xml"
         at = place(tree, tree.read_text(encoding="utf-8"), "<S|equence>")
-        found = await client.text_document_definition_async(types.DefinitionParams(*at))
-        assert isinstance(found, (list, tuple))
-        assert [each.uri.rpartition("/")[2] for each in found if isinstance(each, types.Location)] == [
+        locations = await client.text_document_definition_async(types.DefinitionParams(*at))
+        assert isinstance(locations, (list, tuple))
+        assert [location.uri.rpartition("/")[2] for location in locations if isinstance(location, types.Location)] == [
             "Sequence.ascxml"
         ]

@@ -21,9 +21,9 @@ def place(path: Path, text: str, piece: str) -> tuple[types.TextDocumentIdentifi
     return types.TextDocumentIdentifier(path.as_uri()), types.Position(line, at - text.rfind("\n", 0, at) - 1)
 
 
-def lines(found: object) -> list[tuple[str, int]]:
-    assert isinstance(found, (list, tuple))
-    return [(each.uri.rpartition("/")[2], each.range.start.line + 1) for each in found]
+def lines(locations: object) -> list[tuple[str, int]]:
+    assert isinstance(locations, (list, tuple))
+    return [(location.uri.rpartition("/")[2], location.range.start.line + 1) for location in locations]
 
 
 async def ask(client: Client, machine: Path, text: str) -> None:

@@ -27,20 +27,20 @@ CANCELLED, MODIFIED = -32800, -32801
 async def answers(*messages: tuple[str, object, int | None], **capabilities: object) -> dict[object, dict[str, object]]:
     """The answers to messages that are sent at once, after a request that takes long (with the id 9)."""
     server = await start_raw()
-    server.tell(
+    server.send(
         "initialize", {"processId": None, "capabilities": {"textDocument": {"diagnostic": {}}, **capabilities}}, 1
     )
-    server.tell("initialized", {})
+    server.send("initialized", {})
     document = {"uri": "untitled:long", "languageId": "ascxml", "version": 1, "text": LONG}
-    server.tell("textDocument/didOpen", {"textDocument": document})
-    server.tell("textDocument/diagnostic", {"textDocument": {"uri": "untitled:long"}}, 9)
+    server.send("textDocument/didOpen", {"textDocument": document})
+    server.send("textDocument/diagnostic", {"textDocument": {"uri": "untitled:long"}}, 9)
     for method, params, id_ in messages:
-        server.tell(method, params, id_)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
-    status, found, log = await server.end()
+        server.send(method, params, id_)
+    server.send("shutdown", None, 2)
+    server.send("exit")
+    status, messages, log = await server.end()
     assert (status, log) == (0, "")
-    return {message["id"]: message for message in found if "id" in message and "method" not in message}
+    return {message["id"]: message for message in messages if "id" in message and "method" not in message}
 
 
 def code(answer: dict[str, object]) -> object:
@@ -54,29 +54,29 @@ CHANGE = {"textDocument": {"uri": "untitled:long", "version": 2}, "contentChange
 
 
 async def test_cancelled_before_it_has_begun() -> None:
-    found = await answers(
+    by_id = await answers(
         ("textDocument/foldingRange", OF_LONG, 10),
         (TOKENS, OF_LONG, "eleven"),
         ("$/cancelRequest", {"id": 10}, None),
         ("$/cancelRequest", {"id": "eleven"}, None),
         ("textDocument/foldingRange", OF_LONG, 12),
     )
-    assert [code(found[id_]) for id_ in (9, 10, "eleven", 12)] == [None, CANCELLED, CANCELLED, None]
-    assert found[12]["result"]
+    assert [code(by_id[id_]) for id_ in (9, 10, "eleven", 12)] == [None, CANCELLED, CANCELLED, None]
+    assert by_id[12]["result"]
 
 
 async def test_cancelled_while_it_runs() -> None:
-    found = await answers(("$/cancelRequest", {"id": 9}, None), ("textDocument/foldingRange", OF_LONG, 10))
-    assert [code(found[id_]) for id_ in (9, 10)] == [CANCELLED, None]
+    by_id = await answers(("$/cancelRequest", {"id": 9}, None), ("textDocument/foldingRange", OF_LONG, 10))
+    assert [code(by_id[id_]) for id_ in (9, 10)] == [CANCELLED, None]
 
 
 async def test_cancelled_when_it_is_answered() -> None:
-    found = await answers(
+    by_id = await answers(
         ("textDocument/foldingRange", OF_LONG, 10),
         ("textDocument/foldingRange", {"textDocument": {"uri": "untitled:none"}}, 11),
         ("$/cancelRequest", {"id": 9999}, None),
     )
-    assert [code(found[id_]) for id_ in (9, 10, 11)] == [None, None, None]
+    assert [code(by_id[id_]) for id_ in (9, 10, 11)] == [None, None, None]
 
 
 @pytest.mark.parametrize(("again", "expected"), [([TOKENS], MODIFIED), (["textDocument/hover"], None), (None, None)])
@@ -84,43 +84,43 @@ async def test_a_text_that_is_about_to_change(again: list[str] | None, expected:
     """Only clients that support it are asked to repeat a request."""
     support = {"cancel": True, "retryOnContentModified": again}
     general = {} if again is None else {"general": {"staleRequestSupport": support}}
-    found = await answers(
+    by_id = await answers(
         (TOKENS, OF_LONG, 10), ("textDocument/didChange", CHANGE, None), (TOKENS, OF_LONG, 11), **general
     )
-    assert code(found[10]) == expected
-    assert found[11]["result"] != found[10].get("result")
+    assert code(by_id[10]) == expected
+    assert by_id[11]["result"] != by_id[10].get("result")
 
 
 async def test_a_cancelled_translation_writes_nothing(tmp_path: Path) -> None:
     main = clock.write(tmp_path)
     command = {"command": "as2fm.translateToJani", "arguments": [main.as_uri()]}
-    found = await answers(("workspace/executeCommand", command, 10), ("$/cancelRequest", {"id": 10}, None))
-    assert code(found[10]) == CANCELLED
+    by_id = await answers(("workspace/executeCommand", command, 10), ("$/cancelRequest", {"id": 10}, None))
+    assert code(by_id[10]) == CANCELLED
     assert not main.with_suffix(".jani").exists()
 
 
 async def test_invalid_requests_are_answered() -> None:
     server = await start_raw()
-    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
-    server.tell("textDocument/hover", {"textDocument": 5}, 10)
-    server.tell("textDocument/hover", None, 11)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("initialize", {"processId": None, "capabilities": {}}, 1)
+    server.send("textDocument/hover", {"textDocument": 5}, 10)
+    server.send("textDocument/hover", None, 11)
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, messages, _ = await server.end()
-    found = {message["id"]: message for message in messages}
-    assert [code(found[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
+    by_id = {message["id"]: message for message in messages}
+    assert [code(by_id[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
 
 
 async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:
     """A rejected request is not an internal error, so the log stays empty."""
     main = clock.write(tmp_path)
     server = await start_raw()
-    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
+    server.send("initialize", {"processId": None, "capabilities": {}}, 1)
     params = {"textDocument": {"uri": main.as_uri()}, "position": {"line": 0, "character": 0}, "newName": "x"}
-    server.tell("textDocument/rename", params, 10)
-    server.tell("no/such", {}, 11)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("textDocument/rename", params, 10)
+    server.send("no/such", {}, 11)
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, messages, log = await server.end()
     assert [code(message) for message in messages] == [None, -32803, -32601, None]
     assert log == ""
@@ -257,7 +257,7 @@ async def test_position_encodings(tmp_path: Path, encoding: str) -> None:
 @pytest.mark.parametrize("offers", [["utf-7", "utf-8", "utf-16"], ["utf-7"]], ids=["some", "none"])
 async def test_encodings_that_we_do_not_know(offers: list[str]) -> None:
     server = await start_raw()
-    server.send(
+    server.send_bytes(
         frame(
             {
                 "jsonrpc": "2.0",
@@ -267,8 +267,8 @@ async def test_encodings_that_we_do_not_know(offers: list[str]) -> None:
             }
         )
     )
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, (answer, _), _ = await server.end()
     expected = "utf-8" if "utf-8" in offers else "utf-16"
     assert answer["result"]["capabilities"]["positionEncoding"] == expected  # type: ignore[index]

@@ -16,13 +16,13 @@ TEXT = '<ascxml name="🤖">\n<state id="🤖" a="b"/></ascxml>'
 
 def read(data: Sequence[int]) -> list[tuple[int, int, int, str]]:
     """Line, first and last column and type of each token."""
-    found = []
+    tokens = []
     line = column = 0
     for i in range(0, len(data), 5):
         down, right, length, kind, _ = data[i : i + 5]
         line, column = line + down, right if down else column + right
-        found.append((line, column, column + length, LEGEND.token_types[kind]))
-    return found
+        tokens.append((line, column, column + length, LEGEND.token_types[kind]))
+    return tokens
 
 
 def applied(data: Sequence[int], edits: Sequence[types.SemanticTokensEdit]) -> list[int]:

@@ -49,8 +49,8 @@ async def ask(client: Client, method: str, params: object) -> Any:
 def plain(value: Any) -> Any:
     """Objects of the client's library as plain data."""
     if hasattr(value, "_asdict"):
-        return {key: plain(each) for key, each in value._asdict().items()}
-    return [plain(each) for each in value] if isinstance(value, list) else value
+        return {key: plain(member) for key, member in value._asdict().items()}
+    return [plain(item) for item in value] if isinstance(value, list) else value
 
 
 async def why(client: Client, main: Path, name: str) -> Any:
@@ -75,14 +75,14 @@ async def test_results_are_those_of_the_command_line(robot: Path, capsys: pytest
     (expected,) = json.loads(capsys.readouterr().out)["results"]
     async with connect(robot) as client:
         answer = await verify(client, main, [PLACED], QUICK)
-    (found,) = answer["results"]
+    (result,) = answer["results"]
     assert answer["errors"] == []
-    assert {key: found[key] for key in expected if key != "seconds"} == {
+    assert {key: result[key] for key in expected if key != "seconds"} == {
         key: value for key, value in expected.items() if key != "seconds"
     }
-    assert found["lower"] < 0.5 < found["upper"]
-    assert found["undecided"] == 0
-    assert found["counterexample"] is True
+    assert result["lower"] < 0.5 < result["upper"]
+    assert result["undecided"] == 0
+    assert result["counterexample"] is True
 
 
 async def test_all_properties_and_messages(robot: Path) -> None:
@@ -90,17 +90,17 @@ async def test_all_properties_and_messages(robot: Path) -> None:
     settings: dict[str, object] = {"verify": {"epsilon": 0.1, "expectations": {PLACED: "> 0.9", "nonsense": "much"}}}
     async with connect(robot, options={"settings": settings}) as client:
         answer = await verify(client, main)
-        told = [(message.type, message.message.splitlines()[0]) for message in client.messages]
+        messages = [(message.type, message.message.splitlines()[0]) for message in client.messages]
     names = [row["property"] for row in answer["results"]]
     assert PLACED in names
     assert len(names) == len(set(names)) > 1
     placed = next(row for row in answer["results"] if row["property"] == PLACED)
     assert placed["expectations"][0]["expected"] == "> 0.9"
-    assert told[0] == (
+    assert messages[0] == (
         types.MessageType.Warning,
         "The expectation of nonsense must have a form like '>= 0.95', not 'much'.",
     )
-    assert [text.split(":")[0] for kind, text in told[1:] if kind is types.MessageType.Info] == names
+    assert [text.split(":")[0] for kind, text in messages[1:] if kind is types.MessageType.Info] == names
 
 
 async def test_lens_and_hint_show_the_result_until_it_is_stale(robot: Path) -> None:
@@ -151,7 +151,7 @@ async def test_hints_can_be_left_out(tmp_path: Path) -> None:
     async with connect(tmp_path, options={"settings": {"inlayHints": {"results": False}}}) as client:
         await verify(client, main, ["ticks"], {"silent": True})
         assert await hints(client, properties) == []
-        assert any("Verify · 1 [" in title for title in await lenses(client, properties))
+        assert any("Verify · 1, exact" in title for title in await lenses(client, properties))
 
 
 async def test_the_client_is_asked_to_look_again(tmp_path: Path) -> None:
@@ -183,10 +183,10 @@ async def test_properties_that_can_be_verified(tmp_path: Path) -> None:
         assert ticks["uri"] == (tmp_path / "properties.jani").as_uri()
         assert "stale" not in ticks
         await verify(client, main, ["ticks"], {"silent": True})
-        ((ticks,),) = [each["properties"] for each in await ask(client, PROPERTIES, None)]
+        ((ticks,),) = [row["properties"] for row in await ask(client, PROPERTIES, None)]
         assert ticks["stale"] is False
         client.open(tmp_path / "clock.ascxml", clock.CLOCK.replace("% 10", "% 9"))
-        ((ticks,),) = [each["properties"] for each in await ask(client, PROPERTIES, None)]
+        ((ticks,),) = [row["properties"] for row in await ask(client, PROPERTIES, None)]
         assert ticks["stale"] is True
 
 
@@ -195,12 +195,12 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     async with connect(robot) as client:
         assert await why(client, main, PLACED) is None
         await verify(client, main, [PLACED], {**QUICK, "expectations": {PLACED: ">= 0.95"}})
-        found = await why(client, main, PLACED)
-    assert (found["property"], found["verdict"], found["stale"]) == (PLACED, "failed", False)
-    assert found["expected"] == "≥ 0.95"
-    assert found["heading"].startswith(f"{PLACED} failed in trace {found['trace']} after ")
-    steps = found["steps"]
-    assert f"; {len(steps)} turns matter" in found["heading"]
+        explanation = await why(client, main, PLACED)
+    assert (explanation["property"], explanation["verdict"], explanation["stale"]) == (PLACED, "failed", False)
+    assert explanation["expected"] == "≥ 0.95"
+    assert explanation["heading"].startswith(f"{PLACED} failed in trace {explanation['trace']} after ")
+    steps = explanation["steps"]
+    assert f"; {len(steps)} turns matter" in explanation["heading"]
     numbers = [step["step"] for step in steps]
     assert numbers == sorted(numbers)
     arm = (robot / "arm.ascxml").as_uri()
@@ -208,9 +208,9 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert first["uri"] == arm
     line = (robot / "arm.ascxml").read_text().splitlines()[first["range"]["start"]["line"]]
     assert line[first["range"]["start"]["character"] :].startswith("<")
-    nodes = [each["node"] for step in steps for each in step["highlights"] if each["uri"] == arm]
+    nodes = [mark["node"] for step in steps for mark in step["highlights"] if mark["uri"] == arm]
     assert "/still" in nodes
-    assert {each["kind"] for step in steps for each in step["highlights"]} == {"machine", "tree"}
+    assert {mark["kind"] for step in steps for mark in step["highlights"]} == {"machine", "tree"}
     assert all(step["time"].endswith(" s") for step in steps if step["who"])
 
 
@@ -218,9 +218,9 @@ async def test_the_whole_state_at_a_step_of_a_counterexample(robot: Path) -> Non
     main = robot / "main_with_bug.xml"
     async with connect(robot) as client:
         await verify(client, main, [PLACED], {**QUICK, "expectations": {PLACED: ">= 0.95"}})
-        found = await why(client, main, PLACED)
-        drop = next(step for step in found["steps"] if "holding: true → false" in step["details"])
-        params = {"textDocument": {"uri": main.as_uri()}, "property": PLACED, "trace": found["trace"]}
+        explanation = await why(client, main, PLACED)
+        drop = next(step for step in explanation["steps"] if "holding: true → false" in step["details"])
+        params = {"textDocument": {"uri": main.as_uri()}, "property": PLACED, "trace": explanation["trace"]}
         steps = {"step": drop["lastStep"], "earlier": drop["step"] - 1}
         groups = {group["name"]: group for group in await ask(client, TRACE_STATE, {**params, **steps})}
         same = {"step": drop["step"], "earlier": drop["step"]}
@@ -243,12 +243,12 @@ async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
     main, name = robot / "main.xml", "all_delivered"
     async with connect(robot) as client:
         await verify(client, main, [name], {**QUICK, "expectations": {name: "<= 0.5"}})
-        found = await why(client, main, name)
+        explanation = await why(client, main, name)
         params = {"textDocument": {"uri": main.as_uri()}, "kind": "tree"}
         tree = await ask(client, "as2fm/picture", params)
     # The property holds, which is not expected, so the story is that of a trace in which it holds.
-    assert (found["verdict"], found["expected"]) == ("passed", "≤ 0.5")
-    nodes = {each["node"] for step in found["steps"] for each in step["highlights"] if each["kind"] == "tree"}
+    assert (explanation["verdict"], explanation["expected"]) == ("passed", "≤ 0.5")
+    nodes = {mark["node"] for step in explanation["steps"] for mark in step["highlights"] if mark["kind"] == "tree"}
     assert nodes
     assert nodes <= {node["id"] for node in tree["nodes"]}
 
@@ -348,8 +348,8 @@ async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Pa
         assert (last["who"], last["uri"]) == ("Pharmacy", (tmp_path / "pharmacy.ascxml").as_uri())
         lines = (tmp_path / "pharmacy.ascxml").read_text(encoding="utf-8").splitlines()
         assert "ros_rate_callback" in lines[last["range"]["start"]["line"]]
-        told = [message for message in client.messages if message.type is types.MessageType.Warning]
-        assert [message.message for message in told] == [known["text"]]
+        messages = [message for message in client.messages if message.type is types.MessageType.Warning]
+        assert [message.message for message in messages] == [known["text"]]
         assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in known["text"]
         assert known["text"].startswith("probability of getting stuck: ")
         assert known["text"].splitlines()[-2].endswith(" [answer-needs-time]")
@@ -366,14 +366,14 @@ async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Pa
         ((hint, _),) = await hints(client, properties)
         assert hint.startswith("⚠ ")
         for name in ("delivered", "stuck"):
-            found = await why(client, main, name)
-            assert [step["who"] for step in found["steps"]][-4:] == [
+            explanation = await why(client, main, name)
+            assert [step["who"] for step in explanation["steps"]][-4:] == [
                 "the clock",
                 "the tree",
                 "Fetch (bt_1002)",
                 "Pharmacy",
             ]
-            assert found["steps"][-1]["highlights"][0]["node"] == "/busy"
+            assert explanation["steps"][-1]["highlights"][0]["node"] == "/busy"
         silent = await verify(client, main, ["delivered"], {**QUICK, "stuck": "error"})
         assert silent["stuck"]["level"] == "error"
         asked = await verify(client, main, ["stuck"], QUICK)
@@ -393,5 +393,5 @@ async def test_a_level_that_is_none(tmp_path: Path) -> None:
     async with connect(tmp_path, options={"settings": {"verify": {"stuck": "loud"}}}) as client:
         answer = await verify(client, tmp_path / "main.xml")
         assert answer["stuck"]["level"] == "warning"
-        told = [message.message for message in client.messages if message.type is types.MessageType.Warning]
-        assert told == ["verify.stuck must be one of warning, error, not 'loud'."]
+        messages = [message.message for message in client.messages if message.type is types.MessageType.Warning]
+        assert messages == ["verify.stuck must be one of warning, error, not 'loud'."]

@@ -65,7 +65,7 @@ def observe(tree: MockedTree, seed: int) -> Observed:
     model = replace(model, properties=tree_properties(model))
     never = model.properties[:1]
     checker = ModelChecker(model, never)
-    recorder = Recorder(checker, checker.asked[0], seed, 20_000)
+    recorder = Recorder(checker, checker.compiled_properties[0], seed, 20_000)
     status = {storage.name: storage for storage in recorder.shared if storage.name.endswith("_response__status")}
     leaves = {leaf.node.number: leaf.node.name for leaf in tree.leaves}
     drawn: set[int] = set()

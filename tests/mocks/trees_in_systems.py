@@ -82,7 +82,7 @@ def observe_system(drawn: Drawn, model: Model, seed: int) -> Observed:
     """One run of the translated system."""
     model = replace(model, properties=tree_properties(model))
     checker = ModelChecker(model, model.properties[:1])
-    recorder = Recorder(checker, checker.asked[0], seed, 40_000)
+    recorder = Recorder(checker, checker.compiled_properties[0], seed, 40_000)
     status = {storage.name: storage for storage in recorder.shared if storage.name.endswith("_response__status")}
     leaves = leaves_of(drawn)
     # A leaf is behind its conditions and those of the subtrees whose top it is.

@@ -61,7 +61,7 @@ def test_spans_of_atoms_and_braces_in_strings() -> None:
         ("", "", "expected a condition in braces: `{ level < 30 }`"),
         ("{a} &&", "", "expected a condition in braces: `{ level < 30 }`"),
         ("level", "level", "expected a condition in braces instead of `level`: `{ level < 30 }`"),
-        ("{ }", "{ }", "there is no condition in these braces"),
+        ("{ }", "{ }", "there is no condition in these braces; write for example `{ level < 30 }`"),
         ("({a}", "", "expected `)`"),
         ("{a} {b}", "{b}", "expected an operator or the end of the formula before `{b}`"),
         ("{a} S[5] {b}", "[5]", "bounds must be whole clock steps: `[1:5]`, `[:5]` or `[1:]`"),

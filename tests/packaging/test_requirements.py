@@ -23,13 +23,13 @@ TEXT = (ROOT / "vscode-extension" / "requirements.txt").read_text(encoding="utf-
 
 def pinned() -> dict[str, tuple[Requirement, list[str]]]:
     """Each requirement with its hashes, by its name."""
-    found = {}
+    requirements = {}
     for line in TEXT.replace("\\\n", " ").split("\n"):
         if line and not line.startswith("#"):
             written, *hashes = line.split("--hash=")
             requirement = Requirement(written.strip())
-            found[canonicalize_name(requirement.name)] = (requirement, [digest.strip() for digest in hashes])
-    return found
+            requirements[canonicalize_name(requirement.name)] = (requirement, [digest.strip() for digest in hashes])
+    return requirements
 
 
 def test_all_are_pinned_with_hashes() -> None:

@@ -86,7 +86,7 @@ IS_COMPILED = "import sys; sys.path.insert(0, sys.argv[1]); from roaml.smc.kerne
 def verified(installed: Path) -> str:
     """The results of a verification, without their durations."""
     example = installed / "as2fm_lsp/templates/delivery_robot/main.xml"
-    options = ("--property", "never_empty", "--method", "fixed", "--max-traces", "2")
+    options = ("--property", "never_empty", "--method", "fixed", "--max-traces", "2", "--scheduler", "uniform")
     said = run(sys.executable, "-I", "-c", VERIFY, str(installed), "verify", str(example), *options, cwd=installed)
     return re.sub(r"\d+\.\d s\b", "", said)
 

@@ -102,7 +102,7 @@ def test_statements(text: str, count: int) -> None:
         ('a := "x"', '"x"', "single quotes"),
         ("a := 'x", "'x", "no closing"),
         ("a := (1 + 2", "(", "is never closed"),
-        ("a := 1)", ")", "closes nothing"),
+        ("a := 1)", ")", "closes no bracket"),
         ("a ? 1", "", "needs a `:`"),
         ("a : 1", ":", "has no `?`"),
         ("a := .5", ".5", "digits on both sides"),

@@ -31,11 +31,11 @@ SYSTEMS = [ROBOT, *sorted({conformance.ROOT / case["model"] for case in conforma
 def test_traces_of_verify_are_replayed_forwards_and_backwards(path: Path) -> None:
     target = api.as_target(api.load(str(path), [str(conformance.INTERFACES)] if path != ROBOT else []))
     checker = api.checker(target.model)
-    for asked in checker.asked:
-        name = asked.question.name
-        recorder = Recorder(checker, asked, 1, 2_000)
+    for property_ in checker.compiled_properties:
+        name = property_.question.name
+        recorder = Recorder(checker, property_, 1, 2_000)
         session = api.session(target, name, seed=1)
-        for trace in range(TRACES if asked is checker.asked[0] else 2):
+        for trace in range(TRACES if property_ is checker.compiled_properties[0] else 2):
             recording = Recording(trace)
             steps = tuple(recorder.walk(recording))
             session = api.session(target, name, seed=1, trace=trace)

@@ -115,4 +115,7 @@ def answers(written: Json, traces: int = 1, max_steps: int = 10_000, seed: int =
     checker = ModelChecker(model(written))
     options = Options(method=EstimationMethod.FIXED, max_traces=traces, max_steps=max_steps, seed=seed)
     with Pool() as pool:
-        return {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
+        return {
+            property_.question.name: checker.answer(property_, options, pool)
+            for property_ in checker.compiled_properties
+        }

@@ -31,7 +31,7 @@ def conditions(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
 @st.composite
 def destinations(draw: st.DrawFn, locations: list[str], names: tuple[str, ...]) -> list[Json]:
     count = draw(st.integers(1, 2))
-    found = []
+    branches = []
     for number in range(count):
         targets = draw(st.lists(st.sampled_from([*names, "v"]), max_size=3, unique=True))
         assignments = []
@@ -39,8 +39,8 @@ def destinations(draw: st.DrawFn, locations: list[str], names: tuple[str, ...]) 
             ref: Any = at("v", op("%", draw(st.sampled_from(names)), 3)) if target == "v" else target
             assignments.append((ref, draw(numbers(names)), draw(st.integers(0, 1))))
         share = 1.0 if count == 1 else (0.25, 0.75)[number]
-        found.append(ways(draw(st.sampled_from(locations)), assignments, share))
-    return found
+        branches.append(ways(draw(st.sampled_from(locations)), assignments, share))
+    return branches
 
 
 @st.composite
@@ -52,8 +52,8 @@ def automata(draw: st.DrawFn, number: int) -> Json:
     for _ in range(draw(st.integers(1, 5))):
         action = draw(st.sampled_from([None, *ACTIONS, *ACTIONS]))
         guard = draw(st.none() | conditions(names))
-        found = draw(destinations(locations, names))
-        edges.append(edge(draw(st.sampled_from(locations)), *found, action=action, guard=guard))
+        branches = draw(destinations(locations, names))
+        edges.append(edge(draw(st.sampled_from(locations)), *branches, action=action, guard=guard))
     return automaton(f"m{number}", " ".join(locations), edges, [variable(own)])
 
 

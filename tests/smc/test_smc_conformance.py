@@ -37,9 +37,9 @@ def load(path: Path) -> Model:
 def test_reference_translations(path: Path) -> None:
     model = load(path)
     expected = {case["property"]: case for case in CASES if reference(case) == path}
-    checker = ModelChecker(model, [each for each in model.properties if each.name in expected])
+    checker = ModelChecker(model, [p for p in model.properties if p.name in expected])
     with Pool() as pool:
-        for asked in checker.asked:
-            case = expected[asked.question.name]
-            answer = checker.answer(asked, Options(seed=1), pool)
+        for property_ in checker.compiled_properties:
+            case = expected[property_.question.name]
+            answer = checker.answer(property_, Options(seed=1), pool)
             assert answer.value == pytest.approx(case["probability"], abs=case["tolerance"] + 1e-12)

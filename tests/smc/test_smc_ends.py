@@ -9,6 +9,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 import clock
+from both_kernels import plain_kernel
 from roaml import api
 from roaml.jani.writer import write
 from roaml.smc import end, kernel
@@ -18,7 +19,6 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from stuck_models import CROSSED, hospital, system
-from twin import plain_kernel
 
 FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
 GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
@@ -27,7 +27,7 @@ GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}
 def answer(checker: ModelChecker, traces: int = 1, max_steps: int = 1000, jobs: int = 1) -> Answer:
     options = Options(method=EstimationMethod.FIXED, max_traces=traces, max_steps=max_steps)
     with Pool(jobs, start_delay_s=0 if jobs > 1 else 1) as pool:
-        return checker.answer(checker.asked[0], options, pool)
+        return checker.answer(checker.compiled_properties[0], options, pool)
 
 
 def of_system(folder: Path, files: dict[str, str], *properties: str) -> ModelChecker:
@@ -160,37 +160,37 @@ def test_stuck_cannot_be_verified_in_a_plain_model() -> None:
 def test_a_property_of_this_name_is_the_one_that_is_asked(tmp_path: Path) -> None:
     files = hospital()
     files["properties.jani"] = files["properties.jani"].replace('"name": "delivered"', '"name": "stuck"')
-    (asked,) = of_system(tmp_path, files, "stuck").asked
-    assert not asked.question.is_stuck
-    assert asked.question.variables == ("topic_delivered_msg.valid",)
+    (property_,) = of_system(tmp_path, files, "stuck").compiled_properties
+    assert not property_.question.is_stuck
+    assert property_.question.variables == ("topic_delivered_msg.valid",)
 
 
 def test_both_kernels_end_for_the_same_reason(tmp_path: Path) -> None:
     checker = of_system(tmp_path, hospital())
-    for asked in (*checker.asked, checker.stuck):
-        compiled = checker.compiled(asked)
+    for property_ in (*checker.compiled_properties, checker.stuck):
+        compiled = checker.compiled(property_)
         both = [module.Kernel(compiled.program, compiled.goal) for module in (kernel, plain_kernel())]
         ends = []
         for trace in range(8):
-            found = []
-            for each in both:
-                each.begin(0, trace)
-                each.advance(10_000)
-                found.append((each.ending(), each.open_ways(0), each.outcome()))
-            assert found[0] == found[1]
-            ends.append(found[0][0])
+            results = []
+            for simulator in both:
+                simulator.begin(0, trace)
+                simulator.advance(10_000)
+                results.append((simulator.ending(), simulator.open_ways(0), simulator.outcome()))
+            assert results[0] == results[1]
+            ends.append(results[0][0])
         assert {End.STUCK.value} < set(ends)
 
 
 def test_a_batch_returns_the_end_of_each_trace(tmp_path: Path) -> None:
 
     checker = of_system(tmp_path, hospital())
-    outcome = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 10_000))
+    outcome = run(Task(checker.payload(checker.compiled_properties[0]), 0, 0, 10, 10_000))
     (rows,) = outcome.questions
     assert len(rows.ends) == len(rows.verdicts) == 10
     assert {(verdict, reason) for verdict, reason in zip(rows.verdicts, rows.ends, strict=True)} == {
         (0, End.STUCK),
         (1, End.DECIDED),
     }
-    cut = run(Task(checker.payload(checker.asked[0]), 0, 0, 10, 5))
+    cut = run(Task(checker.payload(checker.compiled_properties[0]), 0, 0, 10, 5))
     assert set(cut.questions[0].ends) == {End.CUT}

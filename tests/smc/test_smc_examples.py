@@ -51,7 +51,7 @@ def test_examples_have_the_expected_probabilities(name: str) -> None:
 
 def test_the_grid_world_exact_values() -> None:
     checker = api.checker(api.to_jani(api.load(str(ROOT / "examples/grid_world/main.xml"))))
-    exact = exact_values(checker, checker.asked[0], StateLimits(5000))
+    exact = exact_values(checker, checker.compiled_properties[0], StateLimits(5000))
     assert (exact.least, exact.greatest) == (pytest.approx(0.914925, abs=1e-6), pytest.approx(0.914925, abs=1e-6))
 
 

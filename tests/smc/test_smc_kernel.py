@@ -16,13 +16,13 @@ from smc_models import answers, automaton, document, edge, model, op, probabilit
 from smc_random import networks
 
 import roaml.smc
+from both_kernels import difference, plain_kernel
 from examples import examples
 from roaml import api
 from roaml.smc import kernel, program
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import ModelChecker
 from roaml.smc.opcodes import Op
-from twin import difference, plain_kernel
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = Path(roaml.smc.__file__).parent
@@ -54,9 +54,9 @@ def test_is_compiled_where_there_is_a_compiler() -> None:
 
 
 def same_traces(checker: ModelChecker, traces: int, steps: int) -> None:
-    for asked in checker.asked:
+    for property_ in checker.compiled_properties:
         for scheduler in (0, 5, MEMORY | 3, STARVE | 2, FAVOUR | 1):
-            assert difference(checker, asked, 11, traces, steps, scheduler) == ""
+            assert difference(checker, property_, 11, traces, steps, scheduler) == ""
 
 
 def test_same_traces_of_the_example() -> None:
@@ -94,11 +94,11 @@ def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
         variables=[variable("x", initial=LARGE), variable("y"), variable("one", initial=1)],
         properties={"p": probability(op("F", op("=", "y", 77)))},
     )
-    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).asked[0])
+    compiled = ModelChecker(model(written)).compiled(ModelChecker(model(written)).compiled_properties[0])
     for module in (kernel, plain_kernel()):
-        found = module.Kernel(compiled.program, compiled.goal)
-        assert found.begin(0, 0) == program.UNKNOWN
-        assert found.advance(5) == program.FAULTY
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        assert simulator.begin(0, 0) == program.UNKNOWN
+        assert simulator.advance(5) == program.FAULTY
     with pytest.raises(Exception, match=message):
         answers(written)
 
@@ -128,13 +128,13 @@ def test_random_numbers_are_those_of_splitmix(seed: int, trace: int) -> None:
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
     checker = ModelChecker(model(written))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     first, second = (kernel.Kernel(compiled.program, compiled.goal) for _ in range(2))
     second.begin(1, 1)
     second.advance(100)
     results = []
-    for each in (first, second):
-        each.begin(seed, trace)
-        each.advance(100)
-        results.append(each.outcome())
+    for simulator in (first, second):
+        simulator.begin(seed, trace)
+        simulator.advance(100)
+        results.append(simulator.outcome())
     assert results[0] == results[1]

@@ -117,12 +117,12 @@ def test_deadlock() -> None:
 
 
 def test_a_trace_that_is_cut_is_undecided() -> None:
-    found = document(
+    written = document(
         automaton("a", "l m", [edge("l", "m"), edge("m", "l")]),
         variables=[variable("x")],
         properties={"p": probability(op("F", A))},
     )
-    answer = answers(found, 50, max_steps=1000)["p"]
+    answer = answers(written, 50, max_steps=1000)["p"]
     assert (answer.tally.undecided, answer.value) == (50, 0.5)
     assert tuple(answer.bounds) == (0, 1)
     assert answer.tally.steps == 50_000
@@ -130,14 +130,14 @@ def test_a_trace_that_is_cut_is_undecided() -> None:
 
 def test_an_end_with_steps_that_change_nothing_is_found() -> None:
     """Several automata assign the same values again and again, so nothing can change any more."""
-    found = document(
+    written = document(
         automaton("a", "l", [edge("l", way("l", x=op("min", 2, op("+", "x", 1))))]),
         automaton("b", "l", [edge("l", "l")]),
         variables=[variable("x")],
         syncs=[],
         properties={"p": probability(op("F", op("=", "x", 3)))},
     )
-    answer = answers(found, 20, max_steps=10**9)["p"]
+    answer = answers(written, 20, max_steps=10**9)["p"]
     assert (answer.value, answer.tally.undecided) == (0, 0)
 
 
@@ -153,11 +153,14 @@ def test_thresholds() -> None:
         (threshold("≤", 0.5, inner), "≥", 0.5),
         (op(">", inner, "c"), ">", 0.75),
     ):
-        found = path_model([0, 1], False, {"p": written})
-        found["constants"] = [{"name": "c", "type": "real", "value": 0.75}]
-        (asked,) = ModelChecker(model(found)).asked
-        assert asked.question.threshold is not None
-        assert (asked.question.threshold.relation.symbol, asked.question.threshold.number) == (relation, number)
+        jani = path_model([0, 1], False, {"p": written})
+        jani["constants"] = [{"name": "c", "type": "real", "value": 0.75}]
+        (property_,) = ModelChecker(model(jani)).compiled_properties
+        assert property_.question.threshold is not None
+        assert (property_.question.threshold.relation.symbol, property_.question.threshold.number) == (
+            relation,
+            number,
+        )
 
 
 def expectation(reward: Any, accumulate: list[str], reach: Any = A) -> Json:
@@ -182,21 +185,21 @@ def test_rewards_of_transient_variables() -> None:
     steps = [edge("l", way("m", cost=5)), edge("m", way("n", x=1))]
     walker = automaton("a", "l m n", steps)
     walker["locations"][1]["transient-values"] = [{"ref": "rent", "value": 7}]
-    found = document(
+    written = document(
         walker,
         variables=[variable("x"), variable("cost", "real", 0, True), variable("rent", "real", 0, True)],
         properties={"cost": expectation("cost", ["steps"]), "rent": expectation("rent", ["exit"])},
     )
-    assert {name: answer.value for name, answer in answers(found, 2).items()} == {"cost": 5, "rent": 7}
+    assert {name: answer.value for name, answer in answers(written, 2).items()} == {"cost": 5, "rent": 7}
 
 
 def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
-    found = document(
+    written = document(
         automaton("a", "l m n", [edge("l", way("m", 0.5, x=1), way("n", 0.5))]),
         variables=[variable("x")],
         properties={"p": expectation(1, ["steps"])},
     )
-    answer = answers(found, 200)["p"]
+    answer = answers(written, 200)["p"]
     assert math.isinf(answer.value)
     assert math.isinf(answer.bounds.upper)
 
@@ -215,9 +218,9 @@ def test_an_expected_reward_is_infinite_where_the_goal_may_be_missed() -> None:
 )
 def test_properties_that_cannot_be_answered(expression: Json, message: str) -> None:
     """Each is rejected for a different reason, and the other properties are still answered."""
-    found = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
-    checker = ModelChecker(model(path_model([0, 1], False, found)))
-    assert [asked.question.name for asked in checker.asked] == ["before", "after"]
+    properties = {"before": probability(op("F", A)), "p": expression, "after": probability(op("G", A))}
+    checker = ModelChecker(model(path_model([0, 1], False, properties)))
+    assert [property_.question.name for property_ in checker.compiled_properties] == ["before", "after"]
     assert checker.names == ("before", "p", "after")
     (refused,) = checker.refused.values()
     assert message in refused.message
@@ -226,4 +229,4 @@ def test_properties_that_cannot_be_answered(expression: Json, message: str) -> N
     assert refused.origin is not None
     with Pool() as pool:
         options = Options(method=EstimationMethod.FIXED, max_traces=1)
-        assert [checker.answer(asked, options, pool).value for asked in checker.asked] == [1, 0]
+        assert [checker.answer(property_, options, pool).value for property_ in checker.compiled_properties] == [1, 0]

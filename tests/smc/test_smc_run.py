@@ -41,7 +41,7 @@ def coin(p: float = 0.3, extra: int = 0) -> Json:
 def ask(options: Options, written: Json | None = None, pool: Pool | None = None, **more: Any) -> Answer:
     checker = ModelChecker(model(written or coin()))
     with pool or Pool() as used:
-        return checker.answer(checker.asked[0], options, used, **more)
+        return checker.answer(checker.compiled_properties[0], options, used, **more)
 
 
 def numbers(answer: Answer) -> tuple[Any, ...]:
@@ -98,7 +98,7 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
 def test_threads_do_not_share_a_kernel() -> None:
     """With a shared kernel, one thread would continue the trace of another."""
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     together = Barrier(2)
 
     def kernel(_: int) -> Kernel:
@@ -229,7 +229,7 @@ def test_memory_does_not_grow_with_the_number_of_traces() -> None:
 
 def tasks() -> Iterator[Task]:
     checker = ModelChecker(model(coin()))
-    payload = checker.payload(checker.asked[0])
+    payload = checker.payload(checker.compiled_properties[0])
     first = 0
     while True:
         yield Task(payload, 1, first, 10, 1000)
@@ -240,9 +240,9 @@ def test_leaving_in_the_middle_of_large_results() -> None:
     """If a worker were killed while it sends, the main process would wait for the rest of the result."""
     for _ in range(5):
         with Pool(2, start_delay_s=0) as pool:
-            found = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
-            next(found)
-            next(found)
+            results = pool.outcomes(Task(task.payload, 0, task.first * 1000, 10_000, 100) for task in tasks())
+            next(results)
+            next(results)
     assert not multiprocessing.active_children()
 
 
@@ -256,8 +256,8 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
             yield task
 
     with ThreadPoolExecutor(2) as executor, Pool(2, executor) as pool:
-        found = pool.outcomes(counted())
-        task, outcome = next(found)
+        results = pool.outcomes(counted())
+        task, outcome = next(results)
         assert (task.first, len(outcome.questions[0].verdicts)) == (0, 10)
         assert taken <= 5
 
@@ -299,14 +299,14 @@ def test_progress_is_reported_during_long_traces() -> None:
         variables=[variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    told: list[tuple[int, int]] = []
+    calls: list[tuple[int, int]] = []
 
     def pulse(trace: int, steps: int) -> None:
-        told.append((trace, steps))
-        if len(told) == 3:
+        calls.append((trace, steps))
+        if len(calls) == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         ask(Options(max_steps=10**15), loop, pulse=pulse)
-    assert [trace for trace, _ in told] == [0, 0, 0]
-    assert told[0][1] < told[1][1] < told[2][1]
+    assert [trace for trace, _ in calls] == [0, 0, 0]
+    assert calls[0][1] < calls[1][1] < calls[2][1]

@@ -43,7 +43,7 @@ TYPES: dict[str, Any] = {
 
 
 def written(value: Value) -> Any:
-    return {"op": "av", "elements": [written(each) for each in value]} if isinstance(value, tuple) else value
+    return {"op": "av", "elements": [written(item) for item in value]} if isinstance(value, tuple) else value
 
 
 def system(type_: str, expression: Any) -> Json:
@@ -142,7 +142,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
     assume(not isinstance(expected, float) or not math.isnan(expected))
     assume(isinstance(expected, (str, float)) or abs(expected) < 1 << 62)  # type: ignore[arg-type]
     checker = ModelChecker(actual_model)
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     try:
         ((_, (branch,)),) = explorer.choices(explorer.initial)
     except StateFaultError:
@@ -163,7 +163,7 @@ def test_expressions_mean_what_is_defined(case: tuple[str, Any]) -> None:
 def states_of(actual_model: Model, limit: int) -> set[tuple[Any, ...]]:
     """All reachable states of the model checker, in the form of the slow explorer."""
     checker = ModelChecker(actual_model)
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     layout = checker.legend.layout
     states = set()
     for place, integers, real_numbers in explorer.reachable(limit):
@@ -188,10 +188,10 @@ def as_tuple(state: SlowState) -> tuple[Any, ...]:
     return state.locations, state.values, state.own
 
 
-def never(found: Json) -> Json:
+def never(written: Json) -> Json:
     """The same model with a property that is never decided, so that all states are explored."""
-    found["properties"][0]["expression"] = probability(op("F", False))
-    return found
+    written["properties"][0]["expression"] = probability(op("F", False))
+    return written
 
 
 @settings(max_examples=examples(80), suppress_health_check=list(HealthCheck))
@@ -247,26 +247,26 @@ def test_assignments_of_one_index_are_simultaneous() -> None:
     swap = ways("m", [("x", "y", 0), ("y", "x", 0), (at("v", "x"), "y", 0), ("x", op("+", "x", 10), 1)])
     values = {"op": "av", "elements": [0, 0, 0]}
     expected = op("∧", op("=", "x", 12), op("=", "y", 1))
-    found = document(
+    written = document(
         automaton("a", "l m", [edge("l", swap)]),
         variables=[variable("x", initial=1), variable("y", initial=2), variable("v", TYPES["v"], values)],
         properties={"p": probability(op("F", op("∧", expected, op("=", "v", {"op": "av", "elements": [0, 2, 0]}))))},
     )
-    assert reaches(found) == 1
+    assert reaches(written) == 1
 
 
 def test_assignments_of_synchronised_edges_are_simultaneous() -> None:
     """Indexes count through all parts of a step."""
     first = ways("l", [("x", "y", 0), ("x", op("+", "x", op("*", "y", 10)), 2)])
     second = ways("l", [("y", "x", 0), ("y", op("+", "y", 5), 1)])
-    found = document(
+    written = document(
         automaton("a", "s l", [edge("s", first, action="go")]),
         automaton("b", "s l", [edge("s", second, action="go")]),
         variables=[variable("x", initial=1), variable("y", initial=2)],
         syncs=[["go", "go"]],
         properties={"p": probability(op("F", op("∧", op("=", "x", 62), op("=", "y", 6))))},
     )
-    assert reaches(found) == 1
+    assert reaches(written) == 1
 
 
 def test_every_combination_of_a_vector_is_one_choice() -> None:
@@ -274,7 +274,7 @@ def test_every_combination_of_a_vector_is_one_choice() -> None:
     first = [edge("l", way("done", x=1), action="go"), edge("l", way("done", x=1), action="go")]
     second = [edge("l", "done", action="go") for _ in range(3)]
     third = [edge("l", way("done", x=2))]
-    found = document(
+    written = document(
         automaton("a", "l done", first),
         automaton("b", "l done", second),
         automaton("c", "l done", third),
@@ -285,64 +285,64 @@ def test_every_combination_of_a_vector_is_one_choice() -> None:
             "loops": probability(op("U", op("=", "x", 0), op("=", "x", 2))),
         },
     )
-    found_values = answers(found, 20_000)
+    found_values = answers(written, 20_000)
     assert found_values["first"].value == pytest.approx(6 / 7, abs=0.01)
     assert found_values["loops"].value == pytest.approx(1 / 7, abs=0.01)
 
 
 def test_a_loop_is_a_choice_too() -> None:
     """Because of the loop, the other step is taken with probability 1/2: after three steps, with 1 - 1/8."""
-    found = document(
+    written = document(
         automaton("a", "l", [edge("l", "l"), edge("l", way("l", x=1))]),
         variables=[variable("x")],
         properties={"p": probability({**op("F", op("=", "x", 1)), "step-bounds": {"upper": 3}})},
     )
-    assert reaches(found, 20_000) == pytest.approx(7 / 8, abs=0.01)
+    assert reaches(written, 20_000) == pytest.approx(7 / 8, abs=0.01)
 
 
 def test_input_enabled_automata_never_block() -> None:
     walker = automaton("a", "l m", [edge("l", way("m", x=1), action="go")])
     listener = automaton("b", "l", [edge("l", way("l", y=1), action="go", guard=op("=", "y", 5))])
-    found = document(
+    written = document(
         walker,
         listener,
         variables=[variable("x"), variable("y")],
         syncs=[["go", "go"]],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    assert reaches(found) == 0
-    found["system"]["elements"][1]["input-enable"] = ["go"]
-    assert reaches(found) == 1
+    assert reaches(written) == 0
+    written["system"]["elements"][1]["input-enable"] = ["go"]
+    assert reaches(written) == 1
 
 
 def test_an_automaton_may_have_two_instances() -> None:
     counter = automaton("a", "l m", [edge("l", way("m", own=1, x=op("+", "x", 1)))], [variable("own")])
-    found = document(counter, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 2)))})
-    assert reaches(found) == 0
-    found["system"]["elements"] *= 2
-    found["system"]["syncs"] = []
-    assert reaches(found) == 1
+    written = document(counter, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 2)))})
+    assert reaches(written) == 0
+    written["system"]["elements"] *= 2
+    written["system"]["syncs"] = []
+    assert reaches(written) == 1
 
 
 def test_arrays_take_the_longest_value() -> None:
     """A longer value than the first one determines the size; a shorter one is padded with zeros."""
     long, short = ({"op": "av", "elements": list(range(1, n))} for n in (5, 2))
-    found = document(
+    written = document(
         automaton("a", "l m n", [edge("l", way("m", v=long)), edge("m", way("n", x=at("v", 3), v=short))]),
         variables=[variable("x"), variable("v", TYPES["v"], {"op": "av", "elements": [0, 0]})],
         properties={"p": probability(op("F", op("∧", op("=", "x", 4), op("=", at("v", 1), 0))))},
     )
-    assert reaches(found) == 1
+    assert reaches(written) == 1
 
 
 def test_probabilities_that_depend_on_the_state() -> None:
     share = op("/", "n", 10)
-    found = document(
+    written = document(
         automaton("a", "l m k", [edge("l", way("k", share), way("m", op("-", 1, share), x=1))]),
         variables=[variable("n", initial=9), variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
-    assert reaches(found, 10_000) == pytest.approx(0.1, abs=0.01)
-    found["variables"][0]["initial-value"] = 11
+    assert reaches(written, 10_000) == pytest.approx(0.1, abs=0.01)
+    written["variables"][0]["initial-value"] = 11
     with pytest.raises(FaultError, match="do not add up to 1"):
-        reaches(found, 10)
+        reaches(written, 10)

@@ -257,11 +257,22 @@ def test_bounds_grow_with_the_number_of_successes(method: Callable[[int, int, fl
         assert [i.upper for i in intervals] == sorted(i.upper for i in intervals)
 
 
+RATIO = Ratio(0.7, 0.05, 0.05)
+decided = cache(RATIO.decision)
+"""The decision after some successes in a number of traces, which does not depend on `p`."""
+
+
+@cache
+def intervals_at(k: int, n: int) -> tuple[Bounds, Bounds]:
+    """Both intervals after a decision, with a confidence of 0.95."""
+    return confidence_sequence(k, n, 0.95), clopper_pearson(k, n, 0.95)
+
+
 @pytest.mark.parametrize("p", [0.62, 0.65, 0.68, 0.7, 0.73, 0.75, 0.8])
 def test_intervals_and_errors_of_the_sequential_test(p: float) -> None:
     """Computed exactly, over all runs until the test decides: the interval has the stated confidence, and so has the
     decision outside the indifference region."""
-    error, ratio = 0.05, Ratio(0.7, 0.05, 0.05)
+    error = 0.05
     open_, covered, above, covered_once = {0: 1.0}, 0.0, 0.0, 0.0
     n = 0
     while sum(open_.values()) > 1e-6:
@@ -272,15 +283,14 @@ def test_intervals_and_errors_of_the_sequential_test(p: float) -> None:
             after[k + 1] = after.get(k + 1, 0.0) + weight * p
         open_ = {}
         for k, weight in after.items():
-            decision = ratio.decision(k, n)
+            decision = decided(k, n)
             if decision is None:
                 open_[k] = weight
                 continue
             above += weight if decision else 0.0
-            lower, upper = confidence_sequence(k, n, 1 - error)
-            covered += weight if lower <= p <= upper else 0.0
-            lower, upper = clopper_pearson(k, n, 1 - error)
-            covered_once += weight if lower <= p <= upper else 0.0
+            at_any_time, once = intervals_at(k, n)
+            covered += weight if covers(at_any_time, p) else 0.0
+            covered_once += weight if covers(once, p) else 0.0
     assert covered >= 1 - error
     if p == 0.7:
         assert covered_once < 1 - error

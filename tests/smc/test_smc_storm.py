@@ -26,8 +26,8 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import EstimationMethod, Options
-from roaml.smc.solve import solve
 from roaml.verification.exhaustive import UndecidedError, exact_values
+from roaml.verification.small import values_if_small
 
 ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
@@ -38,7 +38,10 @@ def estimates(actual_model: Model, seed: int = 3) -> dict[str, tuple[int, int]]:
     checker = ModelChecker(actual_model)
     with Pool() as pool:
         options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, seed=seed, max_steps=100_000)
-        answers = {asked.question.name: checker.answer(asked, options, pool) for asked in checker.asked}
+        answers = {
+            property_.question.name: checker.answer(property_, options, pool)
+            for property_ in checker.compiled_properties
+        }
     assert all(answer.tally.undecided == 0 for answer in answers.values())
     return {name: (answer.tally.successes, answer.tally.traces) for name, answer in answers.items()}
 
@@ -59,15 +62,15 @@ def chain(source: random.Random, number: int) -> Json:
         # The last location is always reached.
         targets = list(dict.fromkeys((places[following], *source.sample(places, source.randint(1, 2)))))
         weights = [source.randint(1, 5) for _ in targets]
-        found = []
+        values = []
         for target, weight in zip(targets, weights, strict=True):
             x = op("min", 6, op("+", "x", source.randint(0, 2)))
-            found.append(way(target, op("/", weight, sum(weights)), x=x, y=source.choice(["x", 0, 1])))
-        edges.append(edge(place, *found))
+            values.append(way(target, op("/", weight, sum(weights)), x=x, y=source.choice(["x", 0, 1])))
+        edges.append(edge(place, *values))
 
     edges.append(edge(places[-1], way(places[-1], end=True)))
     conditions = [op("=", "x", source.randint(1, 6)), op("∧", "end", op("<", "x", 5)), op("=", "y", 1)]
-    properties = {f"{number}-F{i}": probability(op("F", each)) for i, each in enumerate(conditions)}
+    properties = {f"{number}-F{i}": probability(op("F", formula)) for i, formula in enumerate(conditions)}
     properties[f"{number}-U"] = probability(op("U", op("<", "x", 4), "end"))
     properties[f"{number}-G"] = probability(op("G", op("≠", "x", 3)))
     properties[f"{number}-B"] = probability({**op("F", conditions[0]), "step-bounds": {"upper": source.randint(2, 9)}})
@@ -86,12 +89,12 @@ def chain(source: random.Random, number: int) -> Json:
 def computed(written: Json) -> dict[str, float]:
     """Property -> the probability that Storm computes."""
     parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(written))
-    found = {}
-    for each in properties:
-        built = stormpy.build_model(parsed, [each])
-        result = stormpy.model_checking(built, each, only_initial_states=True)
-        found[each.get_name()] = result.get_value(built.initial_states[0])
-    return found
+    values = {}
+    for formula in properties:
+        built = stormpy.build_model(parsed, [formula])
+        result = stormpy.model_checking(built, formula, only_initial_states=True)
+        values[formula.get_name()] = result.get_value(built.initial_states[0])
+    return values
 
 
 def test_estimates_agree_with_storm() -> None:
@@ -119,7 +122,7 @@ def test_translated_systems_agree_with_storm(name: str) -> None:
 def induced(actual_model: Model, limit: int, folder: Path) -> float | None:
     """The probability that Storm computes for the Markov chain that uniform choices induce in a model."""
     checker = ModelChecker(actual_model)
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     try:
         verdicts = explorer.reachable(limit)
     except TooManyStatesError:
@@ -157,7 +160,9 @@ def test_uniform_choices_agree_with_the_chain_that_they_induce(tmp_path: Path) -
         checker = ModelChecker(actual_model)
         with Pool() as pool:
             answer = checker.answer(
-                checker.asked[0], Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=3000), pool
+                checker.compiled_properties[0],
+                Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=3000),
+                pool,
             )
         low = answer.tally.successes
         high = low + answer.tally.undecided
@@ -202,10 +207,10 @@ def test_exact_answers() -> None:
         )
     )
     checker = ModelChecker(actual_model)
-    result = exact_values(checker, checker.asked[0], StateLimits(100))
+    result = exact_values(checker, checker.compiled_properties[0], StateLimits(100))
     assert (result.least, result.greatest, result.states) == (pytest.approx(0.25), pytest.approx(0.5), 3)
     with pytest.raises(UndecidedError, match="there are more than 2 "):
-        exact_values(checker, checker.asked[0], StateLimits(2))
+        exact_values(checker, checker.compiled_properties[0], StateLimits(2))
     assert result.average == pytest.approx(0.375)
     ((successes, traces),) = estimates(actual_model).values()
     assert two_sided(successes, traces, 0.375) > 1e-4
@@ -223,8 +228,8 @@ def test_extremes_from_all_states_are_those_of_storm() -> None:
             written["properties"] = [{"name": "p", "expression": probability(path)}]
             actual_model = model(written)
             checker = ModelChecker(actual_model)
-            solution = solve(checker.compiled(checker.asked[0]), limit=300)
-            if solution is None or solution.minimum is None or solution.maximum is None:
+            solution = values_if_small(checker, checker.compiled_properties[0])
+            if solution is None or solution.states > 300:
                 continue
             expected = storm_exact(actual_model, "p")
             assert solution.minimum.lower - 2e-6 <= expected.least <= solution.minimum.upper + 2e-6, (seed, path)
@@ -252,7 +257,7 @@ def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:
     checker = ModelChecker(actual_model)
     with Pool() as pool:
         state = Search()
-        checker.search(checker.asked[0], Options(epsilon=0.02), pool, state)
+        checker.search(checker.compiled_properties[0], Options(epsilon=0.02), pool, state)
     share = {side: tally.successes / tally.traces for side, (_, tally) in state.selected.items()}
     assert share[Side.GREATEST] == pytest.approx(expected.greatest, abs=0.03)
     assert share[Side.LEAST] == pytest.approx(expected.least, abs=0.03)

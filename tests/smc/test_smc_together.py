@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -16,7 +17,6 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, FAULTY, UNKNOWN, Compiled, merged
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
-from twin import plain_kernel
 
 QUESTIONS: dict[str, Json] = {
     "soon": op("F", op("=", "x", 2)),
@@ -43,15 +43,20 @@ def walk(**more: Json) -> Json:
 
 
 def together(
-    checker: ModelChecker, asked: list[CompiledProperty], options: Options, tallies: list[Tally] | None = None
+    checker: ModelChecker,
+    properties: list[CompiledProperty],
+    options: Options,
+    tallies: list[Tally] | None = None,
 ) -> list[Answer | FaultError]:
     with Pool() as pool:
-        return checker.answer_together(asked, options, pool, tallies or [Tally() for _ in asked], lambda *_: None)
+        return checker.answer_together(
+            properties, options, pool, tallies or [Tally() for _ in properties], lambda *_: None
+        )
 
 
-def alone(checker: ModelChecker, asked: CompiledProperty, options: Options) -> Answer:
+def alone(checker: ModelChecker, property_: CompiledProperty, options: Options) -> Answer:
     with Pool() as pool:
-        return checker.answer(asked, options, pool)
+        return checker.answer(property_, options, pool)
 
 
 def numbers(answer: Answer | FaultError) -> Any:
@@ -70,31 +75,31 @@ def numbers(answer: Answer | FaultError) -> Any:
 )
 def test_each_answer_is_that_of_traces_of_its_own(options: Options) -> None:
     checker = ModelChecker(model(walk()))
-    asked = list(checker.asked)
-    shared = [numbers(answer) for answer in together(checker, asked, options)]
-    separate = [numbers(alone(checker, compiled_property, options)) for compiled_property in asked]
+    properties = list(checker.compiled_properties)
+    shared = [numbers(answer) for answer in together(checker, properties, options)]
+    separate = [numbers(alone(checker, property_, options)) for property_ in properties]
     assert shared == separate
     assert len({answer[1] for answer in shared}) >= 4
 
 
 def test_each_question_is_asked_until_its_own_rule_stops_it() -> None:
     checker = ModelChecker(model(walk()))
-    traces = {a.question.name: a.tally.traces for a in together(checker, list(checker.asked), Options(epsilon=0.03))
-              if isinstance(a, Answer)}  # fmt: skip
+    answers = together(checker, list(checker.compiled_properties), Options(epsilon=0.03))
+    traces = {answer.question.name: answer.tally.traces for answer in answers if isinstance(answer, Answer)}
     assert len(set(traces.values())) > 1
 
 
 def test_questions_that_are_continued_from_different_traces() -> None:
     checker = ModelChecker(model(walk()))
-    asked = list(checker.asked)
-    tallies = [Tally() for _ in asked]
-    together(checker, asked[:3], Options(method=EstimationMethod.FIXED, max_traces=150), tallies[:3])
+    properties = list(checker.compiled_properties)
+    tallies = [Tally() for _ in properties]
+    together(checker, properties[:3], Options(method=EstimationMethod.FIXED, max_traces=150), tallies[:3])
     for tally in tallies:
         tally.is_finished = False
-    continued = together(checker, asked, Options(method=EstimationMethod.FIXED, max_traces=400), tallies)
+    continued = together(checker, properties, Options(method=EstimationMethod.FIXED, max_traces=400), tallies)
     assert [numbers(answer) for answer in continued] == [
-        numbers(alone(checker, compiled_property, Options(method=EstimationMethod.FIXED, max_traces=400)))
-        for compiled_property in asked
+        numbers(alone(checker, property_, Options(method=EstimationMethod.FIXED, max_traces=400)))
+        for property_ in properties
     ]
 
 
@@ -102,18 +107,18 @@ def test_a_trace_that_fails_concerns_only_the_questions_that_it_does_not_answer_
     # y reaches 3 in some traces, after `soon` has been decided in all of these that matter to it or not.
     checker = ModelChecker(model(walk(broken=op("G", op("<", op("/", 1, op("-", 3, "y")), 5)))))
     options = Options(method=EstimationMethod.FIXED, max_traces=100)
-    answers = together(checker, list(checker.asked), options)
+    answers = together(checker, list(checker.compiled_properties), options)
     assert [a.message for a in answers if isinstance(a, FaultError)] == ["division by zero"]
     assert isinstance(answers[-1], FaultError)
     good = [answer for answer in answers if isinstance(answer, Answer)]
     assert [numbers(a) for a in good] == [
-        numbers(alone(checker, compiled_property, options)) for compiled_property in checker.asked[:-1]
+        numbers(alone(checker, property_, options)) for property_ in checker.compiled_properties[:-1]
     ]
 
 
 def test_both_kernels_say_the_same_of_all_questions() -> None:
     checker = ModelChecker(model(walk()))
-    goal = merged([compiled_property.goal for compiled_property in checker.asked])
+    goal = merged([property_.goal for property_ in checker.compiled_properties])
     compiled = Compiled(checker.program, goal)
     seen = set()
     results: list[list[Any]] = []
@@ -121,12 +126,12 @@ def test_both_kernels_say_the_same_of_all_questions() -> None:
         one = module.Kernel(compiled.program, compiled.goal)
         rows = []
         for trace in range(30):
-            one.choose([0, 2, 3, 6] if trace % 3 else range(len(checker.asked)))
+            one.choose([0, 2, 3, 6] if trace % 3 else range(len(checker.compiled_properties)))
             status = one.begin(7, trace)
             assert status != FAULTY
             if status == UNKNOWN:
                 one.advance(1000)
-            rows.append([one.result(i) for i in range(len(checker.asked))])
+            rows.append([one.result(i) for i in range(len(checker.compiled_properties))])
             seen |= {row[0] for row in rows[-1]}
         results.append(rows)
     assert results[0] == results[1]

@@ -11,14 +11,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import difference
 from examples import examples
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
 from roaml.smc.explore import Explorer, TooManyChoicesError
 from roaml.smc.model import ModelChecker
-from roaml.smc.solve import solve
 from roaml.smc.statistics import clopper_pearson
-from twin import difference
+from roaml.verification.small import values_if_small
 
 SURE = 1 - 1e-9
 """The probability that a test which compares a frequency with an interval fails by chance."""
@@ -89,7 +89,7 @@ def test_an_action_that_is_negligible_is_never_taken() -> None:
     }
     written = document(alone, *parts, variables=[variable("x")], syncs=[[None, *["a"] * 1200]], properties=goals)
     checker = ModelChecker(model(written))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     for trace in range(50):
         actual_kernel.begin(0, trace)
@@ -101,14 +101,14 @@ def test_an_action_that_is_negligible_is_never_taken() -> None:
 @pytest.mark.parametrize("scheduler", [0, 77])
 def test_both_kernels_draw_the_same(count: int, edges: int, scheduler: int) -> None:
     checker = ModelChecker(model(wide(count, edges)))
-    for asked in checker.asked:
-        assert difference(checker, asked, 7, 10, 3, scheduler) == ""
+    for property_ in checker.compiled_properties:
+        assert difference(checker, property_, 7, 10, 3, scheduler) == ""
 
 
 def test_schedulers_choose_every_edge() -> None:
     """No scheduler considers all combinations, but together they choose all edges equally often."""
     checker = ModelChecker(model(wide(64, 2)))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     chosen = [0] * 64
     for scheduler in range(1, 301):
@@ -124,7 +124,7 @@ def test_schedulers_choose_every_edge() -> None:
 def test_a_scheduler_is_a_function_of_the_state() -> None:
     """A scheduler makes the same choice in the same state, whatever the trace and its random numbers are."""
     checker = ModelChecker(model(wide(64, 3)))
-    compiled = checker.compiled(checker.asked[0])
+    compiled = checker.compiled(checker.compiled_properties[0])
     actual_kernel = kernel.Kernel(compiled.program, compiled.goal)
     seen = set()
     for trace in range(20):
@@ -138,7 +138,7 @@ def test_a_scheduler_is_a_function_of_the_state() -> None:
 @given(st.integers(2, 100), st.randoms(use_true_random=False), st.sampled_from([0, 3]))
 def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Random, scheduler: int) -> None:
     checker = ModelChecker(model(wide_network(random, count)))
-    assert difference(checker, checker.asked[0], 7, 3, 20, scheduler) == ""
+    assert difference(checker, checker.compiled_properties[0], 7, 3, 20, scheduler) == ""
 
 
 # ------------------------------------------------------------------ states, where they are looked at one by one
@@ -147,7 +147,7 @@ def test_both_kernels_draw_the_same_in_random_networks(count: int, random: Rando
 @pytest.mark.parametrize(("count", "edges"), [(21, 2), (64, 2), (1100, 3)])
 def test_combinations_are_counted_before_they_are_enumerated(count: int, edges: int) -> None:
     checker = ModelChecker(model(wide(count, edges)))
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     with pytest.raises(TooManyChoicesError):
         next(explorer.choices(explorer.initial))
     with pytest.raises(TooManyChoicesError):
@@ -160,7 +160,7 @@ def test_combinations_of_destinations_are_counted_as_well() -> None:
     goals = {"p": probability(op("F", op("=", "x", 1)))}
     written = document(*parts, variables=[variable("x")], syncs=[["a"] * 64], properties=goals)
     checker = ModelChecker(model(written))
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     with pytest.raises(TooManyChoicesError):
         explorer.reachable(10)
 
@@ -172,7 +172,7 @@ def test_equal_choices_are_one_choice_with_their_weight() -> None:
     goals = {"p": probability(op("F", op("=", "x", 1)))}
     written = document(*parts, variables=[variable("x")], syncs=[["a"] * 63], properties=goals)
     checker = ModelChecker(model(written))
-    explorer = Explorer(checker.compiled(checker.asked[0]))
+    explorer = Explorer(checker.compiled(checker.compiled_properties[0]))
     ((times, branches),) = explorer.choices(explorer.initial)
     assert (times, len(branches)) == (2**62, 1)
     assert len(explorer.reachable(10)) == 2
@@ -181,4 +181,4 @@ def test_equal_choices_are_one_choice_with_their_weight() -> None:
 def test_agreement_is_not_looked_for_among_too_many_combinations() -> None:
     for written in (wide(64, 2), wide(1100, 2)):
         checker = ModelChecker(model(written))
-        assert solve(checker.compiled(checker.asked[0])) is None
+        assert values_if_small(checker, checker.compiled_properties[0]) is None

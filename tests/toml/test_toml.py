@@ -63,9 +63,9 @@ def written(value: Any, space: str) -> str:
         case float():
             return repr(value)
         case list():
-            return f"[{space}{f',{space}'.join(written(each, space) for each in value)}{space}]"
+            return f"[{space}{f',{space}'.join(written(item, space) for item in value)}{space}]"
         case dict():
-            inner = (f"{quoted(key)}{space}={space}{written(each, space)}" for key, each in value.items())
+            inner = (f"{quoted(key)}{space}={space}{written(item, space)}" for key, item in value.items())
             return f"{{{space}{f',{space}'.join(inner)}{space}}}"
     return str(value)
 

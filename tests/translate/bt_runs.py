@@ -56,7 +56,7 @@ def of_network(network: Network, seed: int, most: int | None = None) -> tuple[li
 
 
 def data_of(network: Network, now: plain.Moment, automaton: str) -> dict[str, object]:
-    names = [each.name for each in network.automata]
+    names = [a.name for a in network.automata]
     return dict(now.machines[names.index(automaton)].data)
 
 

@@ -92,7 +92,7 @@ class Setup:
 
 def system(tree: Tree, setup: Setup) -> dict[str, str]:
     """File name -> text; the system file is `main.xml`."""
-    plugins = {f"{plugin_name(each)}.ascxml": plugin(each) for each in tree.walk() if each.script}
+    plugins = {f"{plugin_name(node)}.ascxml": plugin(node) for node in tree.walk() if node.script}
     return {"tree.xml": tree_file(tree), **plugins, **main(plugins, setup), "properties.jani": '{"properties": []}'}
 
 

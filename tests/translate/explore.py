@@ -80,7 +80,7 @@ class Explorer:
 
     def _taken(self, state: State, automata: list[int], ways: tuple[Destination, ...]) -> State:
         values = self.globals(state)
-        own = [list(each) for each in state.own]
+        own = [list(row) for row in state.own]
         locations = list(state.locations)
         steps = sorted({a.index for way in ways for a in way.assignments})
         for step in steps:

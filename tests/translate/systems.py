@@ -111,7 +111,7 @@ def transitions(
 @st.composite
 def machines(draw: st.DrawFn, name: str, known: tuple[str, ...], timer: bool) -> str:
     states = STATES[: draw(st.integers(1, 3))]
-    found = []
+    parts = []
     for state in states:
         content = []
         for tag in ("onentry", "onexit"):
@@ -128,7 +128,7 @@ def machines(draw: st.DrawFn, name: str, known: tuple[str, ...], timer: bool) ->
                 content.append(draw(transitions(event, None, states, known)))
         if timer and draw(st.booleans()):
             content.append(draw(transitions(None, None, states, known, timer=True)))
-        found.append(f'<state id="{state}">{"".join(content)}</state>')
+        parts.append(f'<state id="{state}">{"".join(content)}</state>')
     data = "".join(
         f"<data{_attributes(id=variable, type=_TYPES[kind], expr=draw(st.sampled_from(_INITIAL[kind])))}/>"
         for variable, kind in VARIABLES.items()
@@ -136,7 +136,7 @@ def machines(draw: st.DrawFn, name: str, known: tuple[str, ...], timer: bool) ->
     declared = f'<ros_time_rate name="timer" rate_hz="{draw(st.sampled_from((1, 2)))}"/>' if timer else ""
     return (
         f'<ascxml name="{name}" version="1.0" initial="s0"><datamodel>{data}</datamodel>{declared}'
-        f"{''.join(found)}</ascxml>"
+        f"{''.join(parts)}</ascxml>"
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from storm import exact
-from test_translate_observers import COUNT, TAILS, WHISTLE, op, system, twin
+from test_translate_observers import COUNT, TAILS, WHISTLE, hand_written, op, system
 from translating import loaded, reported
 
 from examples import examples
@@ -40,7 +40,7 @@ ODD, EVEN = op("=", op("%", COUNT, 2), 1), op("=", op("%", COUNT, 2), 0)
 IS_ODD, IS_EVEN = "n % 2 == 1", "n % 2 == 0"
 LOW, IS_LOW = op("≤", COUNT, 1), "n &lt;= 1"
 ONE, TWO, THREE = "n == 1", "n == 2", "n == 3"
-TWINS = {
+EQUIVALENTS = {
     "response": (
         op("G", op("⇒", ODD, op("F", EVEN))),
         pattern("response", IS_ODD, IS_EVEN),
@@ -162,14 +162,14 @@ def answered(files: Mapping[str, str]) -> dict[str, object]:
 
 def only(in_jani: object = None, in_xml: str = "") -> dict[str, str]:
     """A system with one property."""
-    files = system("", [] if in_jani is None else [twin("p", in_jani)])
+    files = system("", [] if in_jani is None else [hand_written("p", in_jani)])
     guarantees = f"<guarantees>{in_xml.format('p')}</guarantees>" if in_xml else ""
     return {**files, "properties.xml": f"<properties>{PORT if in_xml else ''}{guarantees}</properties>"}
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_the_twin_in_xml_has_the_same_answer(name: str) -> None:
-    in_jani, in_xml = TWINS[name]
+    in_jani, in_xml = EQUIVALENTS[name]
     assert answered(only(in_jani)) == answered(only(None, in_xml))
 
 
@@ -281,18 +281,18 @@ def traces(checker: object, count: int) -> list[list[State]]:
 def test_random_formulas_in_traces(draw: Callable[[random.Random], object]) -> None:
     random_ = random.Random(17)
     formulas = {f"p{i}": draw(random_) for i in range(examples(40))}
-    files = system("", [twin(name, formula) for name, formula in formulas.items()])
+    files = system("", [hand_written(name, formula) for name, formula in formulas.items()])
     checker = api.verifier(loaded({**files, "properties.xml": "<properties />"})).checker
     assert {fault.code for fault in checker.refused.values()} <= {"unsupported-property"}
     states = traces(checker, 15)
     verdicts = set()
-    for asked in checker.asked:
-        recorder = Recorder(checker, asked, 5, 100_000)
+    for property_ in checker.compiled_properties:
+        recorder = Recorder(checker, property_, 5, 100_000)
         for number, seen in enumerate(states):
             recording = Recording(number)
             recorder.rush(recording)
-            expected = holds(formulas[asked.question.name], seen)
-            assert recording.verdict == (TRUE if expected else FALSE), formulas[asked.question.name]
+            expected = holds(formulas[property_.question.name], seen)
+            assert recording.verdict == (TRUE if expected else FALSE), formulas[property_.question.name]
             verdicts.add(expected)
     assert verdicts == {True, False}
     assert bool(checker.refused) == (draw is drawn_formula)
@@ -302,11 +302,11 @@ def test_random_formulas_in_traces(draw: Callable[[random.Random], object]) -> N
 # ------------------------------------------------------------------------- Storm
 
 BY_STORM = {
-    "response": TWINS["response"][0],
+    "response": EQUIVALENTS["response"][0],
     "negated": op("F", op("∧", ODD, op("G", ODD))),
-    "universality after": TWINS["universality after"][0],
+    "universality after": EQUIVALENTS["universality after"][0],
     "until": op("G", op("⇒", equal(1), op("U", op("≤", COUNT, 1), op("≥", COUNT, 2)))),
-    "two": op("∧", TWINS["response"][0], op("F", WHISTLE)),
+    "two": op("∧", EQUIVALENTS["response"][0], op("F", WHISTLE)),
 }
 
 
@@ -321,8 +321,8 @@ def test_all_states_give_what_storm_computes_for_the_nested_formula(name: str) -
 
 
 def all_states(verifier: api.Verifier) -> Exact:
-    (asked,) = verifier.checker.asked
-    values = verifier.exhaustive(asked, StateLimits()).exact
+    (property_,) = verifier.checker.compiled_properties
+    values = verifier.exhaustive(property_, StateLimits()).exact
     assert values is not None
     return values
 
@@ -354,7 +354,7 @@ def written(folder: Path, formula: object, **variable: object) -> str:
         "variables": [{"name": "x", "type": type_, **(variable or {"initial-value": 0})}],
         "automata": [automaton],
         "system": {"elements": [{"automaton": "a"}]},
-        "properties": [twin("p", formula)],
+        "properties": [hand_written("p", formula)],
     }
     path = folder / "chain.jani"
     path.write_text(json.dumps(document))
@@ -398,9 +398,9 @@ def test_other_forms_are_refused_and_reported(name: str) -> None:
     assert {finding.code for finding in reports} <= {"unsupported-property", "ignored-bounds"}
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_forms_that_are_answered_are_not_reported(name: str) -> None:
-    assert not reported(only(TWINS[name][0]), "twins.jani")
+    assert not reported(only(EQUIVALENTS[name][0]), "twins.jani")
 
 
 def test_without_a_clock_no_time_is_measured(tmp_path: Path) -> None:
@@ -410,5 +410,5 @@ def test_without_a_clock_no_time_is_measured(tmp_path: Path) -> None:
 
 
 def test_all_states_get_stuck_only_where_they_are_stuck() -> None:
-    verifier = api.verifier(loaded(only(TWINS["response"][0])), ["stuck"])
+    verifier = api.verifier(loaded(only(EQUIVALENTS["response"][0])), ["stuck"])
     assert all_states(verifier).maximum.upper == 0

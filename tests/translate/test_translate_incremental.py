@@ -52,6 +52,6 @@ def test_results_do_not_depend_on_earlier_changes(seed: int) -> None:
         new = workspace(model)
         for path, text in texts.items():
             new.open(path, text)
-        found = outcome(lasting.snapshot(), model.main)
-        assert found == outcome(new.snapshot(), model.main)
-        assert isinstance(found, str) or not back
+        result = outcome(lasting.snapshot(), model.main)
+        assert result == outcome(new.snapshot(), model.main)
+        assert isinstance(result, str) or not back

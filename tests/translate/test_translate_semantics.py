@@ -23,7 +23,7 @@ def outcome(states: list[str], data: list[dict[str, Any]], sent: dict[str, Any],
     """What can be told of a moment in both worlds; "" stands for a machine between two states."""
     return (
         tuple(states),
-        tuple(tuple(sorted(each.items())) for each in data),
+        tuple(tuple(sorted(values.items())) for values in data),
         tuple(sorted(sent.items())),
         frozenset(pending),
     )

@@ -65,7 +65,7 @@ def answers(
         storms_answer: `None` if Storm does not answer.
     """
     verifier = api.verifier(source, [name])
-    result = verifier.exhaustive(verifier.checker.asked[0], api.StateLimits(max_states))
+    result = verifier.exhaustive(verifier.checker.compiled_properties[0], api.StateLimits(max_states))
     (sampled,) = api.verify(source, [name], SAMPLING, only_uniform=True)
     assert sampled.answer is not None, sampled.refusal
     exact = result.exact

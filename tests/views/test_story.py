@@ -12,7 +12,7 @@ from smc_models import Json, automaton, document, edge, model, op, probability, 
 from roaml import api
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder
-from roaml.smc.story import Story, tell
+from roaml.smc.story import Story, build_story
 from roaml.text import Location
 from roaml.views.story import FIRST, LAST, as_html, as_mermaid, as_text, lines
 from roaml.views.turns import turns
@@ -31,7 +31,7 @@ PlaceOf = Callable[[Location], str]
 def bug() -> tuple[Story, PlaceOf]:
     subject = api.as_target(api.load(str(ROBOT / "main_with_bug.xml")))
     ready = api.checker(subject.model, ["never_placed_empty"])
-    story = tell(Recorder(ready, ready.asked[0], 0, 10_000), DROPPED, subject.clock)
+    story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), DROPPED, subject.clock)
 
     def place_of(origin: Location) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)
@@ -59,23 +59,23 @@ def test_forwarding_steps_are_omitted() -> None:
     texts = {str(folder / "tree.xml"): (folder / "tree.xml").read_text().replace('level="30"', 'level="0"')}
     subject = api.as_target(api.load(str(folder / "main.xml"), texts=texts))
     ready = api.checker(subject.model, ["never_empty"])
-    story = tell(Recorder(ready, ready.asked[0], 0, 10_000), EMPTY, subject.clock)
-    told = lines(story, lambda _: "")
-    assert {line.who for line in told} == {
+    story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), EMPTY, subject.clock)
+    story_lines = lines(story, lambda _: "")
+    assert {line.who for line in story_lines} == {
         "Battery",
         "BatteryAbove (bt_1002)",
         "ReactiveFallback (bt_1001)",
         "Deliver (bt_1004)",
         "Building",
     }
-    said = [text for line in told for text in (line.what, *line.details)]
-    assert "sends srv_hand_over_response(success: true, message: 'taken')" in said
-    assert not [text for text in said if "_client_" in text or "_len" in text]
+    event_phrase = [text for line in story_lines for text in (line.what, *line.details)]
+    assert "sends srv_hand_over_response(success: true, message: 'taken')" in event_phrase
+    assert not [text for text in event_phrase if "_client_" in text or "_len" in text]
 
 
 def walked(written: Json) -> Story:
     ready = ModelChecker(model(written))
-    return tell(Recorder(ready, ready.asked[0], 0, 1000), 0)
+    return build_story(Recorder(ready, ready.compiled_properties[0], 0, 1000), 0)
 
 
 def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:
@@ -91,8 +91,8 @@ def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )
     story = walked(written)
-    told = [(line.who, line.what, line.details) for line in lines(story, lambda _: "here")]
-    assert told == [("a", "meet: s → t", ()), ("b", "meet: s → t", ()), ("a", "t → u", ("x: 0 → 1",))]
+    story_lines = [(line.who, line.what, line.details) for line in lines(story, lambda _: "here")]
+    assert story_lines == [("a", "meet: s → t", ()), ("b", "meet: s → t", ()), ("a", "t → u", ("x: 0 → 1",))]
 
 
 def test_the_middle_of_a_long_story_is_folded() -> None:
@@ -100,8 +100,8 @@ def test_the_middle_of_a_long_story_is_folded() -> None:
     goal = {"p": probability(op("F", op("=", "x", FIRST + LAST + 7)))}
     story = walked(document(automaton("a", "s", [count]), variables=[variable("x")], properties=goal))
     assert len(turns(story)) == FIRST + LAST + 7
-    told = lines(story, lambda _: "")
-    assert len(told) == FIRST + LAST + 1
-    assert told[FIRST].what == "… 7 more …"
-    assert [line.step for line in told] == sorted(line.step for line in told)
+    story_lines = lines(story, lambda _: "")
+    assert len(story_lines) == FIRST + LAST + 1
+    assert story_lines[FIRST].what == "… 7 more …"
+    assert [line.step for line in story_lines] == sorted(line.step for line in story_lines)
     assert "… 7 more …" in as_mermaid(story, lambda _: "")

@@ -13,7 +13,7 @@ from roaml.rules import BY_CODE
 from roaml.scxml.events import Role
 from roaml.smc.run import Options
 from roaml.verification import stuck
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.waiting import NEEDS_TIME
 from stuck_models import CROSSED, hospital, system
 
@@ -25,13 +25,13 @@ def told(folder: Path, files: dict[str, str]) -> str:
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
     subject = api.as_target(api.load(str(folder / "main.xml")))
-    look = stuck.look(subject, api.checker(subject.model), Options(), stuck.WARNING)
+    result = stuck.check_stuck(subject, api.checker(subject.model), Options(), stuck.StuckLevel.WARNING)
 
     def place_of(origin: object) -> str:
         path, line, _ = subject.place(origin) or ("", 0, 0)  # type: ignore[arg-type]
         return f"{Path(path).name}:{line}"
 
-    lines = stuck_report.as_text(look, place_of).splitlines()[2:]
+    lines = stuck_report.as_text(result, place_of).splitlines()[2:]
     # The rule stands on a line of its own here, which would be too long otherwise.
     return "".join(f"{line.strip()}\n" for line in lines).replace(" [", "\n[")
 
@@ -41,10 +41,10 @@ def test_a_plugin_waits_for_a_service_that_waits_for_time(tmp_path: Path) -> Non
         told(tmp_path, hospital())
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Fetch (bt_1002) to answer its tick (tree.xml:5)
+the tree waits for Fetch (bt_1002) to return a status (tree.xml:5)
 Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
 Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock advances (pharmacy.ascxml:8)
-help: a tick must be answered before time passes; let Fetch (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must return a status before time passes; let Fetch (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -90,10 +90,10 @@ def test_a_plugin_waits_for_the_result_of_an_action(tmp_path: Path) -> None:
         text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Move (bt_1001) to answer its tick (tree.xml:3)
+the tree waits for Move (bt_1001) to return a status (tree.xml:3)
 Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
 Arm waits in `busy` for its timer `step`, which ticks when the clock advances (Arm.ascxml:11)
-help: a tick must be answered before time passes; let Move (bt_1001) return RUNNING, and the result at a later tick
+help: a tick must return a status before time passes; let Move (bt_1001) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -133,11 +133,11 @@ def test_a_service_waits_for_a_message_of_a_machine_with_a_timer(tmp_path: Path)
         text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Ask (bt_1002) to answer its tick (tree.xml:3)
+the tree waits for Ask (bt_1002) to return a status (tree.xml:3)
 Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
 Publisher waits in `s` for its timer `t`, which ticks when the clock advances (Publisher.ascxml:5)
-help: a tick must be answered before time passes; let Ask (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must return a status before time passes; let Ask (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -200,10 +200,10 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
     machines = {"Slow": slow, "Gate": gate, "Server": server}
     lines = told(tmp_path, system(machines, "<ReactiveSequence><Gate /><Slow /></ReactiveSequence>")).splitlines()
     assert lines[1:] == [
-        "the tree waits for Slow (bt_1002) to answer its halt (tree.xml:3)",
+        "the tree waits for Slow (bt_1002) to halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock advances (Server.ascxml:5)",
-        "help: a halt must be answered before time passes; let Slow (bt_1002) answer it at once",
+        "help: a halt must end before time passes; let Slow (bt_1002) confirm it at once",
         "[answer-needs-time]",
     ]
 
@@ -235,13 +235,13 @@ def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
     ],
 )
 def test_events_in_words(event: str, words: str) -> None:
-    assert said(event, {"Fetch"}) == words
+    assert event_phrase(event, {"Fetch"}) == words
 
 
 def test_the_tick_of_a_timer_in_words() -> None:
     """The role decides, not the name of the automaton."""
-    assert said("ros_time_rate.second", {"Fetch"}, taken=True) == "the tick of its timer `second`"
-    assert said("ros_time_rate.second", {"Fetch"}, Role.TREE_ROOT, taken=True) == "its next tick"
+    assert event_phrase("ros_time_rate.second", {"Fetch"}, taken=True) == "the tick of its timer `second`"
+    assert event_phrase("ros_time_rate.second", {"Fetch"}, Role.TREE_ROOT, taken=True) == "its next tick"
 
 
 def test_the_rule_that_is_named_exists() -> None:
@@ -264,7 +264,7 @@ def test_the_tree_waits_at_the_line_of_the_node_that_is_ticked(tmp_path: Path) -
     lines = told(tmp_path, system({"Fetch": ASK, "Server": SERVER, "Publisher": PUBLISHER}, NODES)).splitlines()
     assert lines[:2] == [
         "the clock waits at 2 s for the tree to take its next tick (tree.xml:3)",
-        "the tree waits for Fetch (bt_1003) to answer its tick (tree.xml:6)",
+        "the tree waits for Fetch (bt_1003) to return a status (tree.xml:6)",
     ]
 
 

@@ -42,8 +42,8 @@ def test_tree_covers_the_text(text: str) -> None:
     elements = [node for node in document.nodes if isinstance(node, Element)]
     assert document.root is (elements[0] if elements else None)
     for element in elements:
-        for each in element.walk():
-            assert_element(text, each)
+        for inner in element.walk():
+            assert_element(text, inner)
 
 
 def assert_covers(nodes: Iterable[Node], span: Span) -> None:

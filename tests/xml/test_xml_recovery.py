@@ -62,13 +62,13 @@ CASES = {
 """,
     "slash that closes nothing": """
 <a / b="1"></a>
-   ^ `/` is not an attribute
+   ^ `/` is not an attribute; write `name="value"`
 => a[b=1]
 """,
     "junk in a tag": """
 <a {x} b="1" ;/>
-   ^^^ `{x}` is not an attribute
-             ^ `;` is not an attribute
+   ^^^ `{x}` is not an attribute; write `name="value"`
+             ^ `;` is not an attribute; write `name="value"`
 => a[b=1]/
 """,
     "no name that XML knows": """
@@ -143,7 +143,7 @@ CASES = {
     "value without equals sign": """
 <a b "c"/>
    ^ the attribute `b` has no value
-     ^^^ `"c"` is not an attribute
+     ^^^ `"c"` is not an attribute; write `name="value"`
 => a[b]/
 """,
     "no space between attributes": """
@@ -216,18 +216,18 @@ CASES = {
 """,
     "stray end tag": """
 <a><b/></xyz><c/></a>
-       ^^^^^^ `</xyz>` closes nothing; the open element is `<a>`
+       ^^^^^^ `</xyz>` closes no element; the open element is `<a>`
 => a(b/ c/)
 """,
     "end tag behind the root": """
 <a/></a>
-    ^^^^ `</a>` closes nothing
+    ^^^^ `</a>` closes no element; remove it
 => a/
 """,
     "crossed tags": """
 <a><b></a></b>
     ^ `<b>` is never closed
-          ^^^^ `</b>` closes nothing
+          ^^^^ `</b>` closes no element; remove it
 => a(b~)
 """,
     "end tag without `>`": """

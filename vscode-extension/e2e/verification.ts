@@ -103,7 +103,7 @@ export function verification(stage: Stage): void {
         // The effects of the step are below it.
         await step(window, "battery: 100 → 40").waitFor();
         await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
-        await step(window, "ReactiveFallback (bt_1001): answers SUCCESS").first().click();
+        await step(window, "ReactiveFallback (bt_1001): returns SUCCESS").first().click();
         await tree.locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
         await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
         assert.equal(await tree.locator(".node.highlighted").count(), 1);

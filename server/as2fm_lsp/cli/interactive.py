@@ -110,7 +110,7 @@ class Terminal:
 
     def _until(self, name: str) -> str:
         if not self._session.has_event(name):
-            return f"there is no event, topic, service or action `{name}`"
+            return f"there is no event, topic, service or action `{name}`; a topic is written as `/name`"
         return "" if self._session.until_sent(name) else f"`{name}` was not sent again"
 
     def _choose(self, text: str) -> str:

@@ -54,6 +54,7 @@ from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
+from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.stuck import StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
@@ -68,7 +69,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 examples:
-  as2fm-lsp verify main.xml                              all properties, to 0.01 with 95 percent confidence
+  as2fm-lsp verify main.xml                              all properties: exact values if the model has few states,
+                                                         otherwise to 0.01 with 95 percent confidence
   as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
@@ -87,6 +89,20 @@ exit status: 0 success; 1 an expectation is not met, a property cannot be answer
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
+TRACE_OPTIONS = (
+    "confidence",
+    "epsilon",
+    "method",
+    "max_traces",
+    "max_steps",
+    "seed",
+    "separate",
+    "resume",
+    "traces",
+    "dask",
+    "exhaustive",
+)
+"""The options with which `verify` does not decide by the size of the model whether values are exact."""
 STANDARD_OUTPUT = "-"
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
@@ -129,14 +145,28 @@ def _run(options: argparse.Namespace) -> int:
             status.stage("reading and translating")
             target = read_target(options, settings)
             status.stage("compiling")
-            verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
+            verifier = api.verifier(
+                target,
+                names,
+                limits,
+                expectations,
+                only_uniform=only_uniform,
+                exact_if_small=not _asks_for_traces(options),
+                example_traces=EXAMPLE_TRACES,
+            )
     except (api.ModelError, api.JaniError) as error:
         return _errors(options, error_report(error))
     except FaultError as fault:
         return _fault(options, target, fault)
     if not verifier.names:
-        raise UsageError(f"{shown_path(options.main)} has no properties")
+        raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
     return _Verification(options, verifier).run()
+
+
+def _asks_for_traces(options: argparse.Namespace) -> bool:
+    """Whether an option is given that has an effect only on traces."""
+    values = [getattr(options, name) for name in TRACE_OPTIONS]
+    return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS
 
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
@@ -180,7 +210,7 @@ class _Verification:
         self.verifier = verifier
         self.target = verifier.target
         self.limits = verifier.options
-        self.look: stuck.Look | None = None
+        self.stuck_result: stuck.StuckResult | None = None
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
@@ -198,16 +228,16 @@ class _Verification:
                     with Pool(workers or self.options.jobs, executor) as pool:
                         self.results.append(self._answer_alone(name, pool, bar))
                     interrupted = self.results[-1].is_interrupted
-            looks = self.tree is None and not interrupted and not self.options.exhaustive
-            if looks and stuck.can_be_stuck(checker):
-                asks_stuck = any(asked.question.is_stuck for asked in checker.asked)
-                self.look = self._look(None if asks_stuck or self.faults else bar)
+            can_check = self.tree is None and not interrupted and not self.options.exhaustive
+            if can_check and stuck.can_be_stuck(checker):
+                includes_stuck = any(property_.question.is_stuck for property_ in checker.compiled_properties)
+                self.stuck_result = self._check_stuck(None if includes_stuck or self.faults else bar)
         self._print()
-        self._tell_faults()
-        is_met = all(r.is_met for r in self.results) and (self.look is None or self.look.is_met)
+        self._print_faults()
+        is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
         status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
-            self._tell()
+            self._write_traces()
         return status
 
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
@@ -215,33 +245,33 @@ class _Verification:
         options, verifier = self.options, self.verifier
         if options.separate or options.exhaustive or options.scheduler is Scheduler.LSS:
             return {}
-        asked = verifier.sharing()
-        if not asked:
+        properties = verifier.sharing()
+        if not properties:
             return {}
-        payloads = [verifier.checker.payload(property_) for property_ in asked] if self.state is not None else []
-        tallies = [Tally() for _ in asked]
+        payloads = [verifier.checker.payload(property_) for property_ in properties] if self.state is not None else []
+        tallies = [Tally() for _ in properties]
         if self.state is not None:
-            tallies = [self.state.tally(e.question, payload) for e, payload in zip(asked, payloads, strict=True)]
-        by_name = {property_.question.name: payload for property_, payload in zip(asked, payloads, strict=False)}
+            tallies = [self.state.tally(e.question, payload) for e, payload in zip(properties, payloads, strict=True)]
+        by_name = {property_.question.name: payload for property_, payload in zip(properties, payloads, strict=False)}
 
         def watch(property_: CompiledProperty, so_far: Tally) -> None:
-            shown = next((e for e, tally in zip(asked, tallies, strict=True) if not tally.is_finished), None)
+            shown = next((e for e, tally in zip(properties, tallies, strict=True) if not tally.is_finished), None)
             if property_ is shown:
-                bar.together(property_.question, so_far, len(asked))
+                bar.together(property_.question, so_far, len(properties))
             if self.state is not None:
                 self.state.keep(property_.question.name, by_name[property_.question.name], so_far)
 
         began = time.monotonic()
-        bar.begin(asked[0].question, self.limits, tallies[0])
+        bar.begin(properties[0].question, self.limits, tallies[0])
         try:
-            results = verifier.answer_together(asked, pool, tallies, watch, bar.pulse)
+            results = verifier.answer_together(properties, pool, tallies, watch, bar.pulse)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         except KeyboardInterrupt:
             seconds = time.monotonic() - began
-            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(asked, tallies, strict=True)]
+            results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(properties, tallies, strict=True)]
         if self.state is not None:
-            for property_, tally in zip(asked, tallies, strict=True):
+            for property_, tally in zip(properties, tallies, strict=True):
                 self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
         self.faults += [result.fault for result in results if result.fault is not None]
         return {result.name: self._with_shown_path(result) for result in results}
@@ -261,20 +291,20 @@ class _Verification:
             return result
         return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
 
-    def _answer(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
+    def _answer(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
-        name = asked.question.name
+        name = property_.question.name
         if self.options.exhaustive:
-            return self._exhaustive(asked, bar, began)
+            return self._exhaustive(property_, bar, began)
         try:
-            self.verifier.check_method(asked)
+            self.verifier.check_method(property_)
         except NoThresholdError as error:
             raise UsageError(f"{error}; use --expect") from None
         tally = Tally()
-        payload = self.verifier.checker.payload(asked)
+        payload = self.verifier.checker.payload(property_)
         if self.state is not None:
-            tally = self.state.tally(asked.question, payload)
-        bar.begin(asked.question, self.limits, tally)
+            tally = self.state.tally(property_.question, payload)
+        bar.begin(property_.question, self.limits, tally)
 
         def watch(so_far: Tally) -> None:
             bar.watch(so_far)
@@ -282,39 +312,39 @@ class _Verification:
                 self.state.keep(name, payload, so_far)
 
         if self.options.scheduler is Scheduler.LSS:
-            return self._search(asked, pool, bar, began)
+            return self._search(property_, pool, bar, began)
         try:
-            result = self.verifier.answer(asked, pool, tally, watch, bar.pulse)
+            result = self.verifier.answer(property_, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
-            result = self.verifier.interrupted(asked, tally, time.monotonic() - began)
+            result = self.verifier.interrupted(property_, tally, time.monotonic() - began)
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
         return result
 
-    def _search(self, asked: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
+    def _search(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
         search, interrupted = Search(), False
         try:
-            self.verifier.checker.search(asked, self.limits, pool, search, bar.search, bar.pulse)
+            self.verifier.checker.search(property_, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
             interrupted = True
-        return self.verifier.sampled(asked, search, time.monotonic() - began, is_interrupted=interrupted)
+        return self.verifier.sampled(property_, search, time.monotonic() - began, is_interrupted=interrupted)
 
-    def _look(self, bar: ProgressBar | None) -> stuck.Look:
+    def _check_stuck(self, bar: ProgressBar | None) -> stuck.StuckResult:
         """The result of a check for stuck systems; with a progress bar, traces are generated for it."""
         level = self.options.stuck
-        own = stuck.Look(None, None, level) if bar is None else self.verifier.look_for_stuck(level, bar.pulse)
+        own = stuck.StuckResult(None, None, level) if bar is None else self.verifier.check_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
 
-    def _exhaustive(self, asked: CompiledProperty, bar: ProgressBar, began: float) -> Result:
+    def _exhaustive(self, property_: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
         limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
         try:
             return self.verifier.exhaustive(
-                asked, limits, lambda states, done: bar.states(asked.question, states, done)
+                property_, limits, lambda states, done: bar.states(property_.question, states, done)
             )
         except KeyboardInterrupt:
-            return Result(asked.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            return Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
 
     def _print(self) -> None:
         text = self._text()
@@ -324,21 +354,21 @@ class _Verification:
     def _text(self) -> str:
         if self.options.format is Format.JSON:
             entries = [_row(finding) for finding in self._fault_entries()]
-            row = None if self.look is None else stuck_report.as_row(self.look, self._place_row)
+            row = None if self.stuck_result is None else stuck_report.as_row(self.stuck_result, self._place_row)
             return as_json(self.results, entries, stuck=row, tree=self._tree_row())
         if self.options.format is Format.JUNIT:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
-            return as_junit(self.results, shown_path(self.options.main), self._place, self.look)
+            return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
         # A story of a stuck trace ends with the waiting automata.
-        is_told = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
-        is_told = is_told and not any(result.is_interrupted for result in self.results)
-        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if is_told else "")
+        has_story = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
+        has_story = has_story and not any(result.is_interrupted for result in self.results)
+        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if has_story else "")
         if self.tree is not None:
-            return f"{self._tree_text(text, is_told)}{self._assumptions()}\n"
-        if self.look is not None:
-            text += stuck_report.as_text(self.look, self._place, self._where_shown(is_told))
-        return f"{text}{'' if is_told else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
+            return f"{self._tree_text(text, has_story)}{self._assumptions()}\n"
+        if self.stuck_result is not None:
+            text += stuck_report.as_text(self.stuck_result, self._place, self._where_shown(has_story))
+        return f"{text}{'' if has_story else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
 
     def _tree_row(self) -> dict[str, Any] | None:
         if self.tree is None:
@@ -348,7 +378,7 @@ class _Verification:
         mocked, outcome = self.tree
         return None if outcome is None else as_row(mocked, outcome)
 
-    def _tree_text(self, text: str, is_told: bool) -> str:
+    def _tree_text(self, text: str, has_story: bool) -> str:
         """The results of a tree without a system: those of its properties, its measurements, and a failing trace."""
         from as2fm_lsp.verification import tree_report  # noqa: PLC0415
 
@@ -357,21 +387,23 @@ class _Verification:
         if outcome is not None:
             text += tree_report.as_text(mocked, outcome, self._place)
             succeeds = next((r for r in self.results if r.name == "succeeds" and r.traces is not None), None)
-            failing = None if succeeds is None or is_told else unwanted_trace(succeeds)
+            failing = None if succeeds is None or has_story else unwanted_trace(succeeds)
             if succeeds is not None and succeeds.traces is not None and failing is not None:
                 story = succeeds.traces.story(failing.trace)
                 text += tree_report.story_as_text(mocked, story, self._place)
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
-    def _where_shown(self, is_told: bool) -> str:
+    def _where_shown(self, has_story: bool) -> str:
         """The place in the output where the waiting automata of the example of a stuck trace are shown; "" if they are
         not shown elsewhere."""
-        if self.look is None or self.look.stuck is None:
+        if self.stuck_result is None or self.stuck_result.stuck is None:
             return ""
-        same = [result for result in self.results if result.stuck and result.stuck.chain == self.look.stuck.chain]
-        if same and is_told:
+        same = [
+            result for result in self.results if result.stuck and result.stuck.chain == self.stuck_result.stuck.chain
+        ]
+        if same and has_story:
             return "in the trace below"
-        named = next((result.name for result in same if not result.asks_stuck), None)
+        named = next((result.name for result in same if not result.includes_stuck), None)
         return "" if named is None else f"above, beneath `{named}`"
 
     def _assumptions(self) -> str:
@@ -381,7 +413,15 @@ class _Verification:
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
-        return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        if all(result.exact is None for result in self.results):
+            return how
+        over = "" if self.verifier.only_uniform else "over all schedulers and "
+        computed = f"exact values: computed from all reachable states, {over}for uniform choices"
+        computed += " (--method adaptive: estimates from traces)"
+        has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
+        has_estimate = has_estimate or any(r.answer is not None and r.exact is None for r in self.results)
+        return f"{computed}\nestimates: {how}" if has_estimate else computed
 
     def _place(self, origin: Location) -> str:
         path, line, _ = self.target.place(origin) or ("", 0, 0)
@@ -400,7 +440,7 @@ class _Verification:
             if diagnostic is not None
         ]
 
-    def _tell_faults(self) -> None:
+    def _print_faults(self) -> None:
         """Report the properties that could not be decided on standard error."""
         if self.faults and self.options.format is not Format.JSON:
             entries = self._fault_entries()
@@ -408,7 +448,7 @@ class _Verification:
             if entries:
                 print_text(render(report, Format.TEXT), stream=sys.stderr)
 
-    def _tell(self) -> None:
+    def _write_traces(self) -> None:
         """Write traces and stories."""
         from as2fm_lsp.verification.trace_files import write_traces  # noqa: PLC0415
 
@@ -512,20 +552,19 @@ def parser() -> ArgumentParser:
     add(
         "--confidence",
         type=_share,
-        default=0.95,
         metavar="C",
         help="the probability with which the interval contains the true value (0.95)",
     )
-    add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); for "
+    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
         "an expected reward relative to its value")  # fmt: skip
-    add("--method", action=WordAction, words=EstimationMethod, default=EstimationMethod.ADAPTIVE,
-        help="the number of traces: until the interval is narrow enough "
-        "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
-        "expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--method", action=WordAction, words=EstimationMethod,
+        help="generate traces, also if the model is small: until the interval is narrow "
+        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
+        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
     add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
+    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; they stay "
         "undecided (1000000)")  # fmt: skip
-    add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
+    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
     add(
         "--jobs",
         type=positive,
@@ -602,15 +641,10 @@ def _expectations(texts: Sequence[str]) -> list[Expectation]:
 
 
 def _limits(options: argparse.Namespace) -> Options:
+    names = ("confidence", "epsilon", "max_traces", "max_steps", "seed", "method")
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
     try:
-        return Options(
-            confidence=options.confidence,
-            epsilon=options.epsilon,
-            max_traces=options.max_traces,
-            max_steps=options.max_steps,
-            seed=options.seed,
-            method=options.method,
-        )
+        return Options(**given)
     except ValueError as error:
         raise UsageError(str(error)) from None
 
@@ -621,7 +655,7 @@ def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | 
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
-    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed))
+    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed or 0))
 
 
 def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:

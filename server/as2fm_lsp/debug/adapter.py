@@ -166,7 +166,9 @@ class Adapter:
         self._session.has_begun = True
         run = debugger.session
         program = os.path.basename(launch.program)
-        self._session.log(f"{program}: seed {run.seed}, trace {run.trace}, property {run.asked.question.name}")
+        self._session.log(
+            f"{program}: seed {run.seed}, trace {run.trace}, property {run.compiled_property.question.name}"
+        )
         if launch.stops_on_entry:
             self._session.report(debugger.entry())
         else:
@@ -174,7 +176,7 @@ class Adapter:
 
     def _restart(self, arguments: Arguments) -> Body:
         if self._session.launch is None:
-            raise RequestError("no run has been launched")
+            raise RequestError("no run has been launched; send `launch` first")
         given = arguments.object("arguments")
         launch = launch_of(given) if given.has("program") else self._session.launch
         self._load(launch)

@@ -14,6 +14,7 @@ from as2fm_lsp.debug.variables import Shown
 from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter, WatchedVariable, breakpoint_of, nodes_named
 from roaml.debugging.debugger import Debugger
 from roaml.debugging.evaluate import WatchError
+from roaml.suggest import alternatives
 
 
 class BreakpointRequests:
@@ -129,7 +130,8 @@ class BreakpointRequests:
             try:
                 filter_ = next((known for known in ExceptionFilter if known.value == name), None)
                 if filter_ is None:
-                    raise WatchError(f"there is no filter `{name}`")
+                    known = [filter_.value for filter_ in ExceptionFilter]
+                    raise WatchError(f"there is no filter `{name}`{alternatives((), known, 'filter')}")
                 set_[filter_] = breakpoint_of(0, name, condition)
                 bodies.append({"verified": True})
             except WatchError as error:
@@ -147,7 +149,10 @@ class BreakpointRequests:
             children = self._session.children(arguments.number("variablesReference"))
         entry = next((child.entry for child in children if child.entry.name == name), None)
         if entry is None or entry.variable is None:
-            return {"dataId": None, "description": f"`{name}` is not a variable that can be watched"}
+            return {
+                "dataId": None,
+                "description": f"`{name}` is not a variable of an automaton and cannot be watched",
+            }
         variable = entry.variable
         owner = "" if variable.instance < 0 else f"{self._session.loaded.session.automata[variable.instance]}/"
         data = f"{owner}{variable.name}"
@@ -162,7 +167,7 @@ class BreakpointRequests:
             data = given.text("dataId", None)
             variable = self._variable(debugger, data)
             if variable is None:
-                raise WatchError(f"there is no variable `{data}`")
+                raise WatchError(f"there is no variable `{data}`; set the breakpoint again in the list of variables")
             chosen.append((variable, self._breakpoint(number, f"{data} changes", given)))
 
         numbered = [(self._number(), given) for given in arguments.objects("breakpoints")]

@@ -34,7 +34,7 @@ class ChoiceRequests:
             "time": session.time,
             "seed": session.seed,
             "trace": session.trace,
-            "property": session.asked.question.name,
+            "property": session.compiled_property.question.name,
             "verdicts": {name: verdict.value for name, verdict in debugger.verdicts.items()},
             "isByHand": session.is_by_hand,
             "isChanged": session.is_changed,
@@ -58,10 +58,12 @@ class ChoiceRequests:
         debugger = self._session.stopped
         number, drawn = arguments.number("choice"), arguments.natural("outcome", 0)
         choice = next((choice for choice in debugger.session.choices() if choice.number == number), None)
-        if debugger.session.end is not None or choice is None:
-            raise RequestError(f"there is no choice {number} in this state")
+        if debugger.session.end is not None:
+            raise RequestError("the run has ended, so there are no choices; step backwards or restart")
+        if choice is None:
+            raise RequestError(f"there is no choice {number} in this state; `choices` lists them")
         if drawn > len(choice.outcomes):
-            raise RequestError(f"choice {number} has no outcome {drawn}")
+            raise RequestError(f"choice {number} has only {len(choice.outcomes)} outcomes, not {drawn}")
         try:
             stop = debugger.choose(choice, choice.outcomes[drawn - 1] if drawn else None)
         except FaultError as fault:

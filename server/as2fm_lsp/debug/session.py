@@ -107,7 +107,7 @@ class DebugSession:
             RequestError: there is no run.
         """
         if self.debugger is None:
-            raise RequestError("no run has been launched")
+            raise RequestError("no run has been launched; send `launch` first")
         return self.debugger
 
     @property
@@ -160,7 +160,7 @@ class DebugSession:
         """
         number = arguments.number("frameId")
         if number not in self.frames:
-            raise RequestError(f"there is no frame {number}")
+            raise RequestError(f"there is no frame {number}; frames are valid only until the run continues")
         return self.frames[number]
 
     def children(self, reference: int) -> list[Shown]:
@@ -171,7 +171,9 @@ class DebugSession:
         """
         children = self.references.children(reference)
         if children is None:
-            raise RequestError(f"there are no variables with the reference {reference}")
+            raise RequestError(
+                f"there are no variables with the reference {reference}; it is valid only until the run continues"
+            )
         return list(children)
 
     def where(self, origin: Origin | None) -> dict[str, Any]:

@@ -42,7 +42,7 @@ class StateRequests:
         debugger = self._session.stopped
         thread = arguments.number("threadId")
         if all(known.number != thread for known in debugger.threads):
-            raise RequestError(f"there is no thread {thread}")
+            raise RequestError(f"there is no thread {thread}; `threads` lists them")
         frames = debugger.stack(thread)
         first, levels = arguments.natural("startFrame", 0), arguments.natural("levels", 0)
         chosen = frames[first : first + levels] if levels else frames[first:]
@@ -61,7 +61,7 @@ class StateRequests:
         scopes = []
         for scope in debugger.values.scopes(frame):
             entries = [Shown(entry, before.get((scope.name, entry.name))) for entry in scope.entries]
-            hint = {"presentationHint": scope.hint} if scope.hint in ("locals", "arguments") else {}
+            hint = {} if scope.hint is None else {"presentationHint": scope.hint.value}
             reference = self._session.references.add(entries)
             scopes.append({"name": scope.name, "variablesReference": reference, "expensive": False,
                 "namedVariables": len(entries), **hint})  # fmt: skip

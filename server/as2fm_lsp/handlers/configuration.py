@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from as2fm_lsp.client import SECTION
 from as2fm_lsp.context import Context
-from as2fm_lsp.handlers.workspace import tell_problems
+from as2fm_lsp.handlers.workspace import show_problems
 from as2fm_lsp.trust import DID_CHANGE
 
 
@@ -19,7 +19,7 @@ def register(context: Context) -> None:
         if not await fetch_settings(context):
             settings = params.settings if isinstance(params.settings, dict) else {}
             context.session.configure(settings.get(SECTION, settings) or {})
-        tell_problems(context)
+        show_problems(context)
         context.diagnostics.schedule()
 
     @context.feature(DID_CHANGE)

@@ -80,9 +80,9 @@ def register(context: Context) -> None:
         if known is None or known.result.traces is None:
             return None
         result, target = known.result, known.result.traces.target
-        tell = witness if getattr(params, "witness", False) is True else counterexample
+        explain_trace = witness if getattr(params, "witness", False) is True else counterexample
         why = await background.in_thread(
-            lambda _: tell(result, partial(place_in_words, target)), context.requests.checkpoint
+            lambda _: explain_trace(result, partial(place_in_words, target)), context.requests.checkpoint
         )
         if why is None:
             return None
@@ -107,7 +107,7 @@ def register(context: Context) -> None:
         traces, sources = known.result.traces, Sources(known.result.traces.target, known.analysis)
         trace = natural(params, "trace")
         step, earlier = (min(natural(params, name), traces.options.max_steps) for name in ("step", "earlier"))
-        run = Session(traces.checker, traces.asked, traces.options.seed, trace, traces.target.clock)
+        run = Session(traces.checker, traces.compiled_property, traces.options.seed, trace, traces.target.clock)
         with suppress(FaultError):  # the trace ends where the model fails
             await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
         last = len(run.steps)
@@ -130,7 +130,7 @@ class CurrentResults:
             return None
         if self._expected is None:
             self._expected = expected_now(self._snapshot, self.system, self.context.session.client_settings)
-        return self._expected.judge(known)
+        return self._expected.with_expectations(known)
 
     def is_stale(self, known: KnownResult) -> bool:
         return self.context.results.is_stale(known, self.analysis, self.system)

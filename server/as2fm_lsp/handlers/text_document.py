@@ -8,8 +8,8 @@ import os
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
-from as2fm_lsp.handlers.workspace import tell_problems
-from roaml.model.kinds import CONFIG_FILES
+from as2fm_lsp.handlers.workspace import show_problems
+from roaml.model.config_files import CONFIG_FILES
 
 
 def register(context: Context) -> None:
@@ -20,7 +20,7 @@ def register(context: Context) -> None:
         document = params.text_document
         path = session.convert.path(document.uri)
         session.open(path, document.text, document.version)
-        tell_problems(context)
+        show_problems(context)
         diagnostics.schedule(path)
 
     @context.feature(types.TEXT_DOCUMENT_DID_CHANGE)
@@ -32,10 +32,10 @@ def register(context: Context) -> None:
     @context.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
         path = session.convert.path(params.text_document.uri)
-        session.look_again()
+        session.invalidate()
         if os.path.basename(path) in CONFIG_FILES:
             session.configure()
-            tell_problems(context)
+            show_problems(context)
         diagnostics.schedule(path)
 
     @context.feature(types.TEXT_DOCUMENT_DID_CLOSE)

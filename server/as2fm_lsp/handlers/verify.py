@@ -78,7 +78,7 @@ def register(context: Context) -> None:
                     return None
                 raise
             finally:
-                context.refresh.look()
+                context.refresh.update()
 
 
 class _VerifyCommand:
@@ -102,12 +102,12 @@ class _VerifyCommand:
             snapshot = context.session.moment().snapshot(path)
             system = api.loaded(snapshot, path)
         except api.ModelError as error:
-            self.say_wrong(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
+            self.show_error(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
             if not self.settings.is_silent:
                 await show(context, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
         except api.PathError as error:
-            self.say_wrong(str(error))
+            self.show_error(str(error))
             return {"results": [], "errors": [{"message": str(error)}]}
         texts = fingerprint(system.analysis, path)
         target = context.results.target(texts)
@@ -120,16 +120,18 @@ class _VerifyCommand:
         target = target.expecting(context.session.settings_of(path).expectations)
         await self.bar.step("compiling")
         names = list(dict.fromkeys(names or [property_.name for property_ in target.properties]))
-        verifier, asked = self.compiled(target, names, system.analysis)
+        verifier, properties = self.compiled(target, names, system.analysis)
         results: list[Result] = []
-        together = [property_ for property_ in asked.values() if verifier is not None and verifier.can_share(property_)]
+        together = [
+            property_ for property_ in properties.values() if verifier is not None and verifier.can_share(property_)
+        ]
         if verifier is not None and len(together) > 1:
             results += await self.together(verifier, together, system.analysis, texts)
         for property_name in names:
             if verifier is None or property_name in self.rows:
                 continue
             try:
-                result = await self.alone(verifier, asked[property_name])
+                result = await self.alone(verifier, properties[property_name])
             except FaultError as fault:
                 self.refuse(property_name, fault, system.analysis)
             except WorkersLostError as error:
@@ -137,8 +139,8 @@ class _VerifyCommand:
             else:
                 results.append(result)
                 self.publish(result, target, system.analysis, texts)
-        look = None if verifier is None else await self.look(verifier, system.analysis, results, texts)
-        return {"results": [self.rows[name] for name in names], "errors": [], "stuck": look}
+        stuck_row = None if verifier is None else await self.check_stuck(verifier, system.analysis, results, texts)
+        return {"results": [self.rows[name] for name in names], "errors": [], "stuck": stuck_row}
 
     def compiled(
         self, target: VerificationTarget, names: Sequence[str], analysis: Analysis
@@ -168,49 +170,52 @@ class _VerifyCommand:
                 else:
                     self.reject(name, str(error))
             return None, {}
-        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform)
-        asked = {}
+        is_exact = settings.exact_if_small
+        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform, is_exact)
+        properties = {}
         for name in usable:
             try:
                 question = verifier.question(name)
                 for expectation in verifier.expected(question):
                     check_range(expectation, question.question)
-                asked[name] = question
+                properties[name] = question
             except FaultError as fault:
                 self.refuse(name, fault, analysis)
             except RangeError as error:
                 self.reject(name, str(error))
-        return verifier, asked
+        return verifier, properties
 
-    async def alone(self, verifier: Verifier, asked: CompiledProperty) -> Result:
+    async def alone(self, verifier: Verifier, property_: CompiledProperty) -> Result:
         """The result of a property, from traces that it does not share."""
-        name = asked.question.name
+        name = property_.question.name
         await self.bar.step(name)
         began = time.monotonic()
 
         def show_estimate(tally: Tally) -> None:
-            self.bar.say(f"{name}: {_so_far(verifier, asked, tally)}")
+            self.bar.set_message(f"{name}: {_so_far(verifier, property_, tally)}")
 
-        result = await background.answer(verifier, asked, self.context.requests.checkpoint, show_estimate)
+        result = await background.answer(verifier, property_, self.context.requests.checkpoint, show_estimate)
         return replace(result, seconds=time.monotonic() - began)
 
     async def together(
-        self, verifier: Verifier, asked: Sequence[CompiledProperty], analysis: Analysis, texts: Texts
+        self, verifier: Verifier, properties: Sequence[CompiledProperty], analysis: Analysis, texts: Texts
     ) -> list[Result]:
         """The results of properties that share traces. If the user cancels, those that are complete are kept."""
-        count = len(asked)
+        count = len(properties)
         await self.bar.step(f"{count} properties from the same traces")
 
         def show_estimates(tallies: Sequence[Tally]) -> None:
             open_ = [
-                (property_, tally) for property_, tally in zip(asked, tallies, strict=True) if not tally.is_finished
+                (property_, tally)
+                for property_, tally in zip(properties, tallies, strict=True)
+                if not tally.is_finished
             ]
             done = f"{count - len(open_)} of {count} properties"
             if open_:
                 first, tally = open_[0]
-                self.bar.say(f"{done}, {first.question.name}: {_so_far(verifier, first, tally)}")
+                self.bar.set_message(f"{done}, {first.question.name}: {_so_far(verifier, first, tally)}")
             else:
-                self.bar.say(f"{done}; trying other schedulers")
+                self.bar.set_message(f"{done}; trying other schedulers")
 
         def keep(result: Result) -> None:
             if result.fault is not None:
@@ -222,9 +227,9 @@ class _VerifyCommand:
         results: list[Result] = []
         checkpoint = self.context.requests.checkpoint
         try:
-            await background.answer_together(verifier, asked, checkpoint, show_estimates, keep)
+            await background.answer_together(verifier, properties, checkpoint, show_estimates, keep)
         except WorkersLostError as error:
-            for property_ in asked:
+            for property_ in properties:
                 if property_.question.name not in self.rows:
                     self.reject(property_.question.name, str(error))
         return results
@@ -232,22 +237,22 @@ class _VerifyCommand:
     def publish(self, result: Result, target: VerificationTarget, analysis: Analysis, texts: Texts) -> None:
         """Store a complete result, and send it to the client."""
         self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
-        self.tell(result.name, verified_row(result))
-        self.context.refresh.look()
+        self.report_row(result.name, verified_row(result))
+        self.context.refresh.update()
         if not self.settings.is_silent:
             self.context.client.show_message(types.MessageType.Info, self.text(result, target))
 
     def refuse(self, name: str, fault: FaultError, analysis: Analysis) -> None:
         """Report that a property cannot be decided."""
-        self.tell(name, {"property": name, "error": self.fault(fault, analysis)})
-        self.say_wrong(f"{name}: {fault.message}")
+        self.report_row(name, {"property": name, "error": self.fault(fault, analysis)})
+        self.show_error(f"{name}: {fault.message}")
 
     def reject(self, name: str, message: str) -> None:
         """Report that a property is unknown or cannot be compiled."""
-        self.tell(name, {"property": name, "error": {"message": message}})
-        self.say_wrong(message)
+        self.report_row(name, {"property": name, "error": {"message": message}})
+        self.show_error(message)
 
-    def tell(self, name: str, row: Json) -> None:
+    def report_row(self, name: str, row: Json) -> None:
         self.rows[name] = row
         if self.settings.partial_result_token is not None:
             self.context.client.send_partial_result(self.settings.partial_result_token, row)
@@ -257,29 +262,31 @@ class _VerifyCommand:
         shown = "in a separate message"
         return one_as_text(result, partial(place_in_words, target), self.settings.stuck, shown)
 
-    async def look(
+    async def check_stuck(
         self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
         """Whether the system gets stuck. Traces are generated to find out, unless this was requested as a property."""
         target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None
-        known = stuck.Look(None, None, level)
-        if not any(result.asks_stuck for result in results):
-            asked = checker.stuck
-            await self.bar.step(asked.question.name)
+        known = stuck.StuckResult(None, None, level)
+        if not any(result.includes_stuck for result in results):
+            stuck_property = checker.stuck
+            await self.bar.step(stuck_property.question.name)
             began = time.monotonic()
             known = await background.in_thread(
-                lambda checked: verifier.look_for_stuck(level, lambda _, __: checked()),
+                lambda checked: verifier.check_stuck(level, lambda _, __: checked()),
                 self.context.requests.checkpoint,
             )
-            is_free = all(property_.name != asked.question.name for property_ in target.properties)
+            is_free = all(property_.name != stuck_property.question.name for property_ in target.properties)
             if known.answer is not None and is_free:
-                traces = Traces(target, checker, asked, known.answer.options)
+                traces = Traces(target, checker, stuck_property, known.answer.options)
                 seconds = time.monotonic() - began
-                result = Result(asked.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces)
+                result = Result(
+                    stuck_property.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces
+                )
                 self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
-            self.context.refresh.look()
+            self.context.refresh.update()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
         place_of = partial(place_in_words, target)
         text = stuck_report.as_text(known, place_of)
@@ -298,14 +305,14 @@ class _VerifyCommand:
         where = {} if fault.origin is None else place(self.context, analysis, fault.origin)
         return {"message": fault.message, "code": fault.code, "trace": fault.trace, **where}
 
-    def say_wrong(self, text: str) -> None:
+    def show_error(self, text: str) -> None:
         if not self.settings.is_silent:
             self.context.client.show_message(types.MessageType.Error, text)
 
 
-def _so_far(verifier: Verifier, asked: CompiledProperty, tally: Tally) -> str:
+def _so_far(verifier: Verifier, property_: CompiledProperty, tally: Tally) -> str:
     """The estimate of a property whose verification is not complete."""
-    result = Result(asked.question.name, summary(asked.question, verifier.options, tally), (), 0)
+    result = Result(property_.question.name, summary(property_.question, verifier.options, tally), (), 0)
     return f"{short(result)}, {tally.traces:,} traces"
 
 

@@ -9,7 +9,8 @@ from collections.abc import Iterable
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
-from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, PROJECT_EXTENSION
+from roaml.model.config_files import CONFIG_FILES
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
 
 WATCHED = (
     *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)),
@@ -24,16 +25,16 @@ def register(context: Context) -> None:
     @context.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_folders(_: types.DidChangeWorkspaceFoldersParams) -> None:
         use_folders(context)
-        tell_problems(context)
+        show_problems(context)
         diagnostics.schedule()
 
     @context.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         paths = [session.convert.path(change.uri) for change in params.changes]
-        session.look_again()
+        session.invalidate()
         if any(os.path.basename(path) in CONFIG_FILES for path in paths):
             session.configure()
-            tell_problems(context)
+            show_problems(context)
         if any(change.type is not types.FileChangeType.Changed for change in params.changes):
             session.refresh()
         diagnostics.schedule()
@@ -45,7 +46,7 @@ def use_folders(context: Context, otherwise: Iterable[str] = ()) -> None:
     session.set_folders(session.convert.path(uri) for uri in context.client.folders or otherwise)
 
 
-def tell_problems(context: Context) -> None:
+def show_problems(context: Context) -> None:
     """Show the problems of the configuration that were not shown yet."""
     for problem in dict.fromkeys(context.session.problems):
         context.client.show_message(types.MessageType.Warning, problem)

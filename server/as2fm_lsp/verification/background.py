@@ -24,7 +24,10 @@ ESTIMATE_INTERVAL_S = 0.2
 
 
 async def answer(
-    verifier: Verifier, asked: CompiledProperty, checkpoint: Callable[[], None], show: Callable[[Tally], None]
+    verifier: Verifier,
+    property_: CompiledProperty,
+    checkpoint: Callable[[], None],
+    show: Callable[[Tally], None],
 ) -> Result:
     """The result of a property.
 
@@ -51,14 +54,14 @@ async def answer(
                 loop.call_soon_threadsafe(show, replace(latest))
 
         with Pool(_jobs(), start_delay_s=None) as pool:
-            return verifier.answer(asked, pool, latest, watch=lambda _: pulse(0, 0), pulse=pulse)
+            return verifier.answer(property_, pool, latest, watch=lambda _: pulse(0, 0), pulse=pulse)
 
     return await in_thread(work, checkpoint)
 
 
 async def answer_together(
     verifier: Verifier,
-    asked: Sequence[CompiledProperty],
+    properties: Sequence[CompiledProperty],
     checkpoint: Callable[[], None],
     show: Callable[[Sequence[Tally]], None],
     keep: Callable[[Result], None],
@@ -75,7 +78,7 @@ async def answer_together(
         Interrupted, WorkersLostError: see `answer`.
     """
     loop = asyncio.get_running_loop()
-    tallies = [Tally() for _ in asked]
+    tallies = [Tally() for _ in properties]
     began = time.monotonic()
     shown_at = began
 
@@ -89,14 +92,14 @@ async def answer_together(
                 loop.call_soon_threadsafe(show, [replace(tally) for tally in tallies])
 
         with Pool(_jobs(), start_delay_s=None) as pool:
-            results.extend(verifier.answer_together(asked, pool, tallies, lambda *_: pulse(0, 0), pulse))
+            results.extend(verifier.answer_together(properties, pool, tallies, lambda *_: pulse(0, 0), pulse))
 
     results: list[Result] = []
     try:
         await in_thread(work, checkpoint)
     except Interrupted:
         seconds = time.monotonic() - began
-        for property_, tally in zip(asked, tallies, strict=True):
+        for property_, tally in zip(properties, tallies, strict=True):
             if tally.is_finished:
                 keep(replace(verifier.interrupted(property_, tally, seconds), is_interrupted=False))
         raise

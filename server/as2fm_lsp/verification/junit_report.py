@@ -14,21 +14,27 @@ from as2fm_lsp.verification.report import one_as_text, warning
 from as2fm_lsp.verification.stuck_report import NOT_STUCK
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.results import Result
-from roaml.verification.stuck import Look, StuckLevel
+from roaml.verification.stuck import StuckLevel, StuckResult
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
 
 
-def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, look: Look | None = None) -> str:
+def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, stuck_result: StuckResult | None = None) -> str:
     """A JUnit report with a test for each property. A test fails if an expectation does not hold, and is an error if
     there is no result. One more test fails if the system gets stuck and that is an error."""
-    level = StuckLevel.WARNING if look is None else look.level
+    level = StuckLevel.WARNING if stuck_result is None else stuck_result.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
-    if look is not None:
-        outcome = CaseOutcome.PASSED if look.is_met else CaseOutcome.FAILED
+    if stuck_result is not None:
+        outcome = CaseOutcome.PASSED if stuck_result.is_met else CaseOutcome.FAILED
         cases.append(
-            Case(title, NOT_STUCK, outcome, stuck_report.as_text(look, place_of), "" if look.is_met else "stuck")
+            Case(
+                title,
+                NOT_STUCK,
+                outcome,
+                stuck_report.as_text(stuck_result, place_of),
+                "" if stuck_result.is_met else "stuck",
+            )
         )
     return junit.render("verify", cases)
 

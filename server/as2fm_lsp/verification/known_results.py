@@ -19,7 +19,7 @@ from roaml.project.workspace import Snapshot
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
-from roaml.verification.verifier import judged_again
+from roaml.verification.verifier import with_expectations
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +47,13 @@ class ExpectedNow:
     beside: Mapping[str, Comparison]
     configured: Mapping[str, Comparison]
 
-    def judge(self, known: KnownResult) -> KnownResult:
+    def with_expectations(self, known: KnownResult) -> KnownResult:
         """A known result, compared with the expectations that are valid now."""
         name = known.result.name
         given = verification_settings(self.client_settings, known.options).expectations
         written = (self.beside.get(name), self.configured.get(name))
         more = [expectation_of(name, comparison) for comparison in written if comparison is not None]
-        return replace(known, result=judged_again(known.result, (*given, *more)))
+        return replace(known, result=with_expectations(known.result, (*given, *more)))
 
 
 def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> ExpectedNow:
@@ -104,8 +104,10 @@ class KnownResults:
 
 
 def short(result: Result) -> str:
-    """A short form of a result: `0.48 [0.47, 0.49]`."""
-    answer = result.answer
+    """A short form of a result: `0.48 [0.47, 0.49]`, or `0.4832, exact`."""
+    answer, exact = result.answer, result.asked_value()
+    if exact is not None:
+        return f"{_number(exact[1], 4)}, exact"
     if answer is None or answer.tally.traces == 0:
         return ""
     lower, upper = answer.bounds
@@ -117,7 +119,7 @@ def missed(result: Result) -> str:
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
 
 
-def _number(value: float) -> str:
+def _number(value: float, digits: int = 3) -> str:
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    return f"{value:.3g}"
+    return f"{value:.{digits}g}"

@@ -12,11 +12,11 @@ import re
 from typing import TYPE_CHECKING
 
 from roaml.jani.model import Model
+from roaml.scxml.names import NODE_AUTOMATON, TreeEventKind, tree_event_name
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
 
-_NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
 _MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")
 
 
@@ -32,9 +32,11 @@ def explained(text: str, model: Model, place_of: PlaceOf) -> str:
     origins = {automaton.name: automaton.origin for automaton in model.automata}
     explanations = []
     for automaton in model.automata:
-        node = _NODE.fullmatch(automaton.name)
+        node = NODE_AUTOMATON.fullmatch(automaton.name)
         if node and int(node[1]) in mentioned:
-            origin = origins.get(f"bt_{node[1]}_tick")
+            origin = origins.get(tree_event_name(node[1], TreeEventKind.TICK))
+            if origin is not None and automaton.origin is not None and automaton.origin.path == origin.path:
+                origin = automaton.origin  # a node of a library, whose own place is in the tree
             place = f" ({place_of(origin)})" if origin is not None else ""
             explanations.append(f"bt_{node[1]} is {node[2]}{place}")
     return f"nodes of the behavior tree: {', '.join(explanations)}\n" if explanations else ""

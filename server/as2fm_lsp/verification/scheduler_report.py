@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
-from roaml.verification.schedulers import extreme_asked, interval_text
+from roaml.verification.schedulers import extreme_of, interval_text
 
 
 def remark(question: Question, choices: Choices | None) -> str:
@@ -19,7 +19,7 @@ def remark(question: Question, choices: Choices | None) -> str:
     if choices.agreement:
         return f"all schedulers agree: {choices.agreement}"
     head = "warning: this is the value under uniform choices"
-    head += f", and the property asks for the {extreme_asked(question)} over all schedulers"
+    head += f", and the property asks for the {extreme_of(question)} over all schedulers"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
         return f"{head}; schedulers range from {_reached(least)} to {_reached(greatest)}"
@@ -32,17 +32,17 @@ def warning(question: Question, choices: Choices | None) -> str:
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
 
-def note(asked: Sequence[tuple[Question, Choices]]) -> list[str]:
+def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
     """A note about all properties whose minimum or maximum may differ from their values, and what to do.
 
     Args:
-        asked: these properties, with their choices.
+        entries: these properties, with their choices.
     """
-    if not asked:
+    if not entries:
         return []
     names: dict[tuple[str, str], list[str]] = {}
     tried: dict[tuple[str, str], int] = {}
-    for question, choices in asked:
+    for question, choices in entries:
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from roaml.jani.node import Origin
 from roaml.smc.end import End
-from roaml.verification.stuck import Look, Stuck, StuckLevel
+from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
@@ -18,13 +18,13 @@ NOT_STUCK = "does not get stuck"
 """The name of the test in a JUnit report."""
 
 
-def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
+def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
     """The result as text for users.
 
     Args:
         shown: where the waiting automata have been shown; "" to show them here.
     """
-    answer, stuck = look.answer, look.stuck
+    answer, stuck = result.answer, result.stuck
     lines = []
     if answer is not None and answer.tally.traces:
         lower, upper = answer.bounds
@@ -32,19 +32,19 @@ def as_text(look: Look, place_of: PlaceOf, shown: str = "") -> str:
         to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
         value = f"{answer.value:.6g} in [{lower:.6g}, {upper:.6g}]"
         lines.append(f"{PROBABILITY}: {value} from {answer.tally.traces:,} traces{to}")
-    if look.fault:
-        lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {look.fault}")
+    if result.fault:
+        lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {result.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else ", time stands still"
         if shown:
-            lines.append(f"{look.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
+            lines.append(f"{result.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
         else:
-            lines.append(f"{look.level}: the system gets stuck{still}: {_where(stuck)}")
+            lines.append(f"{result.level}: the system gets stuck{still}: {_where(stuck)}")
             lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
     return "".join(f"{line}\n" for line in lines)
 
 
-def told(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> list[str]:
+def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> list[str]:
     """The warning for users, below the value that it makes doubtful; `shown` as in `as_text`."""
     if shown:
         return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
@@ -69,16 +69,16 @@ def _where(stuck: Stuck) -> str:
     return f"trace {stuck.seen.trace} after {stuck.seen.steps:,} steps{at}"
 
 
-def as_row(look: Look, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
+def as_row(result: StuckResult, place: Callable[[Origin], dict[str, Any]]) -> dict[str, Any]:
     """The result as a value for JSON; `place` returns the members for an origin."""
-    row: dict[str, Any] = {"level": look.level.value}
-    if look.answer is not None:
-        tally, (lower, upper) = look.answer.tally, look.answer.bounds
+    row: dict[str, Any] = {"level": result.level.value}
+    if result.answer is not None:
+        tally, (lower, upper) = result.answer.tally, result.answer.bounds
         row.update(traces=tally.traces, stuck=tally.ended(End.STUCK), cut=tally.ended(End.CUT))
         row.update(lower=lower, upper=upper)
-    if look.fault:
-        row["fault"] = look.fault
-    row["example"] = None if look.stuck is None else example_row(look.stuck, place)
+    if result.fault:
+        row["fault"] = result.fault
+    row["example"] = None if result.stuck is None else example_row(result.stuck, place)
     return row
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.names import sent_by
+from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story
 from roaml.text import Location
@@ -92,10 +92,14 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     """The status that each leaf returned where chance decided it, in the order of the trace."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
-    told = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
-    ticks = [step.number for step in story.steps if sent_by(step.action or "") == f"bt_{ROOT_NUMBER}_tick"]
+    leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
+    ticks = [
+        step.number
+        for step in story.steps
+        if sent_by(step.action or "") == tree_event_name(ROOT_NUMBER, TreeEventKind.TICK)
+    ]
     rows = []
-    for turn in told:
+    for turn in leaf_turns:
         node = leaves[turn.automaton]
         seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
         rows.append((f"{seconds:.1f} s", node.name, turn.status, place_of(node.origin)))
@@ -105,7 +109,7 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     ]
     if len(lines) > MAX_LINES:
         folded = len(lines) - MAX_LINES
-        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more answers …"]
+        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses …"]
     head = f"the shortest trace without success (trace {story.recording.trace}):"
     return "".join(f"{line}\n" for line in (head, *lines))
 

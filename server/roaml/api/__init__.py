@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.refusal import Refusal
     from roaml.verification.results import Exact, Proof, Result, SampledResult, ShortestTrace, Traces
-    from roaml.verification.stuck import Look, Stuck, StuckLevel
+    from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
     from roaml.views.story import StoryLine
@@ -113,7 +113,7 @@ else:
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": ("Exact", "Proof", "Result", "SampledResult", "ShortestTrace", "Traces"),
-        "roaml.verification.stuck": ("Look", "Stuck", "StuckLevel"),
+        "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
         "roaml.views.story": ("StoryLine",),
@@ -156,7 +156,6 @@ __all__ = [
     "LineColumn",
     "LoadedSystem",
     "Location",
-    "Look",
     "MachineState",
     "Migration",
     "Model",
@@ -202,6 +201,7 @@ __all__ = [
     "StoryLine",
     "Stuck",
     "StuckLevel",
+    "StuckResult",
     "SystemState",
     "Tally",
     "Threshold",

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True)
 class SystemMocks:
     """Attributes:
-    texts: the system file, and tree files, with the mocks, and the new plugins, by path: for `load` and `target`.
-    planned: the plugins.
+    texts: the changed system and tree files and the new plugins, by path; `load` and `target` accept them.
+    planned: the new plugins.
     missing: the types of the leaves without a plugin that no mock fits.
-    events: how many nodes have a mock for what they ask about the world.
+    events: the number of nodes that read an event of the world, such as a new goal, and have a mock for it.
     unused: the mocks that fit nothing.
     """
 

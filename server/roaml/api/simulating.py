@@ -42,4 +42,4 @@ def session(
     ready = checker(target.model, None if name is None else [name])
     if name is not None and name in ready.refused:
         raise ready.refused[name]
-    return Session(ready, next(iter(ready.asked), ready.stuck), seed, trace, target.clock, saved)
+    return Session(ready, next(iter(ready.compiled_properties), ready.stuck), seed, trace, target.clock, saved)

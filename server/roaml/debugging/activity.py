@@ -14,9 +14,9 @@ from roaml.ide.diagrams.ros import machine_node_ids
 from roaml.ide.diagrams.system import id_in_system
 from roaml.jani.node import Origin
 from roaml.model.machine import Chart
-from roaml.model.system import System, sanitise
+from roaml.model.system import System
 from roaml.project.analysis import Analysis
-from roaml.scxml.names import CANCEL_PREFIX, received_by
+from roaml.scxml.names import InterfaceEventKind, read_interface_event, received_by, safe_name, sanitise
 from roaml.simulation.state import MachineState, SystemState
 
 ACTIVE, NEXT, MESSAGE = "active", "next", "message"
@@ -53,7 +53,7 @@ def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
     if analysis is None or system is None:
         return
     session, path = debugger.session, debugger.sources.target.path
-    state, upcoming = session.state(), debugger.upcoming()
+    state, upcoming = debugger.state, debugger.upcoming()
     actors = {part.automaton for part in session.actors(upcoming)} if upcoming is not None else set()
     origins = {automaton.name: automaton.origin for automaton in session.automata_of_model}
     for machine in state.machines:
@@ -75,7 +75,7 @@ def active_edges(debugger: Debugger) -> Iterator[ActiveEdge]:
     if analysis is None or system is None:
         return
     session, upcoming = debugger.session, debugger.upcoming()
-    state, ids = session.state(), machine_node_ids(system)
+    state, ids = debugger.state, machine_node_ids(system)
     machines = {
         automaton.name: ids.get(automaton.origin.path, ())
         for instance, automaton in enumerate(session.automata_of_model)
@@ -116,15 +116,28 @@ def _contains(chart: Chart, place: Origin) -> bool:
 
 def _in_flight(state: SystemState, system: System) -> Iterator[tuple[str, str, str]]:
     """The ids of topics, services and actions, each with an event that has not been received yet and its sender."""
-    topic, service, action = DiagramNodeKind.TOPIC, DiagramNodeKind.SERVICE, DiagramNodeKind.ACTION_INTERFACE
-    prefixes = [
-        *((f"topic_{channel.name}_msg_", f"{topic.value} {channel.name}") for channel in system.topics.values()),
-        *((f"srv_{sanitise(c.name)}_", f"{service.value} {c.name}") for c in system.services.values()),
-        *((f"action_{sanitise(c.name)}_", f"{action.value} {c.name}") for c in system.actions.values()),
-        *((f"{CANCEL_PREFIX}{sanitise(c.name)}_", f"{action.value} {c.name}") for c in system.actions.values()),
-    ]
+    pictured = (
+        (DiagramNodeKind.TOPIC, system.topics),
+        (DiagramNodeKind.SERVICE, system.services),
+        (DiagramNodeKind.ACTION_INTERFACE, system.actions),
+    )
+    nodes = {
+        (kind, sanitise(channel.name)): f"{kind.value} {channel.name}"
+        for kind, channels in pictured
+        for channel in channels.values()
+    }
+    clients = {safe_name(automaton.name) for automaton in system.automata}
     for event in state.events:
-        if event.is_waiting:
-            for prefix, node in prefixes:
-                if f"{event.event}_".startswith(prefix):
-                    yield node, event.event, event.sender
+        read = read_interface_event(event.event, clients) if event.is_waiting else None
+        if read is not None and (node := nodes.get((_node_kind(read.kind), read.name))):
+            yield node, event.event, event.sender
+
+
+def _node_kind(kind: InterfaceEventKind) -> DiagramNodeKind:
+    match kind:
+        case InterfaceEventKind.MESSAGE:
+            return DiagramNodeKind.TOPIC
+        case InterfaceEventKind.REQUEST | InterfaceEventKind.RESPONSE:
+            return DiagramNodeKind.SERVICE
+        case _:
+            return DiagramNodeKind.ACTION_INTERFACE

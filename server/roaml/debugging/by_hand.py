@@ -18,6 +18,7 @@ from roaml.scxml.names import (
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
+    flag_of,
     is_timer,
     read_tree_event,
     sent_by,
@@ -25,7 +26,8 @@ from roaml.scxml.names import (
 from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session
 from roaml.smc.record import Plain, RecordedVariable
-from roaml.views.event_words import interface_name, said
+from roaml.suggest import alternatives, close_names
+from roaml.views.event_words import event_phrase, interface_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,7 @@ def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
         types = dict(_parameters(sources, event))
         template = {name: _default(type_) for name, type_ in types.items()}
         name = interface_name(event, automata) or event
-        text = said(event, automata)
+        text = event_phrase(event, automata)
         client = event.partition("_client_")[2]
         text += f" for {client}" if client in automata else ""
         names = {name: str(type_) for name, type_ in types.items()}
@@ -92,7 +94,9 @@ def sending(session: Session, sources: Sources, name: str, fields: Value) -> Int
     if len(matches) > 1 and any("_req" in form.event for form in matches):
         matches = [form for form in matches if "_req_client_" in form.event]
     if not matches:
-        raise WatchError(f"there is no topic, service, action or event `{name}` on which something can be sent")
+        names = list(dict.fromkeys(form.name for form in forms))
+        hint = alternatives(close_names(name, names), names, "name")
+        raise WatchError(f"no message can be sent to `{name}`: there is no such topic, service, action or event{hint}")
     if len(matches) > 1:
         raise WatchError(f"`{name}` has several events; use one of {', '.join(form.event for form in matches)}")
     (form,) = matches
@@ -133,7 +137,7 @@ def _written(
             if cells.has(f"{form.event}{SEPARATOR}{prefix}{name}"):
                 cells.set(f"{form.event}{SEPARATOR}{prefix}{name}", type_, value, (), path)
                 break
-    valid = f"{form.event}.valid"
+    valid = flag_of(form.event)
     if cells.has(valid):
         cells.set(valid, None, True, (), valid)
     yield from cells.changes(-1)
@@ -142,7 +146,8 @@ def _written(
 def _check_members(fields: Mapping[str, Value], known: Mapping[str, Value], path: str) -> None:
     for name, value in fields.items():
         if name not in known:
-            raise WatchError(f"there is no field `{path}{name}`; there are {', '.join(known) or 'none'}")
+            hint = alternatives(close_names(name, known), known, "field") if known else "; it has no fields"
+            raise WatchError(f"there is no field `{path}{name}`{hint}")
         inner = known[name]
         if isinstance(inner, dict) and isinstance(value, dict):
             _check_members(value, inner, f"{path}{name}.")

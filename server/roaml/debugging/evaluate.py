@@ -26,6 +26,7 @@ from roaml.expr.tree import (
     Unary,
     walk,
 )
+from roaml.suggest import alternatives, close_names
 from roaml.text import Decoded
 
 Scope = Callable[[str], "Value | None"]
@@ -126,8 +127,11 @@ def _dotted(expr: Expr) -> str | None:
 
 
 def _part(owner: Value, name: str) -> Value:
-    if not isinstance(owner, Mapping) or name not in owner:
-        raise WatchError(f"{shown(owner)} has no member `{name}`")
+    if not isinstance(owner, Mapping):
+        raise WatchError(f"{shown(owner)} has no member `{name}`: it is not a struct")
+    if name not in owner:
+        hint = alternatives(close_names(name, owner), owner, "member")
+        raise WatchError(f"{shown(owner)} has no member `{name}`{hint}")
     return owner[name]
 
 
@@ -203,7 +207,7 @@ def _call(expr: Call, scope: Scope) -> Value:
         raise WatchError("`Math.random()` has no value here; it draws one when it is executed")
     given = len(expr.arguments)
     if not len(function.parameters) - function.optional <= given <= len(function.parameters):
-        raise WatchError(f"`{function.signature}` does not have {given} arguments")
+        raise WatchError(f"`{function.signature}` does not take {given} arguments")
     arguments = [_number(_value(argument, scope), f"Math.{name}") for argument in expr.arguments]
     return _FUNCTIONS[name](arguments)
 

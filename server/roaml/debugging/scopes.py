@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from roaml.debugging.breakpoints import WatchedVariable
@@ -11,8 +11,19 @@ from roaml.debugging.evaluate import Scope
 from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
+from roaml.exhaustive import Vocabulary
 from roaml.model.expand import PortConstant
-from roaml.scxml.names import BLACKBOARD, CANCEL_PREFIX, FIELD_PREFIX, is_length, is_timer, read_tree_event, received_by
+from roaml.scxml.names import (
+    BLACKBOARD,
+    FIELD_PREFIX,
+    InterfaceEventKind,
+    is_length,
+    is_timer,
+    read_interface_event,
+    read_tree_event,
+    received_by,
+    safe_name,
+)
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
@@ -36,13 +47,20 @@ class ScopeEntry:
     variable: WatchedVariable | None = None
 
 
+class ScopeHint(Vocabulary):
+    """The kind of a scope, in DAP's words."""
+
+    LOCALS = "locals"
+    ARGUMENTS = "arguments"
+
+
 @dataclass(frozen=True, slots=True)
 class ScopeEntries:
-    """A scope of a frame. `hint` is its kind, in DAP's words."""
+    """A scope of a frame. `hint` is its kind; `None` for a scope that all frames have."""
 
     name: str
     entries: tuple[ScopeEntry, ...]
-    hint: str = ""
+    hint: ScopeHint | None = None
 
 
 class Values:
@@ -65,6 +83,7 @@ class Values:
         self._stored: dict[int, dict[str, Plain]] = {}
         for (instance, name), value in session.values():
             self._stored.setdefault(instance, {})[name] = value
+        self._clients = {safe_name(name) for name in session.automata}
         self._instances = {automaton.name: number for number, automaton in enumerate(session.automata_of_model)}
 
     # ------------------------------------------------------------ scopes
@@ -73,23 +92,23 @@ class Values:
         """The scopes of a frame that are not empty."""
         own_scopes = []
         if frame.instance >= 0:
-            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
+            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), ScopeHint.LOCALS))
             message = self.message(frame.instance)
             if message:
                 entries = (ScopeEntry(name, value, type_of(value), name) for name, value in message.items())
-                own_scopes.append(ScopeEntries("Message", tuple(entries), "arguments"))
+                own_scopes.append(ScopeEntries("Message", tuple(entries), ScopeHint.ARGUMENTS))
         if frame.node:
-            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
+            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), ScopeHint.ARGUMENTS))
         return [scope for scope in (*own_scopes, *self.shared_scopes()) if scope.entries]
 
     def shared_scopes(self) -> Iterator[ScopeEntries]:
         """The scopes that all frames have."""
-        yield ScopeEntries("Blackboard", tuple(self._blackboard()), "globals")
-        yield ScopeEntries("Tree", tuple(self._nodes()), "globals")
-        yield ScopeEntries("Messages", tuple(self._messages()), "globals")
-        yield ScopeEntries("Global variables", tuple(self._shared()), "globals")
-        yield ScopeEntries("Time", tuple(self._time()), "globals")
-        yield ScopeEntries("Properties", tuple(self._properties()), "globals")
+        yield ScopeEntries("Blackboard", tuple(self._blackboard()))
+        yield ScopeEntries("Tree", tuple(self._nodes()))
+        yield ScopeEntries("Messages", tuple(self._messages()))
+        yield ScopeEntries("Global variables", tuple(self._shared()))
+        yield ScopeEntries("Time", tuple(self._time()))
+        yield ScopeEntries("Properties", tuple(self._properties()))
 
     def machines(self) -> Iterator[tuple[MachineState, tuple[ScopeEntry, ...]]]:
         """The machines and plugins, with their variables."""
@@ -167,7 +186,7 @@ class Values:
             event = machine.event
         if not event or is_timer(event):
             return {}
-        return _event_variables(event, self._parameters(event))
+        return _event_variables(event, self._parameters(event), self._clients)
 
     def _parameters(self, event: str) -> dict[str, Value]:
         """The parameters with which an event was last sent, as structs."""
@@ -218,24 +237,34 @@ def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:
     return name in stored or any(part.startswith(f"{name}{SEPARATOR}") for part in stored)
 
 
-def _event_variables(event: str, parameters: dict[str, Value]) -> dict[str, Value]:
+def _event_variables(event: str, parameters: dict[str, Value], clients: Collection[str]) -> dict[str, Value]:
     handle = {name: parameters.pop(name) for name in ("goal_id",) if name in parameters}
     if read_tree_event(event):
         status = parameters.get("status")
         return {"_bt": {"status": STATUS_NAMES.get(status, "")}} if isinstance(status, int) else {}
-    if event.startswith("topic_"):
-        return {"_msg": parameters}
-    name = event.partition("_client_")[0]
-    if event.startswith("srv_"):
-        return {"_res" if name.endswith("_response") else "_req": parameters}
-    if event.startswith(CANCEL_PREFIX):
-        return {"_action": dict(handle)}
-    if event.startswith("action_"):
-        action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
-        if "_result" in name:
-            code = {"code": parameters.pop("code")} if "code" in parameters else {}
-            return {**action, "_wrapped_result": {**code, "result": parameters}}
-        if "_feedback" in name:
-            return {**action, "_feedback": parameters}
-        return {**action, "_goal": parameters} if parameters else action
-    return {"_event": {"data": {**handle, **parameters}}} if parameters or handle else {}
+    read = read_interface_event(event, clients)
+    match None if read is None else read.kind:
+        case None:
+            return {"_event": {"data": {**handle, **parameters}}} if parameters or handle else {}
+        case InterfaceEventKind.MESSAGE:
+            return {"_msg": parameters}
+        case InterfaceEventKind.REQUEST:
+            return {"_req": parameters}
+        case InterfaceEventKind.RESPONSE:
+            return {"_res": parameters}
+        case InterfaceEventKind.CANCEL:
+            return {"_action": dict(handle)}
+        case kind:
+            return _action_variables(kind, handle, parameters)
+
+
+def _action_variables(
+    kind: InterfaceEventKind, handle: dict[str, Value], parameters: dict[str, Value]
+) -> dict[str, Value]:
+    action: dict[str, Value] = {"_action": dict(handle)} if handle else {}
+    if kind is InterfaceEventKind.RESULT:
+        code = {"code": parameters.pop("code")} if "code" in parameters else {}
+        return {**action, "_wrapped_result": {**code, "result": parameters}}
+    if kind is InterfaceEventKind.FEEDBACK:
+        return {**action, "_feedback": parameters}
+    return {**action, "_goal": parameters} if parameters else action

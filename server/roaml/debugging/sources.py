@@ -12,10 +12,16 @@ from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.expand import Instance, node_at
 from roaml.model.ros import InterfaceType
-from roaml.model.system import sanitise
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
-from roaml.scxml.names import FIELD_PREFIX
+from roaml.scxml.names import (
+    FIELD_PREFIX,
+    InterfaceEvent,
+    InterfaceEventKind,
+    read_interface_event,
+    safe_name,
+    sanitise,
+)
 from roaml.text import Location
 from roaml.verification.target import LineColumn, VerificationTarget
 
@@ -92,20 +98,28 @@ class Sources:
         system = None if self.analysis is None else self.analysis.system(self.target.path)
         if self.analysis is None or system is None:
             return {}
-        forms = [
-            *((f"topic_{channel.name}_msg", "message", channel) for channel in system.topics.values()),
-            *((f"srv_{sanitise(channel.name)}_req", "request", channel) for channel in system.services.values()),
-            *((f"action_{sanitise(channel.name)}_goal", "goal", channel) for channel in system.actions.values()),
-        ]
+        parts = (
+            (InterfaceEventKind.MESSAGE, "message", system.topics),
+            (InterfaceEventKind.REQUEST, "request", system.services),
+            (InterfaceEventKind.GOAL, "goal", system.actions),
+        )
+        of_events = {
+            InterfaceEvent(kind, sanitise(channel.name)): (part, channel.endpoints[0].use)
+            for kind, part, channels in parts
+            for channel in channels.values()
+            if channel.endpoints
+        }
+        clients = {safe_name(automaton.name) for automaton in system.automata}
         declared: dict[str, Mapping[str, Type]] = dict(self.event_parameters)
-        for prefix, part, channel in forms:
-            for endpoint in channel.endpoints[:1]:
-                interface = self.analysis.interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type)
-                if isinstance(interface, InterfaceType):
-                    fields = {FIELD_PREFIX + "__".join(path): type_ for path, type_ in leaves(interface.part(part))}
-                    for event, types in self.event_parameters.items():
-                        if event.startswith(prefix):
-                            declared[event] = {name: fields.get(name, type_) for name, type_ in types.items()}
+        for event, types in self.event_parameters.items():
+            read = read_interface_event(event, clients)
+            if read not in of_events:
+                continue
+            part, use = of_events[read]
+            interface = self.analysis.interface(INTERFACE_KINDS[use.kind], use.type)
+            if isinstance(interface, InterfaceType):
+                fields = {FIELD_PREFIX + "__".join(path): type_ for path, type_ in leaves(interface.part(part))}
+                declared[event] = {name: fields.get(name, type_) for name, type_ in types.items()}
         return declared
 
     def tag(self, origin: Origin | None) -> str:

@@ -55,21 +55,23 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
     """
     name = begin.property if begin.saved is None else begin.saved.property
     checker = checker_of(sources.target, None)
-    asked = _asked(checker, sources, name) if name else next(iter(checker.asked), checker.stuck)
+    property_ = (
+        _compiled_property(checker, sources, name) if name else next(iter(checker.compiled_properties), checker.stuck)
+    )
     seed, trace = begin.seed, begin.trace
     if begin.nth and begin.saved is None:
-        recorder = Recorder(checker, asked, seed, MAX_TRACE_STEPS)
-        trace = _nth(recorder, begin, asked.question.name, is_cancelled)
-    session = Session(checker, asked, seed, trace, sources.target.clock, begin.saved)
+        recorder = Recorder(checker, property_, seed, MAX_TRACE_STEPS)
+        trace = _nth(recorder, begin, property_.question.name, is_cancelled)
+    session = Session(checker, property_, seed, trace, sources.target.clock, begin.saved)
     return Debugger(session, sources, Verdicts(checker, session.seed, session.trace), log)
 
 
-def _asked(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
+def _compiled_property(checker: ModelChecker, sources: Sources, name: str) -> CompiledProperty:
     if name in checker.refused:
         raise checker.refused[name]
-    asked = next((property_ for property_ in checker.asked if property_.question.name == name), None)
-    if asked is not None:
-        return asked
+    property_ = next((property_ for property_ in checker.compiled_properties if property_.question.name == name), None)
+    if property_ is not None:
+        return property_
     checker_of(sources.target, [name])  # raises an error if there is no such property
     return checker.stuck
 

@@ -54,7 +54,7 @@ def path_to(space: Space, state: int) -> list[PathStep]:
 def _first(space: Space, verdict: int) -> int | None:
     """The state with the smallest number that decides the goal, or in which a trace ends, with this verdict."""
     labels = bytes(memoryview(space.search.label)[: space.search.expanded])
-    is_stuck = space.asked.question.is_stuck
+    is_stuck = space.compiled_property.question.is_stuck
     matching = bytes(label for label in range(256) if _verdict(label, is_stuck) == verdict)
     places = (labels.find(label) for label in matching)
     return min((place for place in places if place >= 0), default=None)
@@ -75,7 +75,7 @@ class PathRecorder(Recorder):
     """Records the steps of a given path, instead of random ones."""
 
     def __init__(self, space: Space, path: Path) -> None:
-        super().__init__(space.checker, space.asked, 0, len(path.steps))
+        super().__init__(space.checker, space.compiled_property, 0, len(path.steps))
         self._path = path
         self._label = space.search.label_of(path.state)
 

@@ -748,7 +748,7 @@ class StateSearch:
         return count
 
     def _weigh(self, edge: int) -> None:
-        """Compute the probabilities of the ways of an edge."""
+        """Compute the probabilities of the destinations of an edge."""
         first = self.kernel.way_start[edge]
         end = self.kernel.way_start[edge + 1]
         if end - first == 1:

@@ -222,7 +222,7 @@ class _Parser:
             last = (remove,) if token is self.tokens[-1] else ()
             self.report(span, "an expression must be a single value; statements are not supported", UNSUPPORTED, *last)
         elif token.text in _CLOSERS:
-            self.report(span, f"`{token.text}` closes nothing", SYNTAX, remove)
+            self.report(span, f"`{token.text}` closes no bracket; remove it", SYNTAX, remove)
         else:
             self.report(span, f"an operator is missing before `{token.text[:20]}`")
 
@@ -387,12 +387,12 @@ class _Parser:
             self.at += 1
             if token.text[0] in "\"'":
                 return self.unclosed_string(token, span)
-            self.report(span, f"`{token.text}` has no meaning in an expression")
+            self.report(span, f"`{token.text}` is not allowed in an expression; remove it")
             return self.operand() if self.peek() is not None else ErrorExpr(span)
         elif token.text in ("/", "/=") and (end := self.regular_expression()):
             span = span.cover(self.span(self.tokens[end - 1]))
             self.at = end
-            self.report(span, "regular expressions are not supported", UNSUPPORTED)
+            self.report(span, "regular expressions are not supported; compare strings with `==`", UNSUPPORTED)
         else:
             return self.missing("a value")
         return ErrorExpr(span)

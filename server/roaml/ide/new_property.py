@@ -20,14 +20,14 @@ from roaml.ide.names.in_property_file import SYMBOL_KINDS
 from roaml.ide.verifiable import verifiable
 from roaml.model.kinds import FileKind
 from roaml.model.property_file import (
-    ASSUMES,
-    GUARANTEES,
     NAME_ATTRIBUTES,
+    PORTS,
     ObservedPart,
     Port,
     PortKind,
     PortVariableKind,
     PropertyFile,
+    PropertySection,
     build_property_file,
 )
 from roaml.model.property_links import clock_step
@@ -111,7 +111,7 @@ def observable_events(analysis: Analysis, system: str) -> tuple[ObservableEvent,
     model = analysis.system(system)
     if model is None:
         return ()
-    tags = [*_tags(model)]
+    tags = [*port_tags(model)]
     text = "".join(f"<{tag}/>" for tag in tags)
     file = build_property_file(parse(f"<properties><ports>{text}</ports></properties>"))
     assert file is not None
@@ -123,7 +123,8 @@ def observable_events(analysis: Analysis, system: str) -> tuple[ObservableEvent,
     )
 
 
-def _tags(system: System) -> Iterator[str]:
+def port_tags(system: System) -> Iterator[str]:
+    """The start tags of ports that listen to everything that a system can send, without the angle brackets."""
     for kind, symbol_kind in SYMBOL_KINDS.items():
         for channel in system.channels(symbol_kind).values():
             names = (endpoint.automaton.interface_name(endpoint.use) for endpoint in channel.endpoints)
@@ -183,7 +184,12 @@ def new_property(
     lines = _property(name, pattern, scope, written, within)
     if file is None or path is None:
         path = new_file.free_path(analysis, folder_of(system), FILE_NAME)
-        text = "\n".join(_section("properties", [*_section("ports", ports), *_section(GUARANTEES, lines)]))
+        text = "\n".join(
+            lines_of_element(
+                "properties",
+                [*lines_of_element(PORTS, ports), *lines_of_element(PropertySection.GUARANTEES.value, lines)],
+            )
+        )
         listing = add_input(analysis, system, SystemSection.PROPERTIES, "xml", path)
         return NewProperty(name, path, WorkspaceEdit({system: listing}, created={path: f"{text}\n"}))
     source = analysis.source(path)
@@ -198,23 +204,24 @@ def _is_ours(analysis: Analysis, path: str) -> bool:
 
 def _added(file: PropertyFile, ports: Sequence[str], lines: Sequence[str]) -> Iterator[Edit]:
     root, document = file.element, file.document
-    written, guarantees = root.find("ports"), root.find(GUARANTEES)
+    written, guarantees = root.find(PORTS), root.find(PropertySection.GUARANTEES.value)
     new: list[str] = []
     if ports and written is not None:
         yield last_in(document, written, *ports)
-    elif ports and (guarantees is not None or root.find(ASSUMES) is not None):
-        yield first_in(document, root, *_section("ports", ports))
+    elif ports and (guarantees is not None or root.find(PropertySection.ASSUMES.value) is not None):
+        yield first_in(document, root, *lines_of_element(PORTS, ports))
     elif ports:
-        new = _section("ports", ports)
+        new = lines_of_element(PORTS, ports)
     if guarantees is not None:
         yield last_in(document, guarantees, *lines)
     else:
-        new += _section(GUARANTEES, lines)
+        new += lines_of_element(PropertySection.GUARANTEES.value, lines)
         others = root.elements
         yield after(document, others[-1], *new) if others else first_in(document, root, *new)
 
 
-def _section(name: str, lines: Sequence[str]) -> list[str]:
+def lines_of_element(name: str, lines: Sequence[str]) -> list[str]:
+    """The lines of an element whose content is `lines`, indented."""
     return [f"<{name}>", *(f"    {line}" for line in lines), f"</{name}>"]
 
 
@@ -244,7 +251,7 @@ def _property(name: str, pattern: Pattern, scope: ScopeKind, conditions: Mapping
         if side in conditions
     )
     lines = [
-        *(_section("events", events) if pattern.is_binary else events),
+        *(lines_of_element("events", events) if pattern.is_binary else events),
         f'<scope type="{scope.value}"{scope_attributes} />',
     ]
     if within:

@@ -139,7 +139,7 @@ class _Parser:
             if rest := self.text[end:].strip(" \t\n\r"):
                 start = self.text.index(rest, end)
                 span = Span(start, start + len(rest))
-                self.report(span, "unexpected text after the value", _removal(span))
+                self.report(span, "unexpected text after the value; a file contains one value", _removal(span))
         except _HopelessError:
             self.close_all()
         return self.root or JsonError(0, len(self.text))
@@ -245,7 +245,7 @@ class _Parser:
             )
         is_object = bracket == "}"
         if not self.stack or (is_object is not self.is_object and is_object not in self.outer_kinds()):
-            self.report(Span(at, at + 1), f"`{bracket}` closes nothing", _removal(Span(at, at + 1)))
+            self.report(Span(at, at + 1), f"`{bracket}` closes no bracket; remove it", _removal(Span(at, at + 1)))
             return
         while is_object is not self.is_object:
             missing = "}" if self.is_object else "]"
@@ -294,11 +294,11 @@ class _Parser:
         """Report a missing or surplus comma before `at`."""
         if comma < 0:
             fix = _insertion(self.end_before(at), ",")
-            self.report(Span(at, at + 1), "a comma is missing before this", fix)
+            self.report(Span(at, at + 1), "a comma is missing before this value", fix)
         elif self.key is not None:
             self.key_without_value()
         else:
-            self.report(Span(comma, comma + 1), "unexpected comma", _removal(Span(comma, comma + 1)))
+            self.report(Span(comma, comma + 1), "unexpected comma; remove it", _removal(Span(comma, comma + 1)))
 
     def key_without_value(self) -> None:
         assert self.key is not None
@@ -374,7 +374,7 @@ class _Parser:
         if self.key is not None and not self.key.colon:
             self.key = self.key._replace(colon=True)
         elif self.text[span.start] == ":":
-            self.report(span, "unexpected colon", _removal(span))
+            self.report(span, "unexpected colon; remove it", _removal(span))
         return span.end
 
     def string(self, at: int, comma: int) -> int:
@@ -390,7 +390,7 @@ class _Parser:
         if not closed:
             name = _NAME_AND_COLON.match(raw) if self.is_object and self.key is None else None
             close = _insertion(at + 1 + name.end(1), mark) if name else _replacement(span, quote(value))
-            self.report(span, "the string is never closed", close)
+            self.report(span, 'the string has no closing `"`', close)
         elif mark == "'":
             self.report(span, "a string needs double quotes", _replacement(span, quote(value)))
         else:
@@ -430,7 +430,7 @@ class _Parser:
             return JsonString(*span, text, (0, 0))
         number = _number(text)
         if number is None:
-            self.report(span, f"`{text[:40]}` is not a number")
+            self.report(span, f"`{text[:40]}` is not a number; write for example `1.5` or `-2`")
             return JsonError(*span)
         self.report(span, f"this number must be written as `{number[:40]}` in JSON", _replacement(span, number))
         if number.lstrip("-").isdigit():

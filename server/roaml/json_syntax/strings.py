@@ -56,7 +56,7 @@ def unescape(raw: str, start: int) -> tuple[str, list[StringProblem]]:
         if control:
             written = quote(control)[1:-1]
             problems.append(
-                StringProblem(f"inside a string this character must be written `{written}`", TextEdit(span, written))
+                StringProblem(f"inside a string this character must be written as `{written}`", TextEdit(span, written))
             )
             return control
         message = (

@@ -15,11 +15,11 @@ from roaml.lower.build import equal, event_data, integer, name
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ActionEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
-from roaml.model.system import Channel, SystemAutomaton, sanitise
+from roaml.model.system import Channel, SystemAutomaton
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Body, Branch, Data, If, Param, Send, State, Statement
-from roaml.scxml.names import ACTION_HANDLER_PREFIX
+from roaml.scxml.names import ACTION_HANDLER_PREFIX, sanitise
 from roaml.text import Location
 
 GOAL_ID = "goal_id"

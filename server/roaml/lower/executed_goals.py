@@ -18,9 +18,10 @@ from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext
-from roaml.model.system import Channel, sanitise
+from roaml.model.system import Channel
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Data
+from roaml.scxml.names import sanitise
 from roaml.text import NO_SPAN, Location
 
 GOAL_ID = "goal_id"

@@ -9,25 +9,34 @@ from dataclasses import dataclass
 
 from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
-from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import EventRole, ScxmlEvent
-from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, named, safe_name
+from roaml.scxml.names import (
+    FIELD_PREFIX,
+    TreeEventKind,
+    action_stem,
+    cancel_request,
+    named,
+    safe_name,
+    service_stem,
+    topic_message,
+    tree_event_name,
+)
 
 
 def topic_event(topic: str) -> ScxmlEvent:
-    return ScxmlEvent(f"topic_{sanitise(topic)}_msg")
+    return ScxmlEvent(topic_message(topic))
 
 
-def tree_event(node: int | str, kind: str) -> ScxmlEvent:
+def tree_event(node: int | str, kind: TreeEventKind) -> ScxmlEvent:
     """An event between a node of the tree and its parent.
 
     Args:
         node: the number of the node, or its address if it has conditions (`roaml.lower.library_tree`).
-        kind: `tick`, `halt`, `response` or `halt_response`.
     """
-    return ScxmlEvent(f"bt_{node}_{kind}", EventRole.BLOCKING)
+    return ScxmlEvent(tree_event_name(node, kind), EventRole.BLOCKING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +47,7 @@ class ServiceEvents:
 
     @property
     def stem(self) -> str:
-        return f"srv_{sanitise(self.service)}"
+        return service_stem(self.service)
 
     @property
     def request(self) -> ScxmlEvent:
@@ -64,7 +73,7 @@ class ActionEvents:
 
     @property
     def stem(self) -> str:
-        return f"action_{sanitise(self.action)}"
+        return action_stem(self.action)
 
     @property
     def goal(self) -> ScxmlEvent:
@@ -77,7 +86,7 @@ class ActionEvents:
         Its name does not begin like the names of the other events of the action, so it never waits for its receivers
         (docs/spec/jani.md#synchronising-names).
         """
-        return ScxmlEvent(f"{CANCEL_PREFIX}{sanitise(self.action)}", after=self.thread_start.name)
+        return ScxmlEvent(cancel_request(self.action), after=self.thread_start.name)
 
     @property
     def accepted(self) -> ScxmlEvent:

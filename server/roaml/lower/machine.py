@@ -25,12 +25,12 @@ from roaml.model import machine as hl
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
-from roaml.model.system import SystemAutomaton, sanitise
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.model.system import SystemAutomaton
+from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Send, State, Statement, Target, Transition
-from roaml.scxml.names import STATUSES, named
+from roaml.scxml.names import STATUSES, TreeEventKind, named, sanitise
 from roaml.text import NO_SPAN
 
 TimerEvents = Mapping[tuple[str, str], ScxmlEvent]
@@ -238,14 +238,15 @@ class _ChartLowering:
     def condition(self, handler: Handler) -> Expr | None:
         if handler.cond is None:
             return None
-        scope = self.context.scope(handler, "cond")
+        scope = self.context.scope(handler, ValuePart.COND)
         if handler.trigger in (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED):
             scope = replace(scope, constants=STATUSES)
         return lower_expr(handler.cond.tree, scope)
 
     def child_triggers(self, handler: Handler, cond: Expr | None) -> Iterator[tuple[ScxmlEvent | None, Expr | None]]:
         assert handler.child is not None
-        answer = "response" if handler.trigger is ProtocolPart.CHILD_STATUS else "halt_response"
+        is_status = handler.trigger is ProtocolPart.CHILD_STATUS
+        answer = TreeEventKind.RESPONSE if is_status else TreeEventKind.HALT_RESPONSE
         children = self.statements.children
         if (index := literal_index(handler.child)) is not None:
             yield tree_event(children[index], answer), cond
@@ -265,8 +266,10 @@ class _ChartLowering:
             case ProtocolPart.TICK:
                 assert handler.handle is not None
                 return self.context.timers[handler.handle.value]
-            case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-                return tree_event(self.statements.address, trigger.value.removeprefix("bt-"))
+            case ProtocolPart.BT_HALT:
+                return tree_event(self.statements.address, TreeEventKind.HALT)
+            case ProtocolPart.BT_TICK:
+                return tree_event(self.statements.address, TreeEventKind.TICK)
         channel = self.context.channel(handler)
         service, action = ServiceEvents(channel.name), ActionEvents(channel.name)
         match trigger:

@@ -7,11 +7,11 @@ from __future__ import annotations
 from roaml.lower.handlers import copied, declared_at, handler_place, on, stored, variables
 from roaml.lower.interfaces import ServiceEvents, fields, sent_parameters
 from roaml.lower.program import TranslatableSystem
-from roaml.model.system import Channel, sanitise
+from roaml.model.system import Channel
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import Role
 from roaml.scxml.model import Automaton, Send, State
-from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name, sanitise
 
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
 

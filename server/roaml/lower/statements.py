@@ -27,7 +27,7 @@ from roaml.model.value_types import unset_fields
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import ScxmlEvent
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
-from roaml.scxml.names import FIELD_PREFIX, STATUSES, named
+from roaml.scxml.names import FIELD_PREFIX, STATUSES, TreeEventKind, named
 from roaml.text import Location
 
 INT, REAL = BASE_TYPES["int32"], BASE_TYPES["float64"]
@@ -74,9 +74,11 @@ class StatementLowering:
             case RosSend():
                 yield from self.communicate(statement, scope, origin)
             case ReturnStatus():
-                yield Send(tree_event(self.address, "response"), (self.status(statement, scope, origin),), origin)
+                yield Send(
+                    tree_event(self.address, TreeEventKind.RESPONSE), (self.status(statement, scope, origin),), origin
+                )
             case ReturnHalted():
-                yield Send(tree_event(self.address, "halt_response"), (), origin)
+                yield Send(tree_event(self.address, TreeEventKind.HALT_RESPONSE), (), origin)
             case CallChild():
                 yield from self.call_child(statement, origin)
             case SetOutput():
@@ -283,7 +285,7 @@ class StatementLowering:
         """
         assert statement.child is not None
         children = self.children
-        verb = "halt" if statement.halts else "tick"
+        verb = TreeEventKind.HALT if statement.halts else TreeEventKind.TICK
         calls = [Send(tree_event(child, verb), (), self.context.program.node(child)) for child in children]
         if (index := literal_index(statement.child)) is not None:
             yield calls[index]

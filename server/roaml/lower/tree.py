@@ -11,9 +11,9 @@ from roaml.lower.program import TranslatableSystem
 from roaml.model.expand import ROOT_NUMBER
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton, Send, State, Target, Transition
-from roaml.scxml.names import STATUSES, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
+from roaml.scxml.names import STATUSES, TREE_HAS_FINISHED, TREE_ROOT_PREFIX, TreeEventKind
 
-ANSWER = tree_event(ROOT_NUMBER, "response")
+ANSWER = tree_event(ROOT_NUMBER, TreeEventKind.RESPONSE)
 
 
 def _stem(program: TranslatableSystem) -> str:
@@ -34,16 +34,16 @@ def tree_root(program: TranslatableSystem, tick: ScxmlEvent) -> Automaton:
         return Transition(event, cond, (Target(target, 1.0, body, origin),), origin)
 
     idle = (
-        on(tick, "wait_tick_res", None, Send(tree_event(ROOT_NUMBER, "tick"), (), origin)),
+        on(tick, "wait_tick_res", None, Send(tree_event(ROOT_NUMBER, TreeEventKind.TICK), (), origin)),
         on(ANSWER, "error"),
     )
     running = equal(event_data("status"), integer(STATUSES["RUNNING"]))
     transitions: dict[str, tuple[Transition, ...]] = {"idle": idle}
     if program.parameters.tick_if_not_running and program.library is not None:
         # BehaviorTree.CPP halts the tree after it has ended.
-        reset = Send(tree_event(ROOT_NUMBER, "halt"), (), origin)
+        reset = Send(tree_event(ROOT_NUMBER, TreeEventKind.HALT), (), origin)
         transitions["wait_tick_res"] = (on(ANSWER, "idle", running), on(ANSWER, "wait_reset", None, reset))
-        transitions["wait_reset"] = (on(tree_event(ROOT_NUMBER, "halt_response"), "idle"),)
+        transitions["wait_reset"] = (on(tree_event(ROOT_NUMBER, TreeEventKind.HALT_RESPONSE), "idle"),)
     elif program.parameters.tick_if_not_running:
         transitions["wait_tick_res"] = (on(ANSWER, "idle"),)
     else:

@@ -38,7 +38,7 @@ from roaml.model.timing import period
 from roaml.roles import NodeKind
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
-from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX
+from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX, TreeEventKind
 from roaml.text import Location
 
 DEFAULT_RATE = Fraction(10)
@@ -171,7 +171,7 @@ class _Builder:
             outputs = tuple(self.outputs(node, board))
         else:
             values = port_values(node, program, board)
-        if program.asks_world:
+        if program.reads_world:
             values.known["event"] = self.event(node)
         return NodeCode(
             str(node.number),
@@ -241,7 +241,7 @@ class _Builder:
 def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location, counts: bool) -> Automaton:
     """The automaton that ticks the tree until the tree returns a status other than RUNNING; with `counts`, it also
     counts the ticks."""
-    response = tree_event(ROOT_NUMBER, "response")
+    response = tree_event(ROOT_NUMBER, TreeEventKind.RESPONSE)
 
     def to(state: str, *body: Statement) -> tuple[Target, ...]:
         return (Target(state, 1.0, body, origin),)
@@ -257,7 +257,7 @@ def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin:
     ]
     data = (Data(TICKS, BASE_TYPES["int64"], integer(0), origin),) if counts else ()
     counted = [Assign(name(TICKS), binary(name(TICKS), Operator.ADD, integer(1)), origin)] if counts else []
-    call = Send(tree_event(ROOT_NUMBER, "tick"), (), origin)
+    call = Send(tree_event(ROOT_NUMBER, TreeEventKind.TICK), (), origin)
     idle = Transition(tick, None, to("wait_tick_res", *counted, call), origin)
     states = (
         State("idle", (), (), (idle,), origin),

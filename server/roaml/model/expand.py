@@ -20,6 +20,7 @@ from typing import TypeAlias
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
 from roaml.script.names import names_in
+from roaml.scxml.names import NODE_PREFIX
 from roaml.suggest import close_names
 
 ROOT_NUMBER = 1000
@@ -150,7 +151,7 @@ class Instance:
 
     @property
     def automaton(self) -> str:
-        return f"BT_plugin_{self.number}_{self.name}"
+        return f"{NODE_PREFIX}{self.number}_{self.name}"
 
     def port(self, key: str) -> PortValue | None:
         return next((value for name, value in self.ports if name == key), None)
@@ -173,7 +174,7 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
         tuple(
             (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
         ),
-        conditions=frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
+        conditions=frozenset(model.id.value for model in file.models if model.id and model.is_condition),
     )
 
 

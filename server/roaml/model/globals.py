@@ -14,16 +14,23 @@ from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
-from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
-    CANCEL_PREFIX,
     FIELD_PREFIX,
+    FLAG,
+    TreeEventKind,
+    action_stem,
+    cancel_request,
+    flag_of,
     safe_name,
+    service_stem,
+    topic_message,
+    tree_event_name,
 )
 
 FindInterface = Callable[[str, str], InterfaceType | None]
@@ -36,7 +43,7 @@ class GlobalVariable:
 
     Attributes:
         event: the event whose data it contains.
-        parameter: the parameter of the event; "valid" for the flag.
+        parameter: the parameter of the event; `FLAG` for the flag.
         source: the part of the models that sends the event; `None` if it has no symbol.
     """
 
@@ -51,7 +58,7 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     """All global variables by name."""
     table: dict[str, GlobalVariable] = {}
     for event, source, params in _events(system, interface):
-        table.setdefault(f"{event}.valid", GlobalVariable(f"{event}.valid", BOOL, event, "valid", source))
+        table.setdefault(flag_of(event), GlobalVariable(flag_of(event), BOOL, event, FLAG, source))
         for name, type_ in params:
             for variable, leaf in _flatten(f"{event}__{name}", type_):
                 table.setdefault(variable, GlobalVariable(variable, leaf, event, name, source))
@@ -99,10 +106,10 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
     for topic in system.topics.values():
         for endpoint in topic.sources:
             if ProtocolPart.MESSAGE in endpoint.use.sends:
-                yield f"topic_{topic.name}_msg", endpoint.symbol, _sent(endpoint.use, ProtocolPart.MESSAGE)
+                yield topic_message(topic.name), endpoint.symbol, _sent(endpoint.use, ProtocolPart.MESSAGE)
     if system.has_timer:
         clock = ((f"{FIELD_PREFIX}sec", INT), (f"{FIELD_PREFIX}nanosec", INT))
-        yield "topic_clock_msg", None, clock
+        yield topic_message(CLOCK_TOPIC), None, clock
     for service in system.services.values():
         yield from _service(service, interface)
     for action in system.actions.values():
@@ -131,7 +138,7 @@ def _declared(use: InterfaceUse, part: str, interface: FindInterface) -> list[tu
 
 
 def _service(service: Channel, interface: FindInterface) -> Iterator[_Event]:
-    name = f"srv_{sanitise(service.name)}"
+    name = service_stem(service.name)
     for client in service.users:
         who = safe_name(client.automaton.name)
         request, response = (_declared(client.use, part, interface) for part in ("request", "response"))
@@ -150,10 +157,10 @@ _THREAD_ID = ("thread_id", BASE_TYPES["int32"])
 
 
 def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
-    name = f"action_{sanitise(action.name)}"
+    name = action_stem(action.name)
     for client in action.users:
         if ProtocolPart.CANCEL in client.use.sends:
-            yield f"{CANCEL_PREFIX}{sanitise(action.name)}", client.symbol, [_GOAL_ID]
+            yield cancel_request(action.name), client.symbol, [_GOAL_ID]
         yield from _action_client(name, client, interface)
     for server in action.sources:
         sent: dict[ProtocolPart, list[tuple[str, Type]]] = {
@@ -186,18 +193,17 @@ def _tree(system: System) -> Iterator[_Event]:
         instance = automaton.instance
         if instance is None:
             continue
-        node = f"bt_{instance.number}"
         symbol = Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name) if automaton.path else None
         parent = None if instance.parent is None else system.by_instance.get(instance.parent)
         plugin = automaton.outline.plugin
         if parent is None or _calls(parent, instance.number):
-            yield f"{node}_tick", symbol, []
+            yield tree_event_name(instance.number, TreeEventKind.TICK), symbol, []
         if parent is not None and parent.outline.plugin.halts_children and _calls(parent, instance.number):
-            yield f"{node}_halt", symbol, []
+            yield tree_event_name(instance.number, TreeEventKind.HALT), symbol, []
         if plugin.answers_tick:
-            yield f"{node}_response", symbol, [("status", INT)]
+            yield tree_event_name(instance.number, TreeEventKind.RESPONSE), symbol, [("status", INT)]
         if plugin.answers_halt:
-            yield f"{node}_halt_response", symbol, []
+            yield tree_event_name(instance.number, TreeEventKind.HALT_RESPONSE), symbol, []
 
 
 def _calls(parent: SystemAutomaton, number: int) -> bool:

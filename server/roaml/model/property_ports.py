@@ -20,12 +20,12 @@ from roaml.model.property_file import ObservedPart, Port, PortKind, PortVariable
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
-from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, safe_name
+from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, flag_of, safe_name, sanitise, topic_message
 from roaml.scxml.observed import PortEvent
-from roaml.suggest import close_names
+from roaml.suggest import alternatives, close_names
 from roaml.text import Span
 
 FindInterface = Callable[[str, str], "InterfaceType | NotFound"]
@@ -224,7 +224,7 @@ class PortLinker:
         if port.kind is PortKind.TOPIC:
             senders = [e for e in channel.sources if ProtocolPart.MESSAGE in e.use.sends]
             senders = self._chosen(port.origin, senders, "publishes on", channel)
-            name = f"topic_{channel.name}_msg"
+            name = topic_message(channel.name)
             if port.origin is None:
                 if senders or (channel.name == CLOCK_TOPIC and self.system.has_timer):
                     yield PortEvent(name)
@@ -329,7 +329,7 @@ class PortLinker:
 
     def _parameters(self, event: str) -> dict[str, Type] | None:
         """The parameters of an event of the translation; `None` if there is no event with this name."""
-        if f"{event}.valid" not in self.variables:
+        if flag_of(event) not in self.variables:
             return None
         names = (v for v in self.variables.values() if v.event == event and v.name.startswith(f"{event}__"))
         return {v.name.removeprefix(f"{event}__"): v.type for v in names if "." not in v.name[len(event) :]}
@@ -375,8 +375,8 @@ class PortLinker:
             if type_ is None:
                 known = list(_leaf_paths(data))
                 close = close_names(variable.field.value, known) or (tuple(known) if len(known) == 1 else ())
-                hint = f"; did you mean `{close[0]}`?" if close else ""
-                message = f"{data} has no field `{variable.field.value}`{hint}"
+                hint = alternatives(close, known, "field")
+                message = f"`{data}` has no field `{variable.field.value}`{hint}"
                 self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message, close)
                 return _declared(variable), parameter
         if isinstance(type_, Struct):
@@ -398,8 +398,8 @@ def observed_names(file: PropertyFile) -> Iterator[str]:
     can be determined without a system."""
     for port in file.ports:
         if port.name is not None and port.kind in (PortKind.TOPIC, PortKind.PLAIN):
-            name = f"topic_{sanitise(port.name.value)}_msg" if port.kind is PortKind.TOPIC else port.name.value
-            yield f"{name}.valid"
+            name = topic_message(port.name.value) if port.kind is PortKind.TOPIC else port.name.value
+            yield flag_of(name)
 
 
 def part_of(port: Port, find: Callable[[str, str], InterfaceType | None]) -> Struct | None:

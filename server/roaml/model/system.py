@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import bisect
 import functools
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -35,7 +34,17 @@ from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.scxml.event_data import parameter_types
-from roaml.scxml.names import CANCEL_PREFIX
+from roaml.scxml.names import (
+    ACTION_PREFIX,
+    CANCEL_PREFIX,
+    SERVICE_PREFIX,
+    TOPIC_PREFIX,
+    TREE_PREFIX,
+    cancel_request,
+    flag_of,
+    is_interface_event,
+    sanitise,
+)
 from roaml.suggest import close_names
 
 CLOCK_TOPIC = "clock"
@@ -48,11 +57,6 @@ ANY_TYPE = "any"
 Fact: TypeAlias = "tuple[Act, str | None]"
 """An act (see `Gap`) and the name that it concerns; topics have the form of their names in events. `None` means any
 name."""
-
-
-def sanitise(name: str) -> str:
-    """The form of a topic, service or action name in events (docs/spec/plain-scxml.md#interface-names)."""
-    return name.removeprefix("/").replace("/", "__")
 
 
 @dataclass(frozen=True, slots=True)
@@ -435,7 +439,7 @@ class System:
         names = self._sorted_observed
         following = bisect.bisect_left(names, f"{event}__")
         is_parameter = following < len(names) and names[following].startswith(f"{event}__")
-        return is_parameter or f"{event}.valid" in self.observed
+        return is_parameter or flag_of(event) in self.observed
 
     @cached_property
     def _sorted_observed(self) -> Sequence[str]:
@@ -520,13 +524,12 @@ def _readable_facts(automaton: SystemAutomaton) -> Iterator[Fact]:
 
 
 _PREFIXES = {
-    SymbolKind.PUBLISHER: "topic",
-    SymbolKind.SERVICE_CLIENT: "srv",
-    SymbolKind.SERVICE_SERVER: "srv",
-    SymbolKind.ACTION_CLIENT: "action",
-    SymbolKind.ACTION_SERVER: "action",
+    SymbolKind.PUBLISHER: TOPIC_PREFIX,
+    SymbolKind.SERVICE_CLIENT: SERVICE_PREFIX,
+    SymbolKind.SERVICE_SERVER: SERVICE_PREFIX,
+    SymbolKind.ACTION_CLIENT: ACTION_PREFIX,
+    SymbolKind.ACTION_SERVER: ACTION_PREFIX,
 }
-_OF_INTERFACES = re.compile(r"(?:topic|srv|action|cancel_action|bt)_")
 
 
 def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
@@ -536,21 +539,23 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         prefix = _PREFIXES.get(act.kind)
         if prefix is None:
             return False
-        request = f"{CANCEL_PREFIX}{sanitise(name or '')}"
-        if prefix == "action" and variable.startswith(request if name is None else (f"{request}.", f"{request}__")):
+        request = cancel_request(name or "")
+        if prefix == ACTION_PREFIX and variable.startswith(
+            request if name is None else (f"{request}.", f"{request}__")
+        ):
             return True
-        return variable.startswith(f"{prefix}_" if name is None else f"{prefix}_{sanitise(name)}_")
+        return variable.startswith(prefix if name is None else f"{prefix}{sanitise(name)}_")
     match act:
         case GapAct.ANYTHING:
             return True
         case GapAct.SENDS | GapAct.PARAMETER:
             if name is None:
-                return _OF_INTERFACES.match(variable) is None
-            return variable == f"{name}.valid" or variable.startswith(f"{name}__")
+                return not (is_interface_event(variable) or variable.startswith(TREE_PREFIX))
+            return variable == flag_of(name) or variable.startswith(f"{name}__")
         case GapAct.TREE | GapAct.VARIABLE:
-            return variable.startswith("bt_")
+            return variable.startswith(TREE_PREFIX)
         case GapAct.NAME:
-            return variable.startswith(("srv_", "action_", CANCEL_PREFIX))
+            return variable.startswith((SERVICE_PREFIX, ACTION_PREFIX, CANCEL_PREFIX))
         case GapAct.RECEIVES | GapAct.PORT | GapAct.REMAP | GapAct.NODE | GapAct.PLUGIN:
             return False
         case _:

@@ -203,7 +203,9 @@ class _Parser:
             case _TokenKind.ATOM:
                 content = token.text[1:-1].strip()
                 if not content:
-                    raise _ProblemError(token.span, "there is no condition in these braces")
+                    raise _ProblemError(
+                        token.span, "there is no condition in these braces; write for example `{ level < 30 }`"
+                    )
                 return Atom(content)
             case _TokenKind.OPEN:
                 formula = self.implication()

@@ -37,7 +37,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     pattern = _pattern_state(builder, property_, scope.is_open_at_first)
     is_deferred = property_.scope.is_judged_at_close
     bad = builder.flag("bad") if is_deferred else violated
-    asked = builder.flag("asked") if is_deferred and exercised is not None else None
+    triggered = builder.flag("asked") if is_deferred and exercised is not None else None
 
     # Evaluate a stretch that ends before this letter.
     closes = builder.temporary("closes", scope.closes)
@@ -45,14 +45,14 @@ def observe_pattern(property_: PatternProperty) -> Observer:
         builder.raise_if(violated, conjunction(closes, disjunction(bad if is_deferred else FALSE, pattern.owes)))
         if satisfied is not None:
             builder.raise_if(satisfied, conjunction(closes, negation(violated)))
-        if asked is not None and exercised is not None:
-            builder.raise_if(exercised, conjunction(closes, asked))
+        if triggered is not None and exercised is not None:
+            builder.raise_if(exercised, conjunction(closes, triggered))
         if opened is not None and is_deferred:
             builder.raise_if(opened, closes)
     pattern.advance()
     if closes != FALSE:
         pattern.clear(closes)
-        for flag in dict.fromkeys((bad, asked)) if is_deferred else ():
+        for flag in dict.fromkeys((bad, triggered)) if is_deferred else ():
             if flag is not None:
                 builder.set(flag, conjunction(flag, negation(closes)))
 
@@ -66,7 +66,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
         safe = conjunction(scope.inside, pattern.is_safe, negation(bad), negation(violated))
         builder.raise_if(satisfied, safe)
     if exercised is not None:
-        builder.raise_if(exercised if asked is None else asked, conjunction(scope.inside, pattern.asks))
+        builder.raise_if(exercised if triggered is None else triggered, conjunction(scope.inside, pattern.triggers))
     if opened is not None and not is_deferred:
         builder.raise_if(opened, scope.inside)
     builder.finish()
@@ -140,7 +140,7 @@ class _PatternState(Protocol):
         owes: whether an obligation is open: the stretch violates the pattern if it ends here.
         is_due: whether an obligation is open whose deadline is now, or that has no deadline.
         is_safe: whether the stretch satisfies the pattern, however it continues.
-        asks: whether the pattern creates an obligation at this letter.
+        triggers: whether the pattern creates an obligation at this letter.
     """
 
     @property
@@ -150,7 +150,7 @@ class _PatternState(Protocol):
     @property
     def is_safe(self) -> Expression: ...
     @property
-    def asks(self) -> Expression: ...
+    def triggers(self) -> Expression: ...
 
     def advance(self) -> None:
         """Advance by one clock step, if this letter is a clock step."""
@@ -242,7 +242,7 @@ class _Always:
         return self.stretch.is_over
 
     @property
-    def asks(self) -> Expression:
+    def triggers(self) -> Expression:
         return self.stretch.is_in_window
 
     def advance(self) -> None:
@@ -261,7 +261,7 @@ class _Always:
 class _Existence:
     """The pattern that requires the condition at some letter in the window."""
 
-    asks: Expression = TRUE
+    triggers: Expression = TRUE
 
     def __init__(self, builder: Builder, window: Window, is_open: bool) -> None:
         self.builder = builder
@@ -332,7 +332,7 @@ class _Response:
         return equal(self.age.register, self.window.upper)
 
     @property
-    def asks(self) -> Expression:
+    def triggers(self) -> Expression:
         return Input(LEFT)
 
     def advance(self) -> None:
@@ -389,7 +389,7 @@ class _Precedence:
         return FALSE if self.recent.flag is None else self.recent.flag
 
     @property
-    def asks(self) -> Expression:
+    def triggers(self) -> Expression:
         return Input(RIGHT)
 
     def advance(self) -> None:
@@ -413,7 +413,7 @@ class _Recurrence:
     owes: Expression = FALSE
     is_due: Expression = FALSE
     is_safe: Expression = FALSE
-    asks: Expression = TRUE
+    triggers: Expression = TRUE
 
     def __init__(self, builder: Builder, limit: int, is_open: bool) -> None:
         self.age = Age(builder, "elapsed", limit + 1, 0 if is_open else None)

@@ -46,7 +46,7 @@ from roaml.model.property_ports import observed_names
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.structs import StructDeclaration, StructOutline, resolve_structs, structs_in_xml
 from roaml.model.syntax import Name
-from roaml.model.system import System, sanitise
+from roaml.model.system import System
 from roaml.model.system_file import ListedFile, SystemFile, SystemInput, SystemSection, build_system_file, required_kind
 from roaml.model.tree import Include, TreeFile, blackboard_variable, build_tree_file, nodes
 from roaml.model.value_types import INTERFACE_KINDS, Environment, TypedMachine, type_machine
@@ -57,6 +57,7 @@ from roaml.project.paths import resolve
 from roaml.project.settings import folders_above
 from roaml.roles import SymbolKind
 from roaml.scxml.event_data import Round, infer_in_rounds
+from roaml.scxml.names import sanitise
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document

@@ -15,7 +15,8 @@ from collections.abc import Callable, Iterable, Mapping
 from roaml.disk import Roots
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
-from roaml.model.kinds import CONFIG_FILE, FileKind
+from roaml.model.config_files import CONFIG_FILE
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate
@@ -138,7 +139,7 @@ class Workspace:
         self._disk = self._new_disk()
         self._registry = self._new_registry()
 
-    def look_for_packages_in(self, folders: Iterable[str]) -> None:
+    def set_package_folders(self, folders: Iterable[str]) -> None:
         """Replace the folders that are searched for ROS packages."""
         self._packages = tuple(os.path.abspath(folder) for folder in folders)
         self._disk = self._new_disk()

@@ -203,10 +203,10 @@ class _Parser:
             return _ScriptError(token, f"`{text}` needs the name of an entry on its left")
         if text == ")":
             return _ScriptError(
-                token, "this `)` closes nothing" if self.depth <= 1 else "a value is missing before `)`"
+                token, "this `)` closes no bracket; remove it" if self.depth <= 1 else "a value is missing before `)`"
             )
         if text == ":":
-            return _ScriptError(token, "this `:` has no `?`")
+            return _ScriptError(token, "this `:` has no `?`; write `condition ? a : b`")
         return _ScriptError(token, f"a value is missing before `{text}`")
 
     def _junk(self, token: _Token) -> _ScriptError:

@@ -9,9 +9,10 @@ for an event that the user has named, the role is derived from the name, only by
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from typing import NamedTuple
 
-from roaml.exhaustive import Vocabulary
+from roaml.exhaustive import Vocabulary, assert_never
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 
 # ---------------------------------------------------------------------- automata
@@ -50,6 +51,32 @@ def read_tree_event(event: str) -> TreeEvent | None:
     return TreeEvent(int(match[1]), TreeEventKind(match[2])) if match else None
 
 
+def tree_event_name(node: int | str, kind: TreeEventKind) -> str:
+    """The name of an event between a node of a tree and its parent.
+
+    Args:
+        node: the number of the node, or its address if it has conditions (`roaml.lower.library_tree`).
+    """
+    return f"{TREE_PREFIX}{node}_{kind.value}"
+
+
+def answered_by(answer: str) -> str:
+    """The name of the event, a tick or a halt, that the response with the name `answer` answers; "" if `answer` is not
+    a response."""
+    tree = read_tree_event(answer)
+    if tree is None:
+        return ""
+    match tree.kind:
+        case TreeEventKind.RESPONSE:
+            return answer.removesuffix(tree.kind.value) + TreeEventKind.TICK.value
+        case TreeEventKind.HALT_RESPONSE:
+            return answer.removesuffix(tree.kind.value) + TreeEventKind.HALT.value
+        case TreeEventKind.TICK | TreeEventKind.HALT:
+            return ""
+        case _:
+            return assert_never(tree.kind)
+
+
 def is_generated(automaton: str) -> bool:
     """Whether `automaton` has the name of an automaton that the translation adds. The buffers of events are not
     included: they have the names of their events."""
@@ -78,11 +105,14 @@ def automaton_role(automaton: str) -> Role:
     return Role.HANDLER if is_handler else Role.MACHINE
 
 
-NODE_AUTOMATON = re.compile(r"BT_plugin_(\d+)_(.+)")
+NODE_PREFIX = "BT_plugin_"
+NODE_AUTOMATON = re.compile(NODE_PREFIX + r"(\d+)_(.+)")
 """The name of the automaton of a tree node, with the number and the name of the node as groups."""
 
 # ------------------------------------------------------------------------ events
 
+TREE_PREFIX = "bt_"
+"""The beginning of the names of the events of the tree and of the blackboard."""
 CLOCK_STEP = "global_timer_tick_event"
 TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
@@ -93,10 +123,105 @@ OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
 """The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
+TOPIC_PREFIX, SERVICE_PREFIX, ACTION_PREFIX = "topic_", "srv_", "action_"
 CANCEL_PREFIX = "cancel_action_"
 """The beginning of the name of an event that requests to cancel a goal of an action."""
 FIELD_PREFIX = "ros_fields__"
 """The beginning of the names of event parameters that are fields of a ROS message."""
+
+
+def sanitise(name: str) -> str:
+    """The form of a topic, service or action name in events (docs/spec/plain-scxml.md#interface-names)."""
+    return name.removeprefix("/").replace("/", "__")
+
+
+def topic_message(topic: str) -> str:
+    """The name of the event that represents the messages on a topic."""
+    return f"{TOPIC_PREFIX}{sanitise(topic)}_msg"
+
+
+def service_stem(service: str) -> str:
+    """The common beginning of the names of the events of a service."""
+    return f"{SERVICE_PREFIX}{sanitise(service)}"
+
+
+def action_stem(action: str) -> str:
+    """The common beginning of the names of the events of an action, except the request to cancel a goal."""
+    return f"{ACTION_PREFIX}{sanitise(action)}"
+
+
+def cancel_request(action: str) -> str:
+    """The name of the event that requests to cancel a goal of an action."""
+    return f"{CANCEL_PREFIX}{sanitise(action)}"
+
+
+class InterfaceEventKind(Vocabulary):
+    """The kind of an event that represents a part of a ROS interface."""
+
+    MESSAGE = "message"
+    REQUEST = "request"
+    RESPONSE = "response"
+    CANCEL = "cancel"
+    GOAL = "goal"
+    GOAL_ANSWER = "goal answer"
+    FEEDBACK = "feedback"
+    RESULT = "result"
+    THREAD_START = "thread start"
+    THREAD_FREE = "thread free"
+
+
+class InterfaceEvent(NamedTuple):
+    """An event that represents a part of a ROS interface. `name` is the name of the topic, service or action, in the
+    form of `sanitise`."""
+
+    kind: InterfaceEventKind
+    name: str
+
+
+def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent | None:
+    """The event of a topic, service or action with the name `event`; `None` if it is not such an event.
+
+    Args:
+        clients: the automata of the system. The name of an event may end with the name of one of them.
+    """
+    if not is_interface_event(event):
+        return None
+    name, _, client = event.partition("_client_")
+    if client not in clients:
+        name = event
+    for kind, form in _INTERFACE_EVENTS:
+        match = form.fullmatch(name)
+        if match:
+            return InterfaceEvent(kind, match[1])
+    return None
+
+
+def is_reserved_name(name: str) -> bool:
+    """Whether a name begins like one that the translation generates for an event or an automaton of a tree node."""
+    return is_interface_event(name) or name.startswith((TREE_PREFIX, NODE_PREFIX, TIMER_PREFIX, "global_timer"))
+
+
+def is_interface_event(name: str) -> bool:
+    """Whether a name of an event, or of one of its variables, begins like that of a topic, service or action."""
+    return name.startswith(_INTERFACE_PREFIXES)
+
+
+_INTERFACE_PREFIXES = (TOPIC_PREFIX, SERVICE_PREFIX, ACTION_PREFIX, CANCEL_PREFIX)
+_INTERFACE_EVENTS = tuple(
+    (kind, re.compile(form))
+    for kind, form in (
+        (InterfaceEventKind.MESSAGE, rf"{TOPIC_PREFIX}(.+)_msg"),
+        (InterfaceEventKind.REQUEST, rf"{SERVICE_PREFIX}(.+)_req(?:uest)?"),
+        (InterfaceEventKind.RESPONSE, rf"{SERVICE_PREFIX}(.+)_response"),
+        (InterfaceEventKind.CANCEL, rf"{CANCEL_PREFIX}(.+)"),
+        (InterfaceEventKind.GOAL, rf"{ACTION_PREFIX}(.+)_goal_(?:req|handle)"),
+        (InterfaceEventKind.GOAL_ANSWER, rf"{ACTION_PREFIX}(.+)_goal_(?:accept|accepted|reject|rejected)"),
+        (InterfaceEventKind.FEEDBACK, rf"{ACTION_PREFIX}(.+)_feedback(?:_handle)?"),
+        (InterfaceEventKind.RESULT, rf"{ACTION_PREFIX}(.+)_result(?:_handle)?"),
+        (InterfaceEventKind.THREAD_START, rf"{ACTION_PREFIX}(.+)_thread_start"),
+        (InterfaceEventKind.THREAD_FREE, rf"{ACTION_PREFIX}(.+)_thread_free"),
+    )
+)
 
 
 def role_of(event: str) -> EventRole:
@@ -164,6 +289,21 @@ _ON_SEND = "_on_send"
 _ON_RECEIVE = "_on_receive"
 
 # --------------------------------------------------------------------- variables
+
+
+FLAG = "valid"
+"""The last part of the name of the variable that states whether an event has been sent."""
+
+
+def flag_of(event: str) -> str:
+    """The name of the variable that states whether an event has been sent."""
+    return f"{event}.{FLAG}"
+
+
+def flagged_by(variable: str) -> str:
+    """The event whose flag `variable` is; "" if it is not a flag."""
+    event, _, last = variable.rpartition(".")
+    return event if last == FLAG else ""
 
 
 VIOLATED, SATISFIED, PENDING, OPEN, ASKED, OPENED = "violated", "satisfied", "pending", "open", "asked", "opened"

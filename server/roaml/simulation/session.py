@@ -108,7 +108,7 @@ class Session:
     """A position in a run.
 
     Args:
-        asked: the property that is evaluated on the run, one of those of `checker`.
+        property_: the property that is evaluated on the run, one of those of `checker`.
         clock: the names of the variables with the seconds and nanoseconds of the time of the model.
         saved: the session to continue; it overrides `seed` and `trace`.
 
@@ -120,7 +120,7 @@ class Session:
     def __init__(
         self,
         checker: ModelChecker,
-        asked: CompiledProperty,
+        property_: CompiledProperty,
         seed: int = 0,
         trace: int = 0,
         clock: tuple[str, str] | None = None,
@@ -128,7 +128,7 @@ class Session:
     ) -> None:
         if saved is not None:
             seed, trace = saved.seed, saved.trace
-        self._run = Run(checker, asked, seed, trace, saved.decisions if saved is not None else ())
+        self._run = Run(checker, property_, seed, trace, saved.decisions if saved is not None else ())
         self._clock = clock
         self._automata = tuple(instance.automaton for instance in self._run.legend.layout.instances)
         self._resting = [resting(automaton) for automaton in self._automata]
@@ -188,9 +188,9 @@ class Session:
         return self._run.trace
 
     @property
-    def asked(self) -> CompiledProperty:
+    def compiled_property(self) -> CompiledProperty:
         """The property that is evaluated on the run."""
-        return self._run.asked
+        return self._run.compiled_property
 
     @property
     def clock(self) -> tuple[str, ...]:
@@ -258,18 +258,20 @@ class Session:
     def save(self) -> SavedSession:
         """The run and the position in it."""
         run = self._run
-        return SavedSession(run.asked.question.name, run.seed, run.trace, self.position, tuple(run.decisions))
+        return SavedSession(
+            run.compiled_property.question.name, run.seed, run.trace, self.position, tuple(run.decisions)
+        )
 
     def fork(self) -> Session:
         """An independent session with the same run up to the position."""
         run, saved = self._run, self.save()
         saved = replace(saved, decisions=saved.decisions[: self.position])
-        return Session(run.checker, run.asked, clock=self._clock, saved=saved)
+        return Session(run.checker, run.compiled_property, clock=self._clock, saved=saved)
 
     def story(self) -> Story:
         """The run up to the position, as a list of all turns."""
         steps = tuple(self._run.steps[: self.position])
-        question = self._run.asked.question
+        question = self._run.compiled_property.question
         end = End.DECIDED if self.is_decided else self.end or End.CUT
         standstill = self._run.standstill() if end is End.STUCK else None
         return Story(

@@ -12,7 +12,7 @@ from roaml.smc.record import Plain
 
 
 class NodeStatus(enum.Enum):
-    """The status of a tree node as in BehaviorTree.CPP; `TICKED` while its tick is not answered yet."""
+    """The status of a tree node as in BehaviorTree.CPP; `TICKED` until its tick has returned."""
 
     IDLE = "IDLE"
     TICKED = "TICKED"

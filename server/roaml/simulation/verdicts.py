@@ -27,7 +27,9 @@ class Verdicts:
     """Follows a run, and stores where each property is decided."""
 
     def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
-        self._followers = [_PropertyFollower(checker, asked, seed, trace) for asked in checker.asked]
+        self._followers = [
+            _PropertyFollower(checker, property_, seed, trace) for property_ in checker.compiled_properties
+        ]
 
     def follow(self, decisions: Sequence[ByHand | None], position: int, has_ended: bool) -> list[Decided]:
         """Follow the run up to a position; return the properties that are decided exactly there.
@@ -56,9 +58,9 @@ class Verdicts:
 
 
 class _PropertyFollower:
-    def __init__(self, checker: ModelChecker, asked: CompiledProperty, seed: int, trace: int) -> None:
-        compiled = checker.compiled(asked)
-        self.name = asked.question.name
+    def __init__(self, checker: ModelChecker, property_: CompiledProperty, seed: int, trace: int) -> None:
+        compiled = checker.compiled(property_)
+        self.name = property_.question.name
         self.decided: Decided | None = None
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._seed, self._trace = seed, trace

@@ -8,7 +8,15 @@ from collections.abc import Iterable, Mapping
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
 from roaml.scxml.events import Role
-from roaml.scxml.names import CLOCK_ACTION, STATUSES, TreeEventKind, automaton_role, read_tree_event, received_by
+from roaml.scxml.names import (
+    CLOCK_ACTION,
+    NODE_PREFIX,
+    STATUSES,
+    TreeEventKind,
+    automaton_role,
+    read_tree_event,
+    received_by,
+)
 from roaml.smc.record import Plain
 from roaml.views.turns import name_of
 
@@ -55,7 +63,7 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
     tree = read_tree_event(event)
     if tree is None:
         return ""
-    prefix = f"BT_plugin_{tree.number}_"
+    prefix = f"{NODE_PREFIX}{tree.number}_"
     child = next((who(name) for name in automata if name.startswith(prefix)), f"bt_{tree.number}")
     match tree.kind:
         case TreeEventKind.TICK:
@@ -63,13 +71,13 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
         case TreeEventKind.HALT:
             return f"{actor} halts {child}" if is_sent else f"{actor} is halted"
         case TreeEventKind.RESPONSE if is_sent:
-            return f"{actor} answers its tick"
+            return f"{actor} returns its status"
         case TreeEventKind.RESPONSE:
             status = parameters.get("status")
-            answer = STATUS_NAMES.get(status, "an answer") if isinstance(status, int) else "an answer"
-            return f"{actor} receives {answer} from {child}"
+            name = STATUS_NAMES.get(status, "a status") if isinstance(status, int) else "a status"
+            return f"{actor} receives {name} from {child}"
         case TreeEventKind.HALT_RESPONSE if is_sent:
-            return f"{actor} answers that it has halted"
+            return f"{actor} reports that it has halted"
         case TreeEventKind.HALT_RESPONSE:
             return f"{actor} receives from {child} that it has halted"
         case _:

@@ -82,7 +82,7 @@ class Question:
         is_reward: whether it is about an expected reward, not a probability.
         threshold: the comparison of the value, if there is one.
         variables: the variables that the property reads.
-        is_stuck: whether it is about stuck traces (`ask_stuck`).
+        is_stuck: whether it is about stuck traces (`compile_stuck`).
         can_be_vacuous: whether it may not apply to a trace (`Activity`).
         can_be_late: see `ObserverOutputs`.
         is_conditional: whether it is only about traces that satisfy assumptions.
@@ -106,7 +106,7 @@ class Activity(enum.IntEnum):
     """The scope of the property was never evaluated, so the trace says nothing about the property."""
     IDLE = 1
     """The scope was evaluated, but the event that triggers the property never occurred in it, such as a request."""
-    ASKED = 2
+    TRIGGERED = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,26 +125,28 @@ class ObserverOutputs:
 
     Attributes:
         open: (x, e): if e holds at the end of the model's time, `F G x` is undecided.
-        asked: whether the event that triggers the property has occurred.
+        triggered: whether the event that triggers the property has occurred.
         opened: whether the scope of the property has been evaluated.
         can_be_late: whether the property fails if the time ends before an event that it still requires.
     """
 
     open: tuple[tuple[str, Name], ...] = ()
-    asked: Expression | None = None
+    triggered: Expression | None = None
     opened: Expression | None = None
     can_be_late: bool = False
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
-        activity = tuple(expression for expression in (self.asked, self.opened) if expression is not None)
+        activity = tuple(expression for expression in (self.triggered, self.opened) if expression is not None)
         return (*(expression for _, expression in self.open), *activity)
 
 
 NO_OUTPUTS = ObserverOutputs()
 
 
-def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs = NO_OUTPUTS) -> CompiledProperty:
+def compile_property(
+    compilation: Compilation, property_: Property, outputs: ObserverOutputs = NO_OUTPUTS
+) -> CompiledProperty:
     """Compile a property.
 
     Args:
@@ -155,19 +157,23 @@ def ask(compilation: Compilation, property_: Property, outputs: ObserverOutputs 
             number.
     """
     check_form(property_)
-    return _Writer(compilation, property_, outputs).asked()
+    return _Writer(compilation, property_, outputs).compiled_property()
 
 
-def given(asked: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
-    """The question `asked`, restricted to traces that satisfy `assumptions`."""
-    return replace(asked, question=replace(asked.question, is_conditional=True), assumptions=assumptions.goal)
+def conditional(property_: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
+    """The question `property_`, restricted to traces that satisfy `assumptions`."""
+    return replace(
+        property_,
+        question=replace(property_.question, is_conditional=True),
+        assumptions=assumptions.goal,
+    )
 
 
 STUCK_PROPERTY = "stuck"
 """The name of the property that every model has: the probability that a trace gets stuck."""
 
 
-def ask_stuck(compilation: Compilation) -> CompiledProperty:
+def compile_stuck(compilation: Compilation) -> CompiledProperty:
     """The question about the probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another,
     and nothing can ever change. Every trace runs to its end."""
     # JANI has no predicate for this; `deadlock` is the closest one.
@@ -210,7 +216,7 @@ class _Writer:
         self.unread: set[str] = set()
         self.is_bounded = 0
 
-    def asked(self) -> CompiledProperty:
+    def compiled_property(self) -> CompiledProperty:
         formula, threshold = self.opened(self.property.expression)
         step_reward = exit_reward = -1
         match formula:
@@ -230,7 +236,7 @@ class _Writer:
             isinstance(formula, Expectation),
             threshold,
             variables,
-            can_be_vacuous=outputs.asked is not None or outputs.opened is not None,
+            can_be_vacuous=outputs.triggered is not None or outputs.opened is not None,
             can_be_late=outputs.can_be_late,
         )
         seen_start, seen_leaf = array("i", [0]), array("i")
@@ -256,14 +262,16 @@ class _Writer:
         return CompiledProperty(self.property, question, goal)
 
     def activity(self) -> int:
-        """The code that computes the activity of the property in a trace; -1 if the activity is always `ASKED`."""
-        asked, opened = self.outputs.asked, self.outputs.opened
-        if asked is None and opened is None:
+        """The code that computes the activity of the property in a trace; -1 if the activity is always `TRIGGERED`."""
+        triggered, opened = self.outputs.triggered, self.outputs.opened
+        if triggered is None and opened is None:
             return -1
-        idle: Expression = Integer(Activity.IDLE)
+        # Without an event that triggers it, a property is triggered when its scope is evaluated.
+        value: Expression = Integer(Activity.TRIGGERED)
+        if triggered is not None:
+            value = Conditional(triggered, value, Integer(Activity.IDLE))
         if opened is not None:
-            idle = Conditional(opened, idle, Integer(Activity.CLOSED))
-        value = Conditional(asked, Integer(Activity.ASKED), idle) if asked is not None else idle
+            value = Conditional(opened, value, Integer(Activity.CLOSED))
         return self.compilation.expressions.integer(value, self.names)
 
     def variables(self) -> tuple[str, ...]:

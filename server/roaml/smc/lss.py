@@ -160,18 +160,18 @@ def search(
         TraceFaultError: a trace failed.
     """
     state.tried = len(schedulers)
-    told = watch or (lambda _: None)
+    report = watch or (lambda _: None)
     usual = answer(
         payload, question, replace(options, method=EstimationMethod.FIXED, max_traces=UNIFORM_TRACES), pool, pulse=pulse
     ).tally
     longest = min(options.max_steps, _longest(usual.steps / usual.traces))
     for side in Side:
         state.side, state.round, state.best = side, 0, None
-        best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, told, pulse)
+        best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, report, pulse)
         state.selected[side] = SelectedScheduler(best, Tally())
         plain = sampling_options(options)
         tally = state.selected[side].tally
-        answer(payload, question, plain, pool, tally, lambda _: told(state), pulse, scheduler=best)
+        answer(payload, question, plain, pool, tally, lambda _: report(state), pulse, scheduler=best)
 
 
 def _longest(length: float) -> int:
@@ -252,7 +252,7 @@ def _best(
     pool: Pool,
     schedulers: Sequence[int],
     state: Search,
-    told: Callable[[Search], None],
+    report: Callable[[Search], None],
     pulse: Pulse | None,
 ) -> int:
     """The scheduler with the smallest or greatest share of successes; an abandoned trace is half a success."""
@@ -271,7 +271,7 @@ def _best(
             good = verdicts.count(TRUE) + verdicts.count(UNKNOWN) / 2
             candidates[task.scheduler] = successes + good, traces + tried
             state.done += 1
-            told(state)
+            report(state)
         ranked = sorted(candidates, key=lambda n: (-sign * candidates[n][0] / candidates[n][1], n))
         successes, traces = candidates[ranked[0]]
         state.best = successes / traces

@@ -8,21 +8,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
-from roaml.jani.model import Model
-from roaml.jani.passive import unread_variables, without_passive
+from roaml.jani.model import Model, ModelType
+from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property
 from roaml.smc.batch import Payload, TraceProblem, pack
-from roaml.smc.choices import Choices, look_at_choices
+from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
-from roaml.smc.explore import Registers
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, ask, ask_stuck, given
+from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, compile_property, compile_stuck, conditional
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program, merged
-from roaml.smc.registers import REAL, product
 from roaml.smc.run import (
     Answer,
     Inquiry,
@@ -48,10 +46,10 @@ class ModelChecker:
         marks: why a trace that stays in a location ends; see `roaml.smc.end`.
         outputs: property -> the outputs of its observer, if it has one.
         assumptions: property -> the property that its assumptions hold, if it has any; both are in `model`.
-        asks_stuck: whether `stuck` is the last question.
+        includes_stuck: whether `stuck` is the last question.
 
     Attributes:
-        asked: a question for each property that can be answered.
+        compiled_properties: the properties that can be answered.
         refused: the names of the other properties -> the reason.
         stuck: the question about traces that get stuck.
 
@@ -65,7 +63,7 @@ class ModelChecker:
         properties: Iterable[Property] | None = None,
         marks: Marks = MappingProxyType({}),
         *,
-        asks_stuck: bool = False,
+        includes_stuck: bool = False,
         outputs: Mapping[str, ObserverOutputs] = MappingProxyType({}),
         assumptions: Mapping[str, Property] = MappingProxyType({}),
     ) -> None:
@@ -81,18 +79,20 @@ class ModelChecker:
             read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
             read += [property_.expression for property_ in (*chosen, *assumptions.values())]
             self._compilation = Compilation(model, read)
-            self.asked: tuple[CompiledProperty, ...] = ()
+            self.compiled_properties: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:
                 try:
-                    asked = self._ask(property_)
+                    compiled = self._compile(property_)
                     assumed = assumptions.get(property_.name)
-                    self.asked += (asked if assumed is None else given(asked, self._ask(assumed)),)
+                    self.compiled_properties += (
+                        compiled if assumed is None else conditional(compiled, self._compile(assumed)),
+                    )
                 except FaultError as fault:
                     self.refused[property_.name] = fault
-            self.stuck: CompiledProperty = ask_stuck(self._compilation)
-            if asks_stuck:
-                self.asked += (self.stuck,)
+            self.stuck: CompiledProperty = compile_stuck(self._compilation)
+            if includes_stuck:
+                self.compiled_properties += (self.stuck,)
                 self._names += (self.stuck.question.name,)
             self.program: Program = self._compilation.program(marks)
         except RecursionError:
@@ -100,57 +100,55 @@ class ModelChecker:
         finally:
             sys.setrecursionlimit(depth)
 
-    def _ask(self, property_: Property) -> CompiledProperty:
-        return ask(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
+    def _compile(self, property_: Property) -> CompiledProperty:
+        return compile_property(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
+
+    @property
+    def is_deterministic(self) -> bool:
+        """Whether the type of the model excludes nondeterminism."""
+        return self.model.type is ModelType.DTMC
 
     @property
     def legend(self) -> Legend:
         return self._compilation.legend
 
-    def compiled(self, asked: CompiledProperty) -> Compiled:
-        """The compiled model with the goal of `asked`. Assumptions are left out."""
-        return Compiled(self.program, asked.goal)
+    def compiled(self, property_: CompiledProperty) -> Compiled:
+        """The compiled model with the goal of `property_`. Assumptions are left out."""
+        return Compiled(self.program, property_.goal)
 
-    def reduced(self, asked: CompiledProperty) -> ModelChecker:
+    def reduced(self, property_: CompiledProperty) -> ModelChecker:
         """A model checker for one question, without the automata that only other questions need. The model has fewer
         states and the same probabilities, but its traces have other numbers."""
-        model = without_passive(self.model, *self._read(asked))
+        model = without_passive(self.model, *self._read(property_))
         if model is self.model:
             return self
-        properties = () if asked.question.is_stuck else (asked.property,)
+        properties = () if property_.question.is_stuck else (property_.property,)
         model = replace(model, properties=properties)
         return ModelChecker(
-            model, properties, self._marks, asks_stuck=asked.question.is_stuck, outputs=self._outputs(asked)
+            model,
+            properties,
+            self._marks,
+            includes_stuck=property_.question.is_stuck,
+            outputs=self._outputs(property_),
         )
 
-    def _ignored(self, asked: CompiledProperty) -> Registers:
-        """The registers that only other questions depend on."""
-        names = unread_variables(self.model, *self._read(asked))
-        ints: list[int] = []
-        reals: list[int] = []
-        for storage in self.legend.layout.shared:
-            if storage.name in names:
-                registers = reals if storage.kind == REAL else ints
-                registers += range(storage.base, storage.base + product(storage.shape))
-        return Registers(tuple(ints), tuple(reals))
-
-    def _read(self, asked: CompiledProperty) -> tuple[Formula, ...]:
+    def _read(self, property_: CompiledProperty) -> tuple[Formula, ...]:
         """All formulas on which the probability of a question depends."""
-        outputs = self.outputs.get(asked.property.name, NO_OUTPUTS)
-        return (asked.property.expression, *(expression for _, expression in outputs.open))
+        outputs = self.outputs.get(property_.property.name, NO_OUTPUTS)
+        return (property_.property.expression, *(expression for _, expression in outputs.open))
 
-    def _outputs(self, asked: CompiledProperty) -> Mapping[str, ObserverOutputs]:
-        name = asked.property.name
+    def _outputs(self, property_: CompiledProperty) -> Mapping[str, ObserverOutputs]:
+        name = property_.property.name
         return {name: ObserverOutputs(open=self.outputs[name].open)} if name in self.outputs else {}
 
-    def payload(self, *asked: CompiledProperty) -> Payload:
+    def payload(self, *properties: CompiledProperty) -> Payload:
         """The data that workers need to answer questions."""
-        goals = [goal for question in asked for goal in (question.goal, question.assumptions) if goal is not None]
+        goals = [goal for question in properties for goal in (question.goal, question.assumptions) if goal is not None]
         return pack(Compiled(self.program, merged(goals)))
 
     def answer(
         self,
-        asked: CompiledProperty,
+        property_: CompiledProperty,
         options: Options,
         pool: Runner,
         tally: Tally | None = None,
@@ -163,13 +161,13 @@ class ModelChecker:
             FaultError: a trace failed.
         """
         try:
-            return answer(self.payload(asked), asked.question, options, pool, tally, watch, pulse)
+            return answer(self.payload(property_), property_.question, options, pool, tally, watch, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
     def answer_together(
         self,
-        asked: Sequence[CompiledProperty],
+        properties: Sequence[CompiledProperty],
         options: Options,
         pool: Runner,
         tallies: Sequence[Tally],
@@ -183,11 +181,16 @@ class ModelChecker:
             tallies: the states to continue from; they are updated after each batch.
             watch: called for each question after each of its batches.
         """
-        questions = [property_.question for property_ in asked]
+        questions = [property_.question for property_ in properties]
         inquiries = [Inquiry(*parts) for parts in zip(questions, tallies, columns_of(questions), strict=True)]
-        names = {property_.question.name: property_ for property_ in asked}
+        names = {property_.question.name: property_ for property_ in properties}
         answer_together(
-            self.payload(*asked), inquiries, options, pool, lambda i: watch(names[i.question.name], i.tally), pulse
+            self.payload(*properties),
+            inquiries,
+            options,
+            pool,
+            lambda i: watch(names[i.question.name], i.tally),
+            pulse,
         )
         return [
             summary(inquiry.question, options, inquiry.tally)
@@ -198,7 +201,7 @@ class ModelChecker:
 
     def search(
         self,
-        asked: CompiledProperty,
+        property_: CompiledProperty,
         options: Options,
         pool: Pool,
         state: Search,
@@ -210,26 +213,34 @@ class ModelChecker:
         Raises:
             FaultError: a trace failed, or the question is about rewards.
         """
-        if asked.question.is_reward:
-            raise FaultError("schedulers can be sampled only for probabilities", asked.property.origin)
-        if asked.question.is_conditional:
+        if property_.question.is_reward:
+            raise FaultError("schedulers can be sampled only for probabilities", property_.property.origin)
+        if property_.question.is_conditional:
             message = "schedulers cannot be sampled for a probability given assumptions; use --scheduler uniform"
-            raise FaultError(message, asked.property.origin)
+            raise FaultError(message, property_.property.origin)
         try:
             schedulers = candidates(len(self.automata))
-            search(self.payload(asked), asked.question, options, pool, schedulers, state, watch, pulse)
+            search(
+                self.payload(property_),
+                property_.question,
+                options,
+                pool,
+                schedulers,
+                state,
+                watch,
+                pulse,
+            )
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
-    def choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
+    def choices(self, property_: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None = None) -> Choices:
         """What is known about schedulers other than the uniform one, in relation to an answer.
 
         Raises:
             FaultError: a trace under some scheduler failed.
         """
-        compiled, payload, ignored = self.compiled(asked), self.payload(asked), self._ignored(asked)
         try:
-            return look_at_choices(self.model, compiled, payload, answer, self.automata, pool, pulse, ignored)
+            return check_choices(self.model, self.program, self.payload(property_), answer, self.automata, pool, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

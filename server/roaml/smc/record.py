@@ -172,12 +172,12 @@ class Recorder:
     """Simulates single traces of a question."""
 
     def __init__(
-        self, checker: ModelChecker, asked: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
+        self, checker: ModelChecker, property_: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0
     ) -> None:
-        compiled = checker.compiled(asked)
+        compiled = checker.compiled(property_)
         self.legend = checker.legend
         self.system = checker.model.system
-        self.asked = asked
+        self.compiled_property = property_
         self.seed = seed
         self.max_steps = max_steps
         self.scheduler = scheduler

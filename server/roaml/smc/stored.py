@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, Seen, Tally
+from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, StoredTrace, Tally
 
 _MAX_COUNT = 1 << 62
 """A limit that no counter reaches."""
@@ -51,7 +51,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     try:
         tally = Tally.from_json(shape)
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
-        raise ValueError("it is not a tally") from None
+        raise ValueError("it does not contain the state of a verification") from None
     _expect(sum(ended.count for ended in tally.ends.values()) == tally.traces, "ends")
     _expect(all(ended.count > 0 for ended in tally.ends.values()), "ends")
     _check_sums(tally, question, options)
@@ -81,7 +81,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
         total += sum(example.steps for example in seen)
         _expect((verdict in tally.shortest) == (count > 0), "shortest")
         if count:
-            least: Seen = tally.shortest[verdict]
+            least: StoredTrace = tally.shortest[verdict]
             first = min(seen, key=lambda example: (example.steps, example.trace))
             _expect(least == first if count <= MAX_KEPT_TRACES else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.simulated, "shortest")

@@ -44,7 +44,7 @@ class Story:
     comment: str = ""
 
 
-def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
+def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
     """The story of a trace.
 
     Args:
@@ -54,11 +54,11 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
     shared = recorder.shared
     start = dict(zip((storage.name for storage in shared), recorder.initial(shared), strict=True))
     steps = list(recorder.walk(recording))
-    variables = recorder.asked.question.variables
+    variables = recorder.compiled_property.question.variables
     relevant = _relevant(recorder, steps, variables)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
     return Story(
-        recorder.asked.question.name,
+        recorder.compiled_property.question.name,
         recording,
         tuple(steps),
         tuple(clock_times(steps, clock)),
@@ -67,7 +67,7 @@ def tell(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -
         automata,
         start,
         recorder.standstill() if recording.end is End.STUCK else None,
-        comment=recorder.asked.property.comment or "",
+        comment=recorder.compiled_property.property.comment or "",
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS, TraceVerdict
-from roaml.smc.run import Seen
+from roaml.smc.run import StoredTrace
 from roaml.text import Location
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
@@ -37,13 +37,13 @@ class Counterexample:
 
 def unwanted_verdict(result: Result) -> int:
     """The verdict of the traces that contradict an expectation."""
-    if result.asks_stuck:
+    if result.includes_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
     return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE
 
 
-def unwanted_trace(result: Result) -> Seen | None:
+def unwanted_trace(result: Result) -> StoredTrace | None:
     """The shortest trace that contradicts an expectation; an undecided one if there is none; `None` if there is
     neither.
 
@@ -57,7 +57,7 @@ def unwanted_trace(result: Result) -> Seen | None:
     return shortest.get(unwanted_verdict(result)) or shortest.get(UNKNOWN)
 
 
-def witness_trace(result: Result) -> Seen | None:
+def witness_trace(result: Result) -> StoredTrace | None:
     """The shortest trace that supports a property: one that is as expected or, if nothing is expected, one in which the
     property holds. `None` if there is none."""
     if result.answer is None:
@@ -71,15 +71,17 @@ def counterexample(result: Result, place_of: Callable[[Location], str] | None = 
     Args:
         place_of: formats a position; the default is `path:line`.
     """
-    return _told(result, unwanted_trace(result), place_of)
+    return _counterexample(result, unwanted_trace(result), place_of)
 
 
 def witness(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
     """Simulate the trace of `witness_trace` again; `None` if there is none. See `counterexample`."""
-    return _told(result, witness_trace(result), place_of)
+    return _counterexample(result, witness_trace(result), place_of)
 
 
-def _told(result: Result, seen: Seen | None, place_of: Callable[[Location], str] | None) -> Counterexample | None:
+def _counterexample(
+    result: Result, seen: StoredTrace | None, place_of: Callable[[Location], str] | None
+) -> Counterexample | None:
     traces = result.traces
     if seen is None or traces is None:
         return None
@@ -87,8 +89,8 @@ def _told(result: Result, seen: Seen | None, place_of: Callable[[Location], str]
     verdict = VERDICTS[story.recording.verdict]
     from roaml.views.story import heading, lines  # noqa: PLC0415 - most verifications do not need a story
 
-    told = lines(story, place_of or _path_and_line(traces.target))
-    return Counterexample(heading(story), verdict, seen.trace, tuple(told))
+    story_lines = lines(story, place_of or _path_and_line(traces.target))
+    return Counterexample(heading(story), verdict, seen.trace, tuple(story_lines))
 
 
 def _path_and_line(target: VerificationTarget) -> Callable[[Location], str]:

@@ -13,7 +13,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.results import Exact, Proof, ShortestTrace
-from roaml.verification.schedulers import asks_for_minimum
+from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
 """The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
@@ -25,7 +25,7 @@ class UndecidedError(Exception):
 
 def exact_values(
     checker: ModelChecker,
-    asked: CompiledProperty,
+    property_: CompiledProperty,
     limits: StateLimits,
     watch: Watch | None = None,
 ) -> Exact:
@@ -35,23 +35,23 @@ def exact_values(
         UndecidedError: a limit was reached, or the property has no value.
         FaultError: an undefined operation is executed in some state.
     """
-    if asked.question.is_conditional:
+    if property_.question.is_conditional:
         raise UndecidedError(
             "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exhaustive to "
             "estimate the probability under uniform choices"
         )
-    reduced = checker.reduced(asked)
+    reduced = checker.reduced(property_)
     if reduced is not checker:
-        checker, asked = reduced, reduced.asked[0]
+        checker, property_ = reduced, reduced.compiled_properties[0]
     try:
-        space = explore(checker, asked, limits, watch)
+        space = explore(checker, property_, limits, watch)
     except LimitError as error:
         raise UndecidedError(str(error)) from None
     if space.problem is not None:
         fault = checker.fault(space.problem)
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)
     try:
-        values = values_of(space)
+        values = values_of(space, work=limits.work)
     except NoValueError as error:
         raise UndecidedError(str(error)) from None
     paths = [path for verdict in (FALSE, TRUE) if (path := shortest(space, verdict)) is not None]
@@ -62,14 +62,15 @@ def exact_values(
         space.states,
         values.is_precise,
         _proof(space, values),
+        space.can_get_stuck,
         tuple(ShortestTrace(space, path) for path in paths),
     )
 
 
 def _proof(space: Space, values: GoalValues) -> Proof | None:
     """What all states prove in addition to a probability of 0 or 1 (see `Exact`)."""
-    goal = space.asked.goal
-    if space.asked.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
+    goal = space.compiled_property.goal
+    if space.compiled_property.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
         return None
     is_negated = goal.formula.count(NOT) % 2 == 1
     if values.maximum.upper == 0.0 and not is_negated:
@@ -77,20 +78,36 @@ def _proof(space: Space, values: GoalValues) -> Proof | None:
     return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
-def judge_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
-    """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation."""
+def check_exactly(
+    expectation: Expectation,
+    exact: Exact,
+    question: Question,
+    *,
+    only_uniform: bool = False,
+    width: float = _SLACK,
+) -> Verdict:
+    """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation.
+
+    Args:
+        only_uniform: whether to judge the value under uniform choices instead.
+        width: the difference that `=` allows.
+    """
     threshold = expectation.threshold
-    what, bounds, value = ("least", exact.minimum, exact.least)
-    if not asks_for_minimum(question):
-        what, bounds, value = ("greatest", exact.maximum, exact.greatest)
+    bounds, value = exact.minimum, exact.least
+    missed_by = f"by the least value, which is {value:.6g}"
+    if only_uniform:
+        bounds, value, missed_by = exact.uniform, exact.average, ""
+    elif not is_minimised(question):
+        bounds, value = exact.maximum, exact.greatest
+        missed_by = f"by the greatest value, which is {value:.6g}"
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
 
     def is_met(number: float) -> bool:
         if threshold.relation is BinaryOperator.EQUAL:
-            return abs(number - threshold.number) <= _SLACK
+            return abs(number - threshold.number) <= width + 1e-12
         slack = 0.0 if is_strict else _SLACK
         return threshold.met(number + slack) or threshold.met(number - slack)
 
     met = is_met(value)
     is_certain = exact.is_precise or is_met(bounds.lower) is is_met(bounds.upper)
-    return Verdict(expectation, met, is_certain, under="" if met else f"by the {what} value, which is {value:.6g}")
+    return Verdict(expectation, met, is_certain, under="" if met else missed_by)

@@ -135,7 +135,7 @@ def is_possible(expectation: Expectation, question: Question) -> bool:
     return question.is_reward or 0 <= expectation.threshold.number <= 1
 
 
-def judge(expectation: Expectation, answer: Answer) -> Verdict:
+def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     """Whether an answer satisfies an expectation."""
     threshold, tally = expectation.threshold, answer.tally
     if tally.traces == 0:

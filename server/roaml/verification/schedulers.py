@@ -32,7 +32,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     if not verdict.is_met:
         verdict = replace(verdict, under="under uniform choices")
     threshold = verdict.expectation.threshold
-    is_minimum = asks_for_minimum(answer.question)
+    is_minimum = is_minimised(answer.question)
     extreme = choices.minimum if is_minimum else choices.maximum
     missed = replace(verdict, is_met=False, is_certain=True, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
@@ -63,11 +63,11 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
     if extreme is None or extreme.method is ExtremeMethod.UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
-        return f"by the {extreme_asked(question)} over all schedulers, which is {extreme.value:.6g}"
+        return f"by the {extreme_of(question)} over all schedulers, which is {extreme.value:.6g}"
     return f"under {extreme.scheduler}: {interval_text(extreme)}"
 
 
-def asks_for_minimum(question: Question) -> bool:
+def is_minimised(question: Question) -> bool:
     """Whether a property asks for the minimum."""
     return question.operator.endswith("min")
 
@@ -77,9 +77,9 @@ def may_differ(choices: Choices | None) -> bool:
     return choices is not None and not choices.agreement and not choices.differ
 
 
-def extreme_asked(question: Question) -> str:
+def extreme_of(question: Question) -> str:
     """The extreme that a property asks for: `minimum` or `maximum`."""
-    return "minimum" if asks_for_minimum(question) else "maximum"
+    return "minimum" if is_minimised(question) else "maximum"
 
 
 def interval_text(extreme: Extreme) -> str:

@@ -19,7 +19,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import Answer, EstimationMethod, Options, Seen, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, StoredTrace, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Stuck:
 
     count: int
     traces: int
-    seen: Seen
+    seen: StoredTrace
     time: float | None
     waits: tuple[Wait, ...]
 
@@ -95,7 +95,7 @@ def chain_of(waiting: Sequence[Wait]) -> Chain:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class StuckResult:
     """The result of the check for stuck traces.
 
     Attributes:
@@ -115,20 +115,20 @@ class Look:
         return self.stuck is None or self.level is not StuckLevel.ERROR
 
 
-def look(
+def check_stuck(
     target: VerificationTarget, checker: ModelChecker, options: Options, level: StuckLevel, pulse: Pulse | None = None
-) -> Look:
+) -> StuckResult:
     """Generate traces to check whether they get stuck."""
     try:
         answer = _answer(checker, options, pulse)
     except FaultError as fault:
-        return Look(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
-    return Look(answer, stuck_in(target, checker, checker.stuck, answer), level)
+        return StuckResult(None, None, level, f"{fault.message} (in trace {fault.trace} of seed {options.seed})")
+    return StuckResult(answer, stuck_in(target, checker, checker.stuck, answer), level)
 
 
 def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Answer:
-    asked, tally = checker.stuck, Tally()
-    alone = Alone(checker.compiled(asked))
+    property_, tally = checker.stuck, Tally()
+    alone = Alone(checker.compiled(property_))
     for traces in range(BATCH_SIZE, MAX_TRACES + BATCH_SIZE, BATCH_SIZE):
         limits = replace(
             options,
@@ -137,7 +137,7 @@ def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Ans
             max_steps=min(options.max_steps, MAX_STEPS_PER_TRACE),
         )
         tally.is_finished = False
-        answer = checker.answer(asked, limits, alone, tally, pulse=pulse)
+        answer = checker.answer(property_, limits, alone, tally, pulse=pulse)
         if tally.steps >= MAX_STEPS:
             break
     return answer
@@ -149,7 +149,11 @@ def can_be_stuck(checker: ModelChecker) -> bool:
 
 
 def stuck_in(
-    target: VerificationTarget, checker: ModelChecker, asked: CompiledProperty, answer: Answer, scheduler: int = 0
+    target: VerificationTarget,
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    answer: Answer,
+    scheduler: int = 0,
 ) -> Stuck | None:
     """The traces of an answer that got stuck; `None` if none did."""
     ended = answer.tally.ends.get(End.STUCK)
@@ -157,7 +161,7 @@ def stuck_in(
         return None
     from roaml.views.waiting import waits  # noqa: PLC0415 - most systems do not get stuck
 
-    recorder = Recorder(checker, asked, answer.options.seed, answer.options.max_steps, scheduler)
+    recorder = Recorder(checker, property_, answer.options.seed, answer.options.max_steps, scheduler)
     recorder.rush(Recording(ended.shortest.trace))
     time = time_of(target, recorder)
     return Stuck(ended.count, answer.tally.traces, ended.shortest, time, waits(recorder.standstill(), time))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from roaml.comparison import read_comparison
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
-from roaml.verification.verifier import judged_again
+from roaml.verification.verifier import with_expectations
 
 
 def suggestions(result: Result) -> tuple[str, ...]:
@@ -24,6 +24,10 @@ def suggestions(result: Result) -> tuple[str, ...]:
 def _candidates(result: Result) -> Iterator[str]:
     answer, choices = result.answer, result.choices
     if answer is None or answer.tally.traces == 0:
+        return
+    exact = result.asked_value()
+    if exact is not None:
+        yield from _around(exact[1], answer.question.is_reward)
         return
     lower, upper = answer.bounds
     for extreme in (choices.minimum, choices.maximum) if choices is not None else ():
@@ -46,6 +50,15 @@ def _candidates(result: Result) -> Iterator[str]:
         yield f"<= {_rounded(upper, math.ceil)}"
 
 
+def _around(value: float, is_reward: bool) -> Iterator[str]:
+    """Bounds on an exact value, without those that every probability satisfies."""
+    if math.isfinite(value):
+        if is_reward or value > 0:
+            yield f">= {_rounded(value, math.floor)}"
+        if is_reward or value < 1:
+            yield f"<= {_rounded(value, math.ceil)}"
+
+
 def _rounded(number: float, rounding: Callable[[float], int]) -> str:
     """A number with two digits after the point, or two significant ones if it is close to 0."""
     digits = 2 if abs(number) >= 0.01 or number == 0 else 1 - math.floor(math.log10(abs(number)))
@@ -55,5 +68,5 @@ def _rounded(number: float, rounding: Callable[[float], int]) -> str:
 def _is_met(result: Result, text: str) -> bool:
     comparison = read_comparison(text)
     assert comparison is not None
-    judged = judged_again(result, [expectation_of(result.name, comparison)])
-    return bool(judged.verdicts) and judged.verdicts[-1].is_met
+    checked = with_expectations(result, [expectation_of(result.name, comparison)])
+    return bool(checked.verdicts) and checked.verdicts[-1].is_met

@@ -143,7 +143,7 @@ class _Measuring:
         self.mocked, self.target, self.options = mocked, target, options
         ends = _eventually("ends", _any(_SUCCESS, _FAILURE, _SKIPPED, _HELD))
         checker = ModelChecker(target.model, (ends,))
-        compiled = checker.compiled(checker.asked[0])
+        compiled = checker.compiled(checker.compiled_properties[0])
         self.kernel = Kernel(compiled.program, compiled.goal)
         layout = checker.legend.layout
         shared = {storage.name: storage for storage in layout.shared}

@@ -10,20 +10,22 @@ from dataclasses import dataclass, field, replace
 from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
-from roaml.smc.choices import Choices
+from roaml.smc.choices import NO_NONDETERMINISM, Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import Search, Side, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch, summary
+from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
-from roaml.verification.exhaustive import UndecidedError, exact_values, judge_exactly
-from roaml.verification.expectations import Expectation, Verdict, check_range, is_possible, judge
+from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
+from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.refusal import refusal
-from roaml.verification.results import Result, SampledResult, Traces
-from roaml.verification.schedulers import asks_for_minimum, under_all_schedulers
-from roaml.verification.stuck import Look, StuckLevel
+from roaml.verification.results import Exact, Result, SampledResult, Traces
+from roaml.verification.schedulers import is_minimised, under_all_schedulers
+from roaml.verification.small import choices_of, values_if_small
+from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
 
@@ -47,20 +49,20 @@ def checker_of(target: VerificationTarget, properties: Iterable[str] | None = No
     if properties is None:
         return _checker(target, target.properties)
     names = list(dict.fromkeys(properties))
-    asks_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in target.properties)
-    if asks_stuck:
+    includes_stuck = bool(ends) and STUCK_PROPERTY in names and all(p.name != STUCK_PROPERTY for p in target.properties)
+    if includes_stuck:
         names.remove(STUCK_PROPERTY)
     chosen = select(target.properties, names, "model", (STUCK_PROPERTY,) if ends else ())
-    return _checker(target, chosen, asks_stuck=asks_stuck)
+    return _checker(target, chosen, includes_stuck=includes_stuck)
 
 
-def _checker(target: VerificationTarget, chosen: tuple[Property, ...], *, asks_stuck: bool = False) -> ModelChecker:
+def _checker(target: VerificationTarget, chosen: tuple[Property, ...], *, includes_stuck: bool = False) -> ModelChecker:
     model, names = target.model, {property_.name for property_ in chosen}
     return ModelChecker(
         model,
         chosen,
         marks(model),
-        asks_stuck=asks_stuck,
+        includes_stuck=includes_stuck,
         outputs=observer_outputs(model),
         assumptions={name: assumed for name, assumed in target.assumptions.items() if name in names},
     )
@@ -73,12 +75,15 @@ def verifier_of(
     expectations: Iterable[Expectation] = (),
     *,
     only_uniform: bool = False,
+    exact_if_small: bool = False,
+    example_traces: int | None = None,
 ) -> Verifier:
     """A target prepared for verification.
 
     Args:
         properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
+        exact_if_small, example_traces: see `Verifier`.
 
     Raises:
         PropertyError: a property, or the property of an expectation, does not exist.
@@ -93,26 +98,27 @@ def verifier_of(
         names = [*known, STUCK_PROPERTY]
     for name in expected:
         if name not in (*known, STUCK_PROPERTY):
-            raise PropertyError(f"there is no property `{name}`, for which a result is expected")
+            hint = alternatives(close_names(name, known), known, "property") or "; the target has no properties"
+            raise PropertyError(f"there is no property `{name}`, for which a result is expected{hint}")
     checker = checker_of(target, names)
-    for asked in checker.asked:
+    for property_ in checker.compiled_properties:
         for expectation in (*expectations, *target.expectations):
-            if expectation.name == asked.question.name:
-                check_range(expectation, asked.question)
-    return Verifier(target, checker, options or Options(), expectations, only_uniform)
+            if expectation.name == property_.question.name:
+                check_range(expectation, property_.question)
+    return Verifier(target, checker, options or Options(), expectations, only_uniform, exact_if_small, example_traces)
 
 
-def expectations_of(asked: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
+def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
     """The expectations of a property: its own, and those in `given` that are about it."""
-    name, threshold = asked.question.name, asked.question.threshold
+    name, threshold = property_.question.name, property_.question.threshold
     about_it = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
     if threshold is None or any(expectation.threshold == threshold for expectation in about_it):
         return about_it
     return (Expectation(name, threshold, is_own=True), *about_it)
 
 
-def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
-    """The result of traces with uniform choices, compared with other expectations, without new traces.
+def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
+    """The result of traces with uniform choices, or exact values, compared with other expectations, without new traces.
 
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
@@ -120,23 +126,40 @@ def judged_again(result: Result, given: Iterable[Expectation]) -> Result:
     traces, answer = result.traces, result.answer
     if traces is None or answer is None:
         return result
-    expectations = [e for e in expectations_of(traces.asked, given) if is_possible(e, answer.question)]
-    return replace(result, verdicts=_verdicts(expectations, answer, result.choices))
+    expectations = [e for e in expectations_of(traces.compiled_property, given) if is_possible(e, answer.question)]
+    return replace(result, verdicts=_verdicts(expectations, answer, result.choices, result.exact))
 
 
-def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
-    return tuple(under_all_schedulers(judge(expectation, answer), answer, choices) for expectation in expectations)
+def _verdicts(
+    expectations: Iterable[Expectation], answer: Answer, choices: Choices | None, exact: Exact | None
+) -> tuple[Verdict, ...]:
+    if exact is not None:
+        only_uniform, width = choices is None and not answer.question.is_stuck, answer.options.epsilon
+        return tuple(
+            check_exactly(expectation, exact, answer.question, only_uniform=only_uniform, width=width)
+            for expectation in expectations
+        )
+    return tuple(
+        under_all_schedulers(check_expectation(expectation, answer), answer, choices) for expectation in expectations
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
-    """A target with compiled properties, and their expectations; see `verifier_of`."""
+    """A target with compiled properties, and their expectations; see `verifier_of`.
+
+    Attributes:
+        exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
+        example_traces: the number of traces that are generated for such a result; `None` for as many as for others.
+    """
 
     target: VerificationTarget
     checker: ModelChecker
     options: Options = field(default_factory=Options)
     expectations: tuple[Expectation, ...] = ()
     only_uniform: bool = False
+    exact_if_small: bool = False
+    example_traces: int | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -151,16 +174,16 @@ class Verifier:
         """
         if name in self.checker.refused:
             raise self.checker.refused[name]
-        asked = next(asked for asked in self.checker.asked if asked.question.name == name)
-        if self.options.method is EstimationMethod.SPRT and asked.question.threshold is None:
+        property_ = next(property_ for property_ in self.checker.compiled_properties if property_.question.name == name)
+        if self.options.method is EstimationMethod.SPRT and property_.question.threshold is None:
             for expectation in (*self.expectations, *self.target.expectations):
                 if expectation.name == name:
-                    return replace(asked, question=with_threshold(asked.question, expectation.threshold))
-        return asked
+                    return replace(property_, question=with_threshold(property_.question, expectation.threshold))
+        return property_
 
-    def expected(self, asked: CompiledProperty) -> tuple[Expectation, ...]:
+    def expected(self, property_: CompiledProperty) -> tuple[Expectation, ...]:
         """The expectations of a property: its own, those of the verifier, and those of the target."""
-        return expectations_of(asked, (*self.expectations, *self.target.expectations))
+        return expectations_of(property_, (*self.expectations, *self.target.expectations))
 
     def verify(self, name: str, pool: Pool) -> Result:
         """The result of a property; a refusal if it cannot be decided.
@@ -180,29 +203,30 @@ class Verifier:
         Raises:
             NoThresholdError, WorkersLostError: see `verify`.
         """
-        asked = self.sharing()
+        properties = self.sharing()
         results = {}
-        if asked:
-            shared = self.answer_together(asked, pool, [Tally() for _ in asked], lambda *_: None)
+        if properties:
+            shared = self.answer_together(properties, pool, [Tally() for _ in properties], lambda *_: None)
             results = {result.name: result for result in shared}
         for name in self.names:
             yield results.get(name) or self.verify(name, pool)
 
     def sharing(self) -> list[CompiledProperty]:
         """The properties that can share traces; empty if there are fewer than two."""
-        asked = [self.question(name) for name in self.names if name not in self.checker.refused]
-        sharing = [property_ for property_ in asked if self.can_share(property_)]
+        properties = [self.question(name) for name in self.names if name not in self.checker.refused]
+        sharing = [property_ for property_ in properties if self.can_share(property_)]
         return sharing if len(sharing) > 1 else []
 
     def answer(
         self,
-        asked: CompiledProperty,
+        property_: CompiledProperty,
         pool: Pool,
         tally: Tally | None = None,
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, from traces with uniform choices.
+        """The result of a property, from traces with uniform choices; with exact values if they are wanted and the
+        model is small.
 
         Args:
             tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
@@ -215,20 +239,21 @@ class Verifier:
             NoThresholdError: a sequential test is requested, and there is no number to compare with.
             WorkersLostError: processes end repeatedly.
         """
-        self.check_method(asked)
+        self.check_method(property_)
         began = time.monotonic()
-        answer = self.checker.answer(asked, self.options, pool, tally, watch, pulse)
-        choices = self._choices(asked, answer, pool, pulse)
-        return self._judged(asked, answer, choices, time.monotonic() - began)
+        small = self._small(property_)
+        options = self._trace_options(self._shown(small))
+        answer = self.checker.answer(property_, options, pool, tally, watch, pulse)
+        return self._finished(property_, answer, small, pool, pulse, began)
 
-    def can_share(self, asked: CompiledProperty) -> bool:
+    def can_share(self, property_: CompiledProperty) -> bool:
         """Whether the traces of other properties can answer a property: it must be about a probability, and not about
         deadlocks."""
-        return not asked.question.is_reward and asked.goal.is_bounded < 2
+        return not property_.question.is_reward and property_.goal.is_bounded < 2
 
     def answer_together(
         self,
-        asked: Sequence[CompiledProperty],
+        properties: Sequence[CompiledProperty],
         pool: Pool,
         tallies: Sequence[Tally],
         watch: Callable[[CompiledProperty, Tally], None],
@@ -243,7 +268,7 @@ class Verifier:
         Raises:
             NoThresholdError, WorkersLostError: see `answer`.
         """
-        for property_ in asked:
+        for property_ in properties:
             self.check_method(property_)
         began = time.monotonic()
         seconds: dict[str, float] = {}
@@ -252,47 +277,88 @@ class Verifier:
             seconds[property_.question.name] = time.monotonic() - began
             watch(property_, tally)
 
-        answers = self.checker.answer_together(asked, self.options, pool, tallies, watch_time, pulse)
-        return [
-            self._result(property_, answer, pool, pulse, seconds.get(property_.question.name, 0.0))
-            for property_, answer in zip(asked, answers, strict=True)
-        ]
-
-    def _result(
-        self, asked: CompiledProperty, answer: Answer | FaultError, pool: Pool, pulse: Pulse | None, seconds: float
-    ) -> Result:
-        """The result that contains an answer, which took `seconds` s to compute; a refusal if the answer is a fault."""
-        began = time.monotonic()
-        try:
+        small = [self._small(property_) for property_ in properties]
+        groups: dict[Options, list[int]] = {}
+        for i, exact in enumerate(small):
+            groups.setdefault(self._trace_options(self._shown(exact)), []).append(i)
+        answers: dict[int, Answer | FaultError] = {}
+        for options, group in groups.items():
+            together = self.checker.answer_together(
+                [properties[i] for i in group], options, pool, [tallies[i] for i in group], watch_time, pulse
+            )
+            answers.update(zip(group, together, strict=True))
+        results = []
+        for i, property_ in enumerate(properties):
+            name, since = property_.question.name, time.monotonic()
+            answer = answers[i]
             if isinstance(answer, FaultError):
-                raise answer
-            choices = self._choices(asked, answer, pool, pulse)
-        except FaultError as fault:
-            return self.refused(asked.question.name, fault)
-        return self._judged(asked, answer, choices, seconds + time.monotonic() - began)
+                results.append(self.refused(name, answer))
+                continue
+            try:
+                since -= seconds.get(name, 0.0)
+                results.append(self._finished(property_, answer, small[i], pool, pulse, since))
+            except FaultError as fault:
+                results.append(self.refused(name, fault))
+        return results
 
-    def _choices(self, asked: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
-        """What is known about other schedulers; `None` if the question is only about uniform choices."""
-        question = asked.question
-        if self.only_uniform or question.is_stuck or question.is_conditional:
-            return None
-        return self.checker.choices(asked, answer, pool, pulse)
+    def _small(self, property_: CompiledProperty) -> Exact | None:
+        """The exact values of a property of a small model, for its result or to compare schedulers."""
+        if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
+            return values_if_small(self.checker, property_)
+        return None
 
-    def check_method(self, asked: CompiledProperty) -> None:
+    def _shown(self, small: Exact | None) -> Exact | None:
+        """The exact values that the result contains. If traces can get stuck, it contains none, because the value is
+        doubtful and traces are needed as examples."""
+        return None if not self.exact_if_small or small is None or small.can_get_stuck else small
+
+    def _trace_options(self, exact: Exact | None) -> Options:
+        if exact is None or self.example_traces is None:
+            return self.options
+        return replace(self.options, method=EstimationMethod.FIXED, max_traces=self.example_traces)
+
+    def _finished(
+        self,
+        property_: CompiledProperty,
+        answer: Answer,
+        small: Exact | None,
+        pool: Pool,
+        pulse: Pulse | None,
+        began: float,
+    ) -> Result:
+        """The result that contains an answer.
+
+        Args:
+            small: the exact values, if the model is small.
+            began: the time at which the work began.
+        """
+        choices = None
+        if self._considers_choices(property_):
+            if small is None:
+                choices = self.checker.choices(property_, answer, pool, pulse)
+            else:
+                choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
+        return self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
+
+    def _considers_choices(self, property_: CompiledProperty) -> bool:
+        """Whether the question is about all schedulers, not only about uniform choices."""
+        return not (self.only_uniform or property_.question.is_stuck or property_.question.is_conditional)
+
+    def check_method(self, property_: CompiledProperty) -> None:
         """Check that a sequential test has a number to compare with, if one is requested.
 
         Raises:
             NoThresholdError: it has no such number.
         """
-        question = asked.question
+        question = property_.question
         if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
 
-    def interrupted(self, asked: CompiledProperty, tally: Tally, seconds: float) -> Result:
+    def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:
         """The result of a property so far, after an interruption."""
-        answer = summary(asked.question, self.options, tally)
+        answer = summary(property_.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
-        return replace(self._judged(asked, answer, choices, seconds), is_interrupted=True)
+        return replace(self._with_verdicts(property_, answer, choices, seconds), is_interrupted=True)
 
     def refused(self, name: str, fault: FaultError) -> Result:
         """The result of a property that cannot be answered."""
@@ -300,26 +366,28 @@ class Verifier:
         return Result(name, None, (), 0.0, refusal=why, fault=fault)
 
     def sampled(
-        self, asked: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
+        self, property_: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
     ) -> Result:
         """The minimum and maximum probability under sampled schedulers, as far as the search has progressed."""
         sampled = []
         for side, (scheduler, tally) in search.selected.items():
             if tally.traces:
-                answer = summary(asked.question, sampling_options(self.options), tally)
+                answer = summary(property_.question, sampling_options(self.options), tally)
                 words = described(scheduler, self.checker.automata)
-                got_stuck = stuck.stuck_in(self.target, self.checker, asked, answer, scheduler)
+                got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer, scheduler)
                 sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
-        asked_side = Side.LEAST if asks_for_minimum(asked.question) else Side.GREATEST
-        own = next((result for result in sampled if result.side is asked_side), None)
+        required_side = Side.LEAST if is_minimised(property_.question) else Side.GREATEST
+        own = next((result for result in sampled if result.side is required_side), None)
         verdicts = [
-            Verdict(expectation, False, False, under="so far") if own is None else judge(expectation, own.answer)
-            for expectation in self.expected(asked)
+            Verdict(expectation, False, False, under="so far")
+            if own is None
+            else check_expectation(expectation, own.answer)
+            for expectation in self.expected(property_)
         ]
         if own is not None:
             verdicts = [v if v.is_met else replace(v, under=f"under {own.words}") for v in verdicts]
         return Result(
-            asked.question.name,
+            property_.question.name,
             None,
             tuple(verdicts),
             seconds,
@@ -330,7 +398,7 @@ class Verifier:
         )
 
     def exhaustive(
-        self, asked: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
+        self, property_: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
     ) -> Result:
         """The exact values of a property, from all states; undecided if a limit ends the exploration.
 
@@ -341,26 +409,34 @@ class Verifier:
             FaultError: the model executes an undefined operation in some state.
         """
         began = time.monotonic()
-        expectations = self.expected(asked)
+        expectations = self.expected(property_)
         try:
-            exact = exact_values(self.checker, asked, limits, watch)
+            exact = exact_values(self.checker, property_, limits, watch)
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
-            return Result(asked.question.name, None, open_, time.monotonic() - began, undecided=str(error))
-        verdicts = tuple(judge_exactly(expectation, exact, asked.question) for expectation in expectations)
-        return Result(asked.question.name, None, verdicts, time.monotonic() - began, exact=exact)
+            return Result(property_.question.name, None, open_, time.monotonic() - began, undecided=str(error))
+        verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
+        return Result(property_.question.name, None, verdicts, time.monotonic() - began, exact=exact)
 
-    def look_for_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> Look:
+    def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
-        return stuck.look(self.target, self.checker, self.options, level, pulse)
+        return stuck.check_stuck(self.target, self.checker, self.options, level, pulse)
 
-    def _judged(self, asked: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float) -> Result:
+    def _with_verdicts(
+        self,
+        property_: CompiledProperty,
+        answer: Answer,
+        choices: Choices | None,
+        seconds: float,
+        exact: Exact | None = None,
+    ) -> Result:
         return Result(
-            asked.question.name,
+            property_.question.name,
             answer,
-            _verdicts(self.expected(asked), answer, choices),
+            _verdicts(self.expected(property_), answer, choices, exact),
             seconds,
-            stuck=stuck.stuck_in(self.target, self.checker, asked, answer),
+            stuck=stuck.stuck_in(self.target, self.checker, property_, answer),
+            exact=exact,
             choices=choices,
-            traces=Traces(self.target, self.checker, asked, self.options),
+            traces=Traces(self.target, self.checker, property_, self.options),
         )

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection
 
 from roaml.scxml.events import Role
@@ -12,32 +11,37 @@ from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
-    CANCEL_PREFIX,
     TIMER_PREFIX,
+    InterfaceEvent,
+    InterfaceEventKind,
+    TreeEventKind,
     is_timer,
+    read_interface_event,
+    read_tree_event,
     safe_name,
 )
 
-_FORMS = (
-    (r"bt_\d+_tick", "its tick"),
-    (r"bt_\d+_halt", "its halt"),
-    (r"bt_\d+_response", "the answer to its tick"),
-    (r"bt_\d+_halt_response", "the answer to its halt"),
-    (r"topic_(.+)_msg", "a message on the topic `/{}`"),
-    (r"srv_(.+)_req(?:uest)?", "a request to the service `/{}`"),
-    (r"srv_(.+)_response", "the response of the service `/{}`"),
-    (rf"{CANCEL_PREFIX}(.+)", "a request to cancel a goal of the action `/{}`"),
-    (r"action_(.+)_goal_(?:req|handle)", "a goal of the action `/{}`"),
-    (r"action_(.+)_goal_(?:accept|accepted|reject|rejected)", "the answer to the goal of the action `/{}`"),
-    (r"action_(.+)_feedback(?:_handle)?", "feedback of the action `/{}`"),
-    (r"action_(.+)_result(?:_handle)?", "the result of the action `/{}`"),
-    (r"action_(.+)_thread_start", "the start of a thread of the action `/{}`"),
-    (r"action_(.+)_thread_free", "the end of a thread of the action `/{}`"),
-)
-_COMPILED = tuple((re.compile(form), text) for form, text in _FORMS)
+_TREE_PHRASES = {
+    TreeEventKind.TICK: "its tick",
+    TreeEventKind.HALT: "its halt",
+    TreeEventKind.RESPONSE: "the status of its tick",
+    TreeEventKind.HALT_RESPONSE: "the end of its halt",
+}
+_PHRASES = {
+    InterfaceEventKind.MESSAGE: "a message on the topic",
+    InterfaceEventKind.REQUEST: "a request to the service",
+    InterfaceEventKind.RESPONSE: "the response of the service",
+    InterfaceEventKind.CANCEL: "a request to cancel a goal of the action",
+    InterfaceEventKind.GOAL: "a goal of the action",
+    InterfaceEventKind.GOAL_ANSWER: "the response to the goal of the action",
+    InterfaceEventKind.FEEDBACK: "feedback of the action",
+    InterfaceEventKind.RESULT: "the result of the action",
+    InterfaceEventKind.THREAD_START: "the start of a thread of the action",
+    InterfaceEventKind.THREAD_FREE: "the end of a thread of the action",
+}
 
 
-def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
+def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
     """A phrase for an event.
 
     Args:
@@ -54,8 +58,11 @@ def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken:
         return f"the tick of its timer `{timer}`" if taken else f"its timer `{timer}`"
     if event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX):
         return "the blackboard"
-    text, interface = _form_of(event, clients)
-    return text.format(interface.removeprefix("/")) if text else f"the event `{event}`"
+    tree = read_tree_event(event)
+    if tree is not None:
+        return _TREE_PHRASES[tree.kind]
+    interface = read_interface_event(event, clients)
+    return f"the event `{event}`" if interface is None else f"{_PHRASES[interface.kind]} `{_ros_name(interface)}`"
 
 
 def interface_name(event: str, clients: Collection[str]) -> str:
@@ -64,16 +71,9 @@ def interface_name(event: str, clients: Collection[str]) -> str:
     Args:
         clients: the automata of the system.
     """
-    return _form_of(event, clients)[1]
+    interface = read_interface_event(event, clients)
+    return "" if interface is None else _ros_name(interface)
 
 
-def _form_of(event: str, clients: Collection[str]) -> tuple[str, str]:
-    """The phrase for an event, and the name of its interface. Each is "" if there is none."""
-    name, _, client = event.partition("_client_")
-    if client not in clients:
-        name = event
-    for form, text in _COMPILED:
-        match = form.fullmatch(name)
-        if match:
-            return text, "".join("/" + group.replace("__", "/") for group in match.groups())
-    return "", ""
+def _ros_name(interface: InterfaceEvent) -> str:
+    return "/" + interface.name.replace("__", "/")

@@ -47,16 +47,17 @@ class StoryLine(NamedTuple):
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     """The lines of a story. If it gets stuck, the waiting automata follow at its end."""
-    return [*_told(story, place_of), *_waiting(story, place_of)]
+    return [*_turn_lines(story, place_of), *_waiting(story, place_of)]
 
 
-def _told(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    told = turns(story)
-    folded = _folded(story, told)
-    story_lines = [_line(turn, place_of) for number, turn in enumerate(told) if number not in folded]
+def _turn_lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
+    shown_turns = turns(story)
+    folded = _folded(story, shown_turns)
+    story_lines = [_line(turn, place_of) for number, turn in enumerate(shown_turns) if number not in folded]
     if folded:
         story_lines.insert(
-            FIRST, StoryLine(told[FIRST].number, "", "", _more(folded), "", (), last_step=told[folded[-1]].last)
+            FIRST,
+            StoryLine(shown_turns[FIRST].number, "", "", _more(folded), "", (), last_step=shown_turns[folded[-1]].last),
         )
     return story_lines
 
@@ -99,7 +100,7 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
         shown: where the waiting automata have already been shown; "" to show them here.
     """
     waiting = waits_of(story)
-    table = [*_told(story, place_of), *([] if shown else _waiting(story, place_of))]
+    table = [*_turn_lines(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
     text = f"{heading(story)}\n" + (f"  {story.comment}\n" if story.comment else "")
     for row in table:
@@ -139,9 +140,9 @@ def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
 
 
 def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
-    told = [turn for turn in turns(story) if turn.last >= first]
-    folded = _folded(story, told)
-    lanes = {turn.instance for turn in told}
+    shown_turns = [turn for turn in turns(story) if turn.last >= first]
+    folded = _folded(story, shown_turns)
+    lanes = {turn.instance for turn in shown_turns}
     names: dict[str, str] = {}
     body: list[str] = []
     moment: float | None = None
@@ -149,7 +150,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
     def actor(turn: Turn) -> str:
         return names.setdefault(turn.who, f"A{len(names)}")
 
-    for number, turn in enumerate(told):
+    for number, turn in enumerate(shown_turns):
         if number in folded:
             if number == FIRST:
                 body.append(f"Note over {actor(turn)}: {_more(folded)}")
@@ -161,8 +162,8 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
         sender = turn.heard.sender if turn.heard else None
         if turn.heard and sender and sender.instance in lanes and not turn.is_answered:
             arrow = f"{actor(sender)}->>{actor(turn)}"
-            said = f"tick, {turn.status}" if turn.is_ticked and turn.status else _message(turn.heard)
-            body.append(f"{arrow}: {_escaped(said + place)}")
+            event_phrase = f"tick, {turn.status}" if turn.is_ticked and turn.status else _message(turn.heard)
+            body.append(f"{arrow}: {_escaped(event_phrase + place)}")
         else:
             body.append(f"Note over {actor(turn)}: {_escaped(_what(turn) + place)}")
         details = "<br/>".join(_escaped(detail) for detail in _details(turn))
@@ -223,9 +224,9 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 """
 
 
-def _folded(story: Story, told: Sequence[Turn]) -> range:
+def _folded(story: Story, shown_turns: Sequence[Turn]) -> range:
     """The indexes of the turns that are folded, and not shown."""
-    return range(0) if story.is_whole else range(FIRST, len(told) - LAST)
+    return range(0) if story.is_whole else range(FIRST, len(shown_turns) - LAST)
 
 
 def _more(folded: range) -> str:
@@ -239,7 +240,7 @@ def _what(turn: Turn) -> str:
     move = _short(source if stays else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
     if turn.is_answered and turn.status:
-        return f"answers {turn.status}"
+        return f"returns {turn.status}"
     if turn.is_ticked:
         return f"is ticked in {move}{answer}"
     if turn.is_halted:

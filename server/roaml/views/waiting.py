@@ -10,7 +10,6 @@ only pass events on, so they are omitted.
 from __future__ import annotations
 
 import heapq
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -24,7 +23,10 @@ from roaml.scxml.names import (
     CLOCK,
     RECEIVED,
     SERVICE_HANDLER_PREFIX,
+    TOPIC_PREFIX,
     TREE_ROOT_PREFIX,
+    TreeEventKind,
+    answered_by,
     automaton_role,
     is_timer,
     named,
@@ -35,10 +37,8 @@ from roaml.scxml.names import (
 )
 from roaml.smc.standstill import Standstill
 from roaml.views.ends import is_event
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.turns import is_inner, name_of
-
-TICK, HALT = "tick", "halt"
 
 
 class Wait(NamedTuple):
@@ -48,7 +48,7 @@ class Wait(NamedTuple):
         origin: the place in the source where it waits.
         automaton, location, role: its name in the model, its location, and its role in the system.
         whom: the automaton for which it waits; "" if there is none.
-        unanswered: `TICK` or `HALT` if it waits for the answer to one of these; `origin` is then the place in the tree
+        unanswered: tick or halt if it waits for the answer to one of these; `origin` is then the place in the tree
             of the node that must answer.
         for_timer: whether it waits for a timer.
     """
@@ -60,7 +60,7 @@ class Wait(NamedTuple):
     location: str
     role: Role
     whom: str = ""
-    unanswered: str = ""
+    unanswered: TreeEventKind | None = None
     for_timer: bool = False
 
 
@@ -88,7 +88,7 @@ def waits(standstill: Standstill, time: float | None = None) -> tuple[Wait, ...]
     Args:
         time: the time of the model, in s.
     """
-    return tuple(_Chain(standstill, time).told())
+    return tuple(_Chain(standstill, time).waits())
 
 
 NEEDS_TIME = "answer-needs-time"
@@ -106,9 +106,10 @@ def advice(waiting: Sequence[Wait]) -> str:
     late = next((wait for wait in waiting if wait.unanswered), None)
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
-    if late.unanswered == HALT:
-        return f"a halt must be answered before time passes; let {late.whom} answer it at once"
-    return f"a tick must be answered before time passes; let {late.whom} return RUNNING, and the result at a later tick"
+    if late.unanswered is TreeEventKind.HALT:
+        return f"a halt must end before time passes; let {late.whom} confirm it at once"
+    what = f"let {late.whom} return RUNNING, and the result at a later tick"
+    return f"a tick must return a status before time passes; {what}"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
@@ -136,7 +137,7 @@ class _Chain:
 
     # ------------------------------------------------------------------ the search
 
-    def told(self) -> Iterator[Wait]:
+    def waits(self) -> Iterator[Wait]:
         clock = self.index.get(CLOCK)
         if clock is not None:
             self.follow(clock, "")
@@ -306,24 +307,28 @@ class _Chain:
         shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
         others = list(dict.fromkeys(self.who(other) for other, _ in shown))
         them = " and ".join(others)
-        unanswered, origin, for_timer = "", link.origin, False
+        unanswered: TreeEventKind | None = None
+        origin, for_timer = link.origin, False
         if link.event is None:
             does = "takes" if received_by(link.action) else "sends"
             event = received_by(link.action) or sent_by(link.action)
-            text = f"stays{where} and never {does} {said(event, self.clients(), role)}"
+            text = f"stays{where} and never {does} {event_phrase(event, self.clients(), role)}"
         elif not link.event:
             text = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
             takers = {self.role(other) for other, _ in shown}
             taker = Role.TREE_ROOT if takers == {Role.TREE_ROOT} else Role.MACHINE
-            text = f"waits{where} for {them or 'nobody'} to take {said(link.event, self.clients(), taker, taken=True)}"
-        elif _is_answer(link.event):
-            unanswered = HALT if any(event.endswith("_halt_response") for _, event in shown) else TICK
+            event = event_phrase(link.event, self.clients(), taker, taken=True)
+            text = f"waits{where} for {them or 'nobody'} to take {event}"
+        elif answered_by(link.event):
+            is_halt = any(event.endswith("_halt_response") for _, event in shown)
+            unanswered = TreeEventKind.HALT if is_halt else TreeEventKind.TICK
             origin = self.place_in_tree(shown[0][1]) or origin
-            text = f"waits{where} for {them} to answer its {unanswered}"
+            text = f"waits{where} for {them} to {'halt' if is_halt else 'return a status'}"
         else:
-            senders = f" from {' or '.join(others)}" if link.event.startswith("topic_") and others else ""
-            text = f"waits{where} for {said(link.event, self.clients(), role)}{senders}"
+            is_message = link.event.startswith(TOPIC_PREFIX)
+            senders = f" from {' or '.join(others)}" if is_message and others else ""
+            text = f"waits{where} for {event_phrase(link.event, self.clients(), role)}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
                 text += ", which ticks when the clock advances"
@@ -331,7 +336,7 @@ class _Chain:
 
     def place_in_tree(self, answer: str) -> Origin | None:
         """The place in the tree of the node that sends an answer. The node that ticks it has this place."""
-        called = _ANSWER.sub(lambda answered: f"_{HALT if answered[1] else TICK}", answer)
+        called = answered_by(answer)
         return self.automata[self.index[called]].origin if called in self.index else None
 
     def clients(self) -> frozenset[str]:
@@ -340,10 +345,3 @@ class _Chain:
 
 def _cost(edge: Edge) -> int:
     return 1 if received_by(edge.action or "") else 0
-
-
-_ANSWER = re.compile(r"_(halt_)?response\Z")
-
-
-def _is_answer(event: str) -> bool:
-    return event.startswith("bt_") and _ANSWER.search(event) is not None

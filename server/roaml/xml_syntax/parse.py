@@ -163,7 +163,7 @@ class _Parser:
                 if junk is None:
                     break
                 drop = Fix("Remove it", (TextEdit(Span(*junk.span(1)), ""),), preferred=False)
-                self.report(Span(*junk.span(1)), f"`{junk[1][:20]}` is not an attribute", drop)
+                self.report(Span(*junk.span(1)), f'`{junk[1][:20]}` is not an attribute; write `name="value"`', drop)
                 position = junk.end()
                 continue
             attribute = self.attribute(written, position)
@@ -330,7 +330,7 @@ class _Parser:
         tag = span_of((at, end))
         if not self.stack:
             drop = Fix("Remove it", (TextEdit(tag, ""),))
-            self.stray(tag, f"`</{shown(name)}>` closes nothing", drop)
+            self.stray(tag, f"`</{shown(name)}>` closes no element; remove it", drop)
         elif self.open_names.get(name) and not self.is_misnamed(name, at):
             while self.names[-1] != name:
                 self.close_unclosed(at)
@@ -346,7 +346,7 @@ class _Parser:
             self.close(tag, name_span)
         else:
             drop = Fix("Remove it", (TextEdit(tag, ""),), preferred=False)
-            message = f"`</{shown(name)}>` closes nothing; the open element is `<{shown(self.names[-1])}>`"
+            message = f"`</{shown(name)}>` closes no element; the open element is `<{shown(self.names[-1])}>`"
             self.stray(tag, message, drop)
         return end
 

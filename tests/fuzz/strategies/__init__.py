@@ -14,8 +14,8 @@ from fuzz.strategy import Strategy
 def strategies() -> dict[str, Strategy]:
     """All strategies by name, sorted."""
     modules = (importlib.import_module(f"{__name__}.{info.name}") for info in pkgutil.iter_modules(__path__))
-    found = {module.STRATEGY.name: module.STRATEGY for module in modules}
-    return {name: found[name] for name in sorted(found)}
+    by_name = {module.STRATEGY.name: module.STRATEGY for module in modules}
+    return {name: by_name[name] for name in sorted(by_name)}
 
 
 def plan(cases: int, chosen: tuple[Strategy, ...]) -> list[tuple[str, int]]:

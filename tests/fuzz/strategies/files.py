@@ -48,7 +48,9 @@ def make(seed: int) -> Damaged:
     random = Random(seed)
     model = random.choice(systems() if random.random() < 0.5 else snippets())
     case = Damaged(seed, model, dict(model.texts), model.main)
-    others = [text for each in (random.choice(systems()), random.choice(snippets())) for text in each.texts.values()]
+    others = [
+        text for chosen in (random.choice(systems()), random.choice(snippets())) for text in chosen.texts.values()
+    ]
     for _ in range(random.choice([1, 1, 2, 4])):
         path = random.choice(list(model.texts))
         if model.ros_paths and random.random() < 0.05 and interfaces():

@@ -382,7 +382,7 @@ def make(seed: int) -> Frames:
             if "id" in message:
                 case.asked.append(message["id"])
     # After damage of an id, two requests may have the same one.
-    case.asked = [] if any("_twice" in each or "_odd" in each for each in case.damage) else case.asked
+    case.asked = [] if any("_twice" in name or "_odd" in name for name in case.damage) else case.asked
     parts += (b"\r\n", frame({"jsonrpc": "2.0", "id": LAST, "method": "no/such", "params": {}}))
     case.data = b"".join(parts)
     return case

@@ -7,13 +7,13 @@ import json
 from collections.abc import Iterator
 from random import Random
 
+from both_kernels import difference
 from fuzz.networks import NetworkCase, network
 from fuzz.strategy import Failure, Strategy
 from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
-from twin import difference
 
 TRACES = 3
 STEPS = 25
@@ -24,14 +24,14 @@ class Network(NetworkCase):
         value, syntax = parse(json.dumps(self.written))
         model, findings = read_model(value, "model.jani")
         if syntax or findings or model is None:
-            yield Failure("a sound model is not read", "\n".join(found.message for found in (*syntax, *findings)))
+            yield Failure("a sound model is not read", "\n".join(finding.message for finding in (*syntax, *findings)))
             return
         try:
             checker = api.checker(model)
         except FaultError:  # it can be told beforehand that it goes wrong
             return
         for scheduler in (0, 1 + self.seed % 97):
-            details = difference(checker, checker.asked[0], self.seed, TRACES, STEPS, scheduler)
+            details = difference(checker, checker.compiled_properties[0], self.seed, TRACES, STEPS, scheduler)
             if details:
                 yield Failure("the kernels disagree", details)
 

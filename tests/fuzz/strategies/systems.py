@@ -171,8 +171,8 @@ def drop_file(random: Random, texts: Texts, other: Model) -> str:
         texts[path] = ""
         return f"{os.path.basename(path)} is empty"
     name = os.path.basename(path)
-    for each, text in texts.items():
-        texts[each] = re.sub(rf'<input[^<>]*src="[^"]*{re.escape(name)}"\s*/>', "", text)
+    for file, text in texts.items():
+        texts[file] = re.sub(rf'<input[^<>]*src="[^"]*{re.escape(name)}"\s*/>', "", text)
     return f"{name} is not listed"
 
 

@@ -36,8 +36,8 @@ class Network(NetworkCase):
         assert model is not None
         try:
             checker = api.checker(model)
-            asked = checker.asked[0]
-            space = explore(checker, asked, StateLimits(states=MAX_STATES))
+            property_ = checker.compiled_properties[0]
+            space = explore(checker, property_, StateLimits(states=MAX_STATES))
             if space.problem is not None:
                 return
             exact = values_of(space)
@@ -45,7 +45,7 @@ class Network(NetworkCase):
             return
         options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
         try:
-            tally = checker.answer(asked, options, Alone(checker.compiled(asked))).tally
+            tally = checker.answer(property_, options, Alone(checker.compiled(property_))).tally
         except FaultError as error:
             yield Failure("a trace has an error, and no state has", str(error))
             return

@@ -19,11 +19,11 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import Reference
 from roaml.model.globals import GlobalVariable
 from roaml.model.structs import StructDeclaration, resolve_structs
-from roaml.model.system import CLOCK_TOPIC, BoundPort, Channel, ChannelEndpoint, System, SystemAutomaton, sanitise
+from roaml.model.system import CLOCK_TOPIC, BoundPort, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.roles import Direction, SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX
+from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, sanitise
 
 _NODE = re.compile(r"bt_(\d{1,9})_")
 

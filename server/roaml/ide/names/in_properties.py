@@ -17,10 +17,19 @@ from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Form, Occurrence, parameter, tree_node
 from roaml.jani.properties import Property, identifiers
 from roaml.model.globals import FindInterface, GlobalVariable
-from roaml.model.system import Channel, System, SystemAutomaton, sanitise
+from roaml.model.system import Channel, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, CANCEL_PREFIX, FIELD_PREFIX, safe_name
+from roaml.scxml.names import (
+    BLACKBOARD_ANSWER,
+    BLACKBOARD_WRITE_PREFIX,
+    CANCEL_PREFIX,
+    FIELD_PREFIX,
+    FLAG,
+    NODE_PREFIX,
+    safe_name,
+    sanitise,
+)
 from roaml.text import Span
 
 # The events of a service or action -> the part of the interface that they carry.
@@ -137,7 +146,7 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
     instance = automaton.instance
     if instance is None:
         return ((safe_name(automaton.name), machine, Form.SAFE),)
-    head = _plain(f"BT_plugin_{instance.number}_")
+    head = _plain(f"{NODE_PREFIX}{instance.number}_")
     _, node = trees.nodes.get(instance.number, (None, None))
     if node is not None and node.name is not None:
         source = instance.source
@@ -148,7 +157,7 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
     """The parts of a global variable's name after the event. `part` is the part of the interface that the event
     carries."""
-    if rest == ".valid":
+    if rest == f".{FLAG}":
         yield _plain(rest)
     elif variable.event in system.events:
         yield from _parameter(rest, variable, system)

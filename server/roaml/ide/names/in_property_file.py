@@ -18,9 +18,10 @@ from roaml.model.property_file import Port, PortKind, PortVariable, PropertyFile
 from roaml.model.property_ports import INTERFACE_KINDS, part_of
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import System, SystemAutomaton, sanitise
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree_paths import nodes_called, parts_above
 from roaml.roles import SymbolKind
+from roaml.scxml.names import flag_of, sanitise
 from roaml.text import Span
 
 FindInterface = Callable[[str, str], InterfaceType | None]
@@ -103,7 +104,7 @@ class _PropertyFile:
         if port.kind is PortKind.NODE:
             yield from self.node(name)
         elif port.kind is PortKind.PLAIN:
-            yield from self.pieces(self.table.get(f"{name.value}.valid", ()), name.span)
+            yield from self.pieces(self.table.get(flag_of(name.value), ()), name.span)
         else:
             kind = SYMBOL_KINDS[port.kind]
             is_topic = kind is SymbolKind.TOPIC

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group_at
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Form
 from roaml.ide.rename.new_name import problem
-from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC, sanitise
+from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
-from roaml.scxml.names import safe_name
+from roaml.scxml.names import safe_name, sanitise
 from roaml.text import Span, TextEdit
 
 _NEED_A_DEFINITION = frozenset(

@@ -21,17 +21,14 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
-from roaml.model.system import sanitise
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
-from roaml.scxml.names import STATUSES, is_synchronising
+from roaml.scxml.names import STATUSES, is_reserved_name, is_synchronising, sanitise
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
 _INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
 _PROPERTY = re.compile(r"[\w.-]+\Z")
-_GENERATED = re.compile(r"(topic_|srv_|action_|cancel_action_|bt_|BT_plugin_|ros_time_rate\.|global_timer)")
-"""The beginnings of names that the translation generates."""
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)
 """Kinds of symbols whose names the translation joins with other names by `__`."""
@@ -118,7 +115,7 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
             return variable_problem(new)
         case SymbolKind.EVENT:
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
-            if right and (is_synchronising(new) or _GENERATED.match(new)):
+            if right and (is_synchronising(new) or is_reserved_name(new)):
                 return f"{cannot}: the translation uses it for its own events"
         case SymbolKind.PARAMETER:
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
@@ -138,7 +135,7 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
         case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:
             right = _INTERFACE.match(new)
         case SymbolKind.MACHINE | SymbolKind.PLUGIN:
-            right = _WORD.match(new) and not _GENERATED.match(new)
+            right = _WORD.match(new) and not is_reserved_name(new)
             if new in BEHAVIOR_TREE.elements:
                 return f"`{new}` is the name of a node of BehaviorTree.CPP"
         case _:

@@ -13,6 +13,7 @@ from roaml.forest.entries import entry_of
 from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
+from roaml.scxml.names import NODE_PREFIX
 from roaml.text import Location, Span
 
 
@@ -51,7 +52,7 @@ class ExecutedNode:
 
     @property
     def automaton(self) -> str:
-        return f"BT_plugin_{self.number}_{self.name}"
+        return f"{NODE_PREFIX}{self.number}_{self.name}"
 
     def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
         """The ports that the tree sets: name, entry to which the port is bound (`None` for a constant), text, and

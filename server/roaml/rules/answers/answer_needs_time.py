@@ -77,7 +77,7 @@ def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], inst
         for step in outgoing[here]:
             if not instants.possible(step):
                 nearer = left.get(step.target, len(left)) < left.get(step.source, len(left))
-                if nearer and not step.ignored and step.event is not None and not instants.comes(step.event):
+                if nearer and not step.ignored and step.event is not None and not instants.can_arrive(step.event):
                     return step.event
             elif step.target in slow and step.target not in seen:
                 seen.add(step.target)
@@ -89,12 +89,13 @@ def _finding(
     context: MachineContext, system: System, handler: Handler, duty: Duty, delay: EventDelay, automaton: SystemAutomaton
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
-    message = f"the answer to a {duty.kind.value} waits for {_named(system, automaton, delay.event)}"
+    what = "status of a tick" if duty is TICK else "confirmation of a halt"
+    message = f"the {what} waits for {_named(system, automaton, delay.event)}"
     message += f", which takes time: {reason}" if reason else ""
-    advice = "return RUNNING here, and the status at a later tick" if duty is TICK else "answer the halt here"
+    advice = "return RUNNING here, and the status at a later tick" if duty is TICK else "confirm the halt here"
     if _not_taken(delay):
         advice = "handle the request in that state as well"
-    message += f"; the clock waits until the {duty.kind.value} is answered, so both wait for ever; {advice}"
+    message += f"; the clock waits until the {duty.kind.value} ends, so both wait for ever; {advice}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
@@ -176,6 +177,6 @@ def _related(delay: EventDelay) -> Iterator[Related]:
 RULE = Rule(
     "answer-needs-time",
     Severity.WARNING,
-    "The answer to a tick or halt waits for time to pass, which stops the clock for ever.",
+    "A tick or halt does not end before time passes, which stops the clock for ever.",
     machine=check,
 )

@@ -55,7 +55,7 @@ def _counts(context: MachineContext, behavior: Behavior, step: BehaviorStep, fau
 
 
 def _handles_requests(behavior: Behavior, duty: Duty) -> bool:
-    """Whether this chart handles the requests that an answer to the duty is sent for."""
+    """Whether this chart handles the events that the duty requires an answer to."""
     parts = _REQUESTS_OF[duty.kind]
     return any(step.event and step.event.part in parts and step.event.name == duty.handle for step in behavior.steps)
 
@@ -99,9 +99,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
     event, tag = _QUESTION[fault.duty.kind], fault.statement.element.name
     if fault.kind is FaultKind.WRONG_KIND:
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
-        return (
-            f"a {event} is answered with `<{tag}>`, but its parent waits for another answer; send `<{right}>` instead"
-        )
+        return f"a {event} is answered with `<{tag}>`, but its parent waits for `<{right}>`; send `<{right}>` instead"
     how = {DutyKind.RESULT: "ended", DutyKind.GOAL: "accepted or rejected"}.get(fault.duty.kind, "answered")
     tail = f"the second answer is used as the answer to the next {event}; send only one of them"
     if first is None:

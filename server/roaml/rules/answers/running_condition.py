@@ -42,7 +42,7 @@ def _handler(context: MachineContext, statement: Statement) -> Span:
 def _fixes(statement: ReturnStatus) -> Iterator[Fix]:
     if statement.status is not None and statement.status.value == "RUNNING":
         for status in ("FAILURE", "SUCCESS"):
-            yield Fix(f"Answer `{status}`", (TextEdit(statement.status.span, status),), preferred=False)
+            yield Fix(f"Return `{status}`", (TextEdit(statement.status.span, status),), preferred=False)
 
 
 RULE = Rule("running-condition", Severity.WARNING, "A condition returns RUNNING.", machine=check)

@@ -28,7 +28,7 @@ from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report plugins that do not answer a halt: their parent waits for ever
+    """Report plugins that do not confirm a halt: their parent waits for ever
     (docs/spec/plugins.md#protocol)."""
     halted = list(_halted(context))
     if not halted:
@@ -67,12 +67,12 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 def _message(step: BehaviorStep, certain: bool) -> str:
     if step.ignored:
-        reason = "events are dropped while this condition does not hold, so the halt is never answered"
+        reason = "events are dropped while this condition does not hold, so the halt is never confirmed,"
         tag = f"<{step.handler.element.name}>"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
     where = "a halt that is handled here" if halted else "the halt that is pending here"
-    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
+    how = "is not confirmed on every path" if step.handler.is_probabilistic or not certain else "is never confirmed"
     return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
 
 
@@ -83,7 +83,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
             message = (
                 f"a halt that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
             )
-            message += "clock waits until it is answered; add a `<bt_halt>`"
+            message += "clock waits until it is confirmed; add a `<bt_halt>`"
         else:
             how = "while the plugin is running " if waiting.tree_status is Phase.RUNNING else ""
             message = f"a halt that arrives {how}in the state `{waiting.name}` is never handled, so the tree waits for "
@@ -118,4 +118,4 @@ def _answer(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
         yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 
-RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not handled or not answered on every path.", machine=check)
+RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not handled or not confirmed on every path.", machine=check)

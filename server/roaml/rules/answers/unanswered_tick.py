@@ -28,7 +28,7 @@ ANSWER = '<bt_return_status status="SUCCESS" />'
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report plugins in the tree that do not handle or answer a tick: they stop the whole tree."""
+    """Report plugins in the tree that do not handle a tick or return no status: they stop the whole tree."""
     automata = plugins(context)
     if not automata:
         return
@@ -61,13 +61,17 @@ def _message(step: BehaviorStep, certain: bool) -> str:
     ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
     if step.ignored:
         tag = f"<{step.handler.element.name}>"
-        reason = "a tick that arrives while this condition does not hold is dropped and never answered,"
+        reason = "a tick that arrives while this condition does not hold is dropped and no status is returned,"
         if not ticked:
-            reason = "events are dropped while this condition does not hold, so the tick is never answered,"
+            reason = "events are dropped while this condition does not hold, so no status is returned for the tick,"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    where = "a tick that is handled here" if ticked else "the tick that is pending here"
-    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
-    return f"{where} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
+    tick = "a tick that is handled here" if ticked else "the tick that is pending here"
+    how = (
+        "does not return a status on every path"
+        if step.handler.is_probabilistic or not certain
+        else "never returns a status"
+    )
+    return f"{tick} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
@@ -77,7 +81,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
             )
-            message += "clock waits until it is answered; add a `<bt_tick>` that returns RUNNING"
+            message += "clock waits until it returns; add a `<bt_tick>` that returns RUNNING"
         else:
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "
@@ -98,7 +102,7 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
                 "</bt_tick>",
             )
             edit = last_in(context.document, candidate.element, *lines)
-            yield Fix(f"Answer ticks in the state `{candidate.id.value}` with `RUNNING`", (edit,), preferred=False)
+            yield Fix(f"Return `RUNNING` from ticks in the state `{candidate.id.value}`", (edit,), preferred=False)
 
 
 def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
@@ -111,14 +115,14 @@ def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
         if state is not None and state.id is not None:
             lines = (f'<bt_tick target="{state.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
             yield Fix(
-                "Answer the tick with `RUNNING` if no condition holds",
+                "Return `RUNNING` if no condition holds",
                 (after(document, element, *lines),),
                 preferred=False,
             )
     elif not step.ignored and ProtocolPart.BT_STATUS not in {e.part for e in step.sent} and step.certain:
         place = step.handler.targets[step.choice].element or element
         if place.complete:
-            yield Fix("Answer the tick with `SUCCESS`", (last_in(document, place, ANSWER),), preferred=False)
+            yield Fix("Return `SUCCESS` from the tick", (last_in(document, place, ANSWER),), preferred=False)
 
 
 def _add_handler(context: MachineContext) -> Iterator[Fix]:
@@ -131,4 +135,9 @@ def _add_handler(context: MachineContext) -> Iterator[Fix]:
         yield Fix(f"Add `<bt_tick>` to the state `{state.id.value}`", (edit,), preferred=False)
 
 
-RULE = Rule("unanswered-tick", Severity.ERROR, "A tick is not handled or not answered on every path.", machine=check)
+RULE = Rule(
+    "unanswered-tick",
+    Severity.ERROR,
+    "A tick is not handled, or does not return a status, on some path.",
+    machine=check,
+)

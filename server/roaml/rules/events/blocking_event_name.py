@@ -8,11 +8,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.model.machine import Declaration, Handler, Machine, RosSend, Send
 from roaml.model.syntax import Name
-from roaml.model.system import sanitise
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.scxml.names import is_synchronising
+from roaml.scxml.names import action_stem, is_synchronising
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -26,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(statement.event.span, message)
     for declaration in _with_feedback(context.machine):
         name = declaration.interface
-        if isinstance(name, Name) and is_synchronising(f"action_{sanitise(name.value)}_feedback"):
+        if isinstance(name, Name) and is_synchronising(f"{action_stem(name.value)}_feedback"):
             message = (
                 f"feedback of an action named `{name.value}` is never discarded: it waits until it is handled; "
                 "choose another name"

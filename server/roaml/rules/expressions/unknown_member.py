@@ -12,8 +12,9 @@ from roaml.expr.types import Array, Struct, StructKind, unwrap
 from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.value_types import TypedValue
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
+from roaml.rules.rule import MachineContext, Rule, close_names, listing, replacements
 from roaml.rules.support.fields import is_ros
+from roaml.suggest import alternatives
 from roaml.text import Span, TextEdit
 
 QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
@@ -31,7 +32,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, f"the member `{problem.name}` is given twice")
                 case ExtraMember():
                     close = close_names(problem.name, [name for name, _ in problem.struct.members])
-                    message = f"`{problem.struct}` has no member `{problem.name}`{did_you_mean(close)}"
+                    hint = alternatives(close, [name for name, _ in problem.struct.members], "member")
+                    message = f"`{problem.struct}` has no member `{problem.name}`{hint}"
                     inside = _without_quotes(problem.span, context.source.text)
                     yield RULE.at(problem.span, message, *replacements(inside, close))
                 case MissingMembers():
@@ -85,7 +87,8 @@ def _unknown(problem: UnknownMember) -> Finding | None:
         return None  # unknown-field and unknown-event-parameter report these with more detail
     close = close_names(problem.name, [name for name, _ in inner.members])
     owner = f"`{inner}`" if inner.name else f"the {inner.what}"
-    message = f"{owner} has no member `{problem.name}`{did_you_mean(close)}"
+    hint = alternatives(close, [name for name, _ in inner.members], "member")
+    message = f"{owner} has no member `{problem.name}`{hint}"
     return RULE.at(problem.span, message, *replacements(problem.span, close))
 
 

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.machine import Declaration
-from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton, sanitise
+from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, name_span
+from roaml.scxml.names import sanitise
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

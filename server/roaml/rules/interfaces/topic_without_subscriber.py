@@ -11,6 +11,7 @@ from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.interfaces import declared, name_span
+from roaml.scxml.names import topic_message
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -20,7 +21,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     unheard = [
         (declaration, topic)
         for declaration, _, topic in declared(context, SymbolKind.PUBLISHER)
-        if not topic.users and not system.is_observed(f"topic_{topic.name}_msg")
+        if not topic.users and not system.is_observed(topic_message(topic.name))
     ]
     unpublished = [t.name for t in system.topics.values() if t.users and not t.sources] if unheard else []
     for declaration, topic in unheard:

@@ -16,6 +16,7 @@ from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.interfaces import other_kind
+from roaml.suggest import alternatives
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
@@ -54,7 +55,8 @@ def _undeclared(
     wrong = next((d for d in machine.declarations if d.handle and d.handle.value == handle.value), None)
     if wrong is None or wrong.handle is None:
         close = close_names(handle.value, right)
-        message = f"there is no `<{DECLARING_ELEMENTS[kinds[0]]}>` named `{handle.value}`{did_you_mean(close)}"
+        message = f"there is no `<{DECLARING_ELEMENTS[kinds[0]]}>` named `{handle.value}`"
+        message += alternatives(close, right, "declared name") or "; declare it"
         declare = _declare(context, handle.value, kinds[0], preferred=not close)
         return RULE.at(handle.span, message, *replacements(handle.span, close), *declare)
     is_tag, needed_tag = DECLARING_ELEMENTS[wrong.kind], DECLARING_ELEMENTS[kinds[0]]

@@ -12,6 +12,7 @@ from roaml.expr.types import Struct, Unknown, leaves, unwrap
 from roaml.model.machine import Param, RosSend
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 from roaml.rules.support.fields import is_ros, sent_part
+from roaml.suggest import MAX_LISTED, alternatives, listing
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -49,11 +50,15 @@ def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[st
     close = close_names(name, paths) or close_names(name.rpartition(".")[2], paths)
     if not close:
         close = tuple(path for path in paths if path.rpartition(".")[2] == name)
-    known = "" if close or not paths else f"; its fields are {', '.join(f'`{p}`' for p in paths[:6])}"
-    known = known if paths else "; it has no fields"
-    message = f"`{part}` has no field `{name}`{did_you_mean(close)}{known}"
+    message = f"`{part}` has no field `{name}`{_instead(close, paths)}"
     drop = [] if close else [remove(context.document, field.element)]
     return RULE.at(field.name.span, message, *replacements(field.name.span, close), *drop)
+
+
+def _instead(close: tuple[str, ...], fields: list[str]) -> str:
+    if not fields:
+        return "; it has no fields"
+    return alternatives(close, fields, "field") or f"; its first fields are {listing(fields[:MAX_LISTED])}"
 
 
 def inside_unknown(part: Struct, name: str) -> bool:

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.forest.answers import Possible
 from roaml.forest.forest import Forest
+from roaml.forest.statuses import PossibleStatuses
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
@@ -20,7 +20,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    possible = Possible(forest)
+    possible = PossibleStatuses(forest)
     for _, node in forest.own_nodes:
         name = node.plugin.value if node.plugin else ""
         if name in ("ReactiveSequence", "ReactiveFallback") and forest.known_node(node):

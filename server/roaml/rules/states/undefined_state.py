@@ -10,9 +10,10 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after
 from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.rule import MachineContext, Rule, close_names, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.states import references
+from roaml.suggest import alternatives
 from roaml.xml_syntax import Document, Element
 
 STATES = ("state", "parallel", "final", "history")
@@ -40,7 +41,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _finding(name: Name, states: Collection[str], *more: Fix) -> Finding:
     close = close_names(name.value, states)
-    message = f"there is no state `{name.value}`{did_you_mean(close)}"
+    message = f"there is no state `{name.value}`{alternatives(close, states, 'state')}"
     return RULE.at(name.span, message, *replacements(name.span, close), *more)
 
 

@@ -9,10 +9,10 @@ from typing import TypeAlias
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.syntax import Name
-from roaml.model.system import sanitise
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.support.conditions import covered
+from roaml.scxml.names import sanitise
 
 Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
 """The part of the protocol that is received, its name, and the result code. Triggers can be compared within a state."""

@@ -9,11 +9,11 @@ from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
 from roaml.model.globals import event_names
 from roaml.model.kinds import FileKind
-from roaml.model.system import System, sanitise
+from roaml.model.system import System
 from roaml.model.system_file import ListedFile, SystemSection
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
-from roaml.scxml.names import is_generated
+from roaml.scxml.names import is_generated, sanitise
 
 
 def check(context: SystemContext) -> Iterator[Finding]:

@@ -13,9 +13,9 @@ from roaml.model.expand import NodeOutline, TreeOutline, main_tree
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
 from roaml.roles import SymbolKind
-from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements, unused
+from roaml.rules.rule import Rule, TreeContext, close_names, listing, replacements, unused
 from roaml.rules.support import misspelled
-from roaml.suggest import are_similar
+from roaml.suggest import alternatives, are_similar
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax.escapes import escape
 
@@ -120,16 +120,18 @@ def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator
     """
     if context.missing_includes or _has_misspelled_tree(context) or _has_nameless_tree(context):
         return
-    close = close_names(name.value, known)
-    message = f"there is no tree `{name.value}`{did_you_mean(close)}"
+    trees = tuple(known)
+    close = close_names(name.value, trees)
+    message = f"there is no tree `{name.value}`"
+    hint = alternatives(close, trees, "tree")
     forest = context.forest
     if forest is not None and not forest.complete:
         return
     if forest is None or close:
-        yield RULE.at(name.span, message, *replacements(name.span, close))
+        yield RULE.at(name.span, f"{message}{hint}", *replacements(name.span, close))
     elif name.value not in (*forest.trees, *forest.beside, *forest.subtree_models):
-        elsewhere = "" if close else " in this file, the files that it includes, or its folder"
-        yield RULE.at(name.span, f"{message}{elsewhere}", *replacements(name.span, close), severity=Severity.WARNING)
+        where = " in this file, the files that it includes, or its folder"
+        yield RULE.at(name.span, f"{message}{where}{hint}", severity=Severity.WARNING)
 
 
 def _circular(uses: Mapping[str, Iterable[str]]) -> Set[str]:
@@ -212,7 +214,10 @@ def _main(context: TreeContext) -> Iterator[Finding]:
         if executed:
             yield from _ambiguous(context, executed)
         elif not _has_misspelled_tree(context):
-            yield RULE.at(context.file.element.name_span, "there is no `<BehaviorTree>` that can be executed")
+            yield RULE.at(
+                context.file.element.name_span,
+                "there is no `<BehaviorTree>` that can be executed; add one with an `ID`",
+            )
 
 
 def _main_of_forest(context: TreeContext, forest: Forest, main: Name) -> Iterator[Finding]:

@@ -16,9 +16,10 @@ from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.rule import MachineContext, Rule, close_names, replacements
 from roaml.rules.support import misspelled
 from roaml.scxml.names import STATUSES
+from roaml.suggest import alternatives
 
 LITERALS = {"True": "true", "False": "false", "TRUE": "true", "FALSE": "false"}
 NO_VALUES = ("null", "undefined", "NaN", "Infinity", "None")
@@ -51,7 +52,9 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if misspelled.declaration(context.machine, "data", name):
         return None
     close = close_names(name, [*variables, *_answers(value)])
-    message = f"there is no variable `{name}`{did_you_mean(close)}"
+    known = [name for name in variables if not name.startswith("_")]
+    hint = alternatives(close, known, "variable") or "; declare it with `<data>`"
+    message = f"there is no variable `{name}`{hint}"
     if not close and any(name in known for known in context.typed.variables.values()):
         message = f"`{name}` is not available here: the machine and each of its threads have separate variables"
     return RULE.at(problem.span, message, *replacements(problem.span, close), *_declare(context, value, name))

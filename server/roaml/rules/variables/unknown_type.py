@@ -50,7 +50,8 @@ def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bo
             message = f"there is no type `{base}`, unless it is a struct of a system: no system lists this file"
             yield RULE.at(type_.span, message, severity=Severity.INFORMATION)
         else:
-            yield RULE.at(type_.span, f"there is no type `{base}`{did_you_mean(close)}", *fixes)
+            hint = did_you_mean(close) or "; use a type such as `int32` or `float64[3]`, or declare the struct"
+            yield RULE.at(type_.span, f"there is no type `{base}`{hint}", *fixes)
     elif 0 in type_.name.dimensions:
         message = "an array must have at least one element; write a bound greater than 0, or `[]` for no bound"
         yield RULE.at(type_.span, message, *replacements(type_.span, [re.sub(r"\[0+\]", "[]", type_.text)]))
