@@ -95,7 +95,7 @@ export class Window {
 
     /** Waits until the language server runs. */
     async running(): Promise<void> {
-        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 300_000 });
+        await this.statusItem("AS2FM: 0.1.0").waitFor();
     }
 
     /** Waits for a condition that is not visible on the page; resolves to its value. */
@@ -157,10 +157,6 @@ export class Window {
         fs.mkdirSync(OUTPUT, { recursive: true });
         await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`), ...(clip ? { clip } : {}) });
     }
-
-    async close(): Promise<void> {
-        await this.page.context().close();
-    }
 }
 
 export interface Clip {
@@ -170,8 +166,8 @@ export interface Clip {
     readonly height: number;
 }
 
-/** The time limit for all waits, in ms. */
-export const TIMEOUT_MS = 180_000;
+/** The time limit for all waits, in ms. It only prevents an endless wait; creating an environment may take minutes. */
+export const TIMEOUT_MS = 300_000;
 
 /** A text with the spaces that the editor draws. */
 function plain(text: string): string {
