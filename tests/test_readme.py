@@ -13,7 +13,7 @@ from as2fm_lsp.cli.main import run
 README = Path(__file__).resolve().parents[1] / "README.md"
 _FILE = re.compile(r"^\*\*`(\S+)`\*\*\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _TRANSLATE = re.compile(r"^\$ as2fm-lsp (translate main\.xml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-_VERIFY = re.compile(r"^\$ as2fm-lsp (verify main\.xml [^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_VERIFY = re.compile(r"^\$ as2fm-lsp (verify main\.xml[^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 

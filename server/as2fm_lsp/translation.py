@@ -22,7 +22,7 @@ def jani_path(system: str) -> str:
     return os.path.splitext(system)[0] + ".jani"
 
 
-def keep_off(path: str, system: api.LoadedSystem) -> None:
+def check_not_an_input(path: str, system: api.LoadedSystem) -> None:
     """Check that an output file does not overwrite a file of the system.
 
     Raises:

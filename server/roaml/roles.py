@@ -76,6 +76,17 @@ ELSEWHERE = frozenset(
 executed tree, and variables of the translation."""
 
 
+class ValuePart(RoleValue):
+    """The part of a machine that contains a value. An event variable that is available only in a part of a handler
+    names the condition or the body; no schema uses the others."""
+
+    COND = "cond"
+    BODY = "body"
+    DATA = "data"
+    ENTRY = "onentry"
+    EXIT = "onexit"
+
+
 class ProtocolPart(RoleValue):
     """The kind of message that an element sends or receives: a part of a ROS interface or of the tree protocol, an
     event, or the tick of a timer."""

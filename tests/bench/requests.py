@@ -104,7 +104,7 @@ def asked(folder: Path, request: Request) -> list[Row]:
         with opened(folder, REST) as (server, text):
             if request.capability not in server.capabilities:
                 return []
-            rested += at_rest(server, folder / FIRST, text, request)
+            rested += idle_times(server, folder / FIRST, text, request)
             typing += behind_keys(server, folder / FIRST, text, request)
     return [_row(request, "", rested), _row(request, ", right behind a key", typing)]
 
@@ -115,10 +115,10 @@ def _row(request: Request, when: str, took: Sequence[float]) -> Row:
     return Row(f"{request.name}{when}, 95th percentile", seconds(percentile(took, 95)), request.target, how)
 
 
-def at_rest(server: Server, path: Path, text: str, request: Request) -> Iterator[float]:
+def idle_times(server: Server, path: Path, text: str, request: Request) -> Iterator[float]:
     """The time in s of each answer while the server has no other work."""
     for number, offset in enumerate(_offsets(text, request)):
-        sent = server.tell(request.method, request.params(path, position(text, offset)), _ID + number)
+        sent = server.send(request.method, request.params(path, position(text, offset)), _ID + number)
         arrived, answer = server.answer(_ID + number)
         assert "error" not in answer, answer
         yield arrived - sent
@@ -133,7 +133,7 @@ def behind_keys(server: Server, path: Path, text: str, request: Request) -> Iter
             named = _offsets(text, request)[version % len(RENAMED)]
             offset = named + (len(key.text) - len(text) if named > key.start else 0)
         server.change(path, version, key.change())
-        sent = server.tell(request.method, request.params(path, position(key.text, offset)), _ID + version)
+        sent = server.send(request.method, request.params(path, position(key.text, offset)), _ID + version)
         (arrived, _), _ = server.wait_for_all(is_answer(_ID + version), is_diagnostics(path, version))
         yield arrived - sent
 
@@ -166,12 +166,12 @@ def after_burst(folder: Path, pause: float, names: Sequence[str]) -> float:
         sent, version = 0.0, 2
         for key in islice(keys(text), BURST + 1):  # the final text contains a misspelled word, so there are diagnostics
             for number in range(len(offered)):
-                server.tell("$/cancelRequest", {"id": _ID * version + number})
+                server.send("$/cancelRequest", {"id": _ID * version + number})
             version += 1
             sent = server.change(path, version, key.change())
             place = position(key.text, key.start + len(key.inserted))
             for number, request in enumerate(offered):
-                server.tell(request.method, request.params(path, place), _ID * version + number)
+                server.send(request.method, request.params(path, place), _ID * version + number)
             time.sleep(pause)
         return server.diagnostics(path, version)[0] - sent
 

@@ -55,21 +55,21 @@ class Server:
         """
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
         params = {"processId": None, "workspaceFolders": folders, "capabilities": capabilities or {}}
-        self.tell("initialize", {**params, "initializationOptions": options}, 1)
+        self.send("initialize", {**params, "initializationOptions": options}, 1)
         self.capabilities = self.answer(1)[1]["result"]["capabilities"]
-        self.tell("initialized", {})
+        self.send("initialized", {})
 
     def open(self, path: Path, text: str) -> float:
         """Open a document; return the time directly before."""
         document = {"uri": path.as_uri(), "languageId": "ascxml", "version": 1, "text": text}
-        return self.tell("textDocument/didOpen", {"textDocument": document})
+        return self.send("textDocument/didOpen", {"textDocument": document})
 
     def change(self, path: Path, version: int, change: dict[str, Any]) -> float:
         """Send a change of a document; return the time directly before."""
         document = {"uri": path.as_uri(), "version": version}
-        return self.tell("textDocument/didChange", {"textDocument": document, "contentChanges": [change]})
+        return self.send("textDocument/didChange", {"textDocument": document, "contentChanges": [change]})
 
-    def tell(self, method: str, params: object, id_: int | None = None) -> float:
+    def send(self, method: str, params: object, id_: int | None = None) -> float:
         """Send a message; return the time directly before."""
         message = {"jsonrpc": "2.0", "method": method, "params": params}
         body = json.dumps(message if id_ is None else {**message, "id": id_}).encode()
@@ -140,11 +140,11 @@ def is_diagnostics(path: Path, version: int) -> Wanted:
     """Whether a message contains the diagnostics of a version of a document."""
     uri = path.as_uri()
 
-    def is_it(message: dict[str, Any]) -> bool:
+    def matches(message: dict[str, Any]) -> bool:
         params = message.get("params")
         return isinstance(params, dict) and (params.get("uri"), params.get("version")) == (uri, version)
 
-    return is_it
+    return matches
 
 
 def _bodies(stream: IO[bytes]) -> Iterator[tuple[float, bytes]]:

@@ -12,7 +12,7 @@ from bench.check import opened
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys
 from bench.report import Row, percentile, seconds, table
-from bench.requests import REQUESTS, REST, at_rest
+from bench.requests import REQUESTS, REST, idle_times
 from bench.server import started
 from bench.trees import NODES, write_tree
 from roaml import api
@@ -94,7 +94,7 @@ def test_every_request_is_answered(tmp_path: Path) -> None:
     with opened(tmp_path, REST) as (server, text):
         for request in REQUESTS:
             assert request.capability in server.capabilities
-            took = list(islice(at_rest(server, path, text, request), 8))
+            took = list(islice(idle_times(server, path, text, request), 8))
             assert len(took) == 8
             assert min(took) > 0
 

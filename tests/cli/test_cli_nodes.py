@@ -11,10 +11,18 @@ from roaml.text import Location, Span
 
 
 def model() -> Model:
-    names = ("BT_plugin_1000_Sequence", "bt_1000_tick", "BT_plugin_1001_Go_home", "bt_1001_tick", "BT_plugin_1002_Go")
+    """A control node, whose origin is its place in the tree, and two plugins. The origin of a tick is where a parent
+    sends it, or the place of a plugin in the tree."""
+    origins = {
+        "BT_plugin_1000_Sequence": ("tree.xml", 2),
+        "bt_1000_tick": ("tree.xml", 1),
+        "BT_plugin_1001_Go_home": ("go_home.ascxml", 7),
+        "bt_1001_tick": ("tree.xml", 3),
+        "BT_plugin_1002_Go": ("go.ascxml", 7),
+    }
     automata = tuple(
-        Automaton(name, (), ("s",), origin=Location("tree.xml", Span(number, number)))
-        for number, name in enumerate(names)
+        Automaton(name, (), ("s",), origin=Location(path, Span(start, start)))
+        for name, (path, start) in origins.items()
     )
     return Model(ModelType.MDP, automata, System(()))
 
@@ -25,7 +33,7 @@ def model() -> Model:
         ("", ""),
         ("Sequence answers", ""),
         ("BT_plugin_1000_Sequence and not_bt_1000 and bt_7", ""),
-        ("it reads bt_1000_response__status", "nodes of the behavior tree: bt_1000 is Sequence (tree.xml:1)\n"),
+        ("it reads bt_1000_response__status", "nodes of the behavior tree: bt_1000 is Sequence (tree.xml:2)\n"),
         (
             "Go_home (bt_1001) and Go (bt_1002), and again bt_1001",
             "nodes of the behavior tree: bt_1001 is Go_home (tree.xml:3), bt_1002 is Go\n",

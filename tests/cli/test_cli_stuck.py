@@ -263,7 +263,7 @@ def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path)
     steps = [edge("s", way("e", 0.3, x=1), way("e", 0.7))]
     written = document(automaton("a", "s e", steps), variables=[variable("x")], properties=goals)
     (tmp_path / "model.jani").write_text(json.dumps(written), encoding="utf-8")
-    done = command("verify", "model.jani")
+    done = command("verify", "model.jani", "--method", "adaptive")
     assert re.search(r"\n  ends: goal decided [\d,]+, no step possible [\d,]+\n", done.out)
     assert "stuck" not in done.out
     assert command("verify", "model.jani", "--property", "stuck").status == 2

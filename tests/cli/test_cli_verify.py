@@ -79,11 +79,15 @@ def test_expectations_decide_the_exit_status(command: Command, tmp_path: Path) -
     name = write(tmp_path, coin())
     met = command("verify", name, "--expect", "heads <= 0.4", "--expect", "never >= 1")
     assert (met.status, "expected ≤ 0.4: met" in met.out) == (0, True)
-    missed = command("verify", name, "--expect", "heads >= 0.4", "--format", "json")
+    missed = command("verify", name, "--expect", "heads >= 0.4", "--format", "json", "--method", "adaptive")
     assert missed.status == 1
     (judged,) = rows(missed.out)["heads"]["expectations"]
     assert judged == {"expected": "≥ 0.4", "met": False, "certain": True, "under_uniform_choices_only": False}
+    exactly = rows(command("verify", name, "--expect", "heads >= 0.4", "--format", "json").out)["heads"]
+    assert exactly["expectations"] == [{**judged, "not_met": "by the least value, which is 0.3"}]
     assert command("verify", name, "--expect", "heads = 0.3").status == 0
+    assert command("verify", name, "--expect", "heads = 0.305").status == 0, "within epsilon, as for traces"
+    assert command("verify", name, "--expect", "heads = 0.32").status == 1
 
 
 def test_a_threshold_of_the_property_is_an_expectation(command: Command, tmp_path: Path) -> None:
@@ -197,11 +201,11 @@ def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Pat
 
 
 def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
-    name = write(tmp_path, coin())
-    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1")
+    name, traces = write(tmp_path, coin()), ("--method", "adaptive")
+    done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1", *traces)
     assert "expected ≥ 1: met; no trace against it in 200; the interval reaches down to 0.98\n" in done.out
     assert "expected ≥ 0.1: met\n" in done.out
-    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads")
+    done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads", *traces)
     assert re.search(r"expected ≤ 0: met; no trace against it in 200; the interval reaches up to 0\.0[12]", done.out)
 
 
@@ -245,6 +249,9 @@ def test_explains_why_something_bad_happens(command: Command, tmp_path: Path) ->
     """If the expected probability is low, the trace in which the property holds is shown."""
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.1", "--explain")
     assert done.status == 1
+    assert "heads passed in the shortest trace after 1 step" in done.out
+    assert "x: 0 → 1" in done.out
+    done = command("verify", "model.jani", "--expect", "heads <= 0.1", "--explain", "--method", "adaptive")
     assert "heads passed in trace " in done.out
     assert "x: 0 → 1" in done.out
 
@@ -493,6 +500,8 @@ def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
         out = command("verify", write(tmp_path, written), "--exhaustive").out
         states = "all 3 states" if symbol == "G" else "none of the 3 states"
         assert f"  proof: its condition holds in {states}\n" in out
+        row = rows(command("verify", "model.jani", "--exhaustive", "--format", "json").out)["p"]
+        assert row["exact"]["proof"] == ("all" if symbol == "G" else "none")
 
 
 def test_schedulers(command: Command, tmp_path: Path) -> None:

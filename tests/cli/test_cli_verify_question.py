@@ -28,12 +28,14 @@ def rows(text: str) -> dict[str, dict[str, Any]]:
     return {row["property"]: row for row in json.loads(text)["results"]}
 
 
-def starving(operator: str = "Pmin", length: int = 50) -> Json:
-    """A machine takes one step, unless another machine takes its steps for ever."""
+def starving(operator: str = "Pmin", length: int = 50, steps: int = 0) -> Json:
+    """A machine takes `steps` + 1 steps, unless another machine takes its steps for ever."""
+    counts = [edge("a", way("a", w=op("+", "w", 1)), guard=op("<", "w", steps))]
+    ends = edge("a", way("b", done=True), guard=op("=", "w", steps))
     return document(
         automaton("busy", "s", [edge("s", way("s", c=op("%", op("+", "c", 1), length)))]),
-        automaton("worker", "a b", [edge("a", way("b", done=True))]),
-        variables=[variable("c"), variable("done", "bool", False)],
+        automaton("worker", "a b", [ends, *counts]),
+        variables=[variable("c"), variable("w"), variable("done", "bool", False)],
         properties={"p": probability(op("F", "done"), operator)},
     )
 
@@ -47,11 +49,61 @@ def coin(**more: Any) -> Json:
 # ------------------------------------------------------------------ minimum and maximum
 
 
-@pytest.mark.parametrize("length", [50, 6000])
-def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command, tmp_path: Path, length: int) -> None:
+def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, starving())
+    done = command("verify", name, "--expect", "p <= 0.1")
+    assert done.status == 0
+    lines = done.out.splitlines()
+    assert re.fullmatch(r"p: minimum 0, maximum 1, 1 under uniform choices, exact, 100 states, \d\.\d s", lines[0])
+    assert lines[1:4] == [
+        "  shortest traces: it holds after 1 step",
+        "  ends of 200 random traces: goal decided 200",
+        "  expected ≤ 0.1: met",
+    ]
+    assert lines[4].startswith("exact values: computed from all reachable states, over all schedulers and for uniform ")
+    assert len(lines) == 5
+    row = rows(command("verify", name, "--format", "json").out)["p"]
+    assert [row[key] for key in ("probability", "lower", "upper", "method", "interval")] == [0, 0, 0, "exact", "exact"]
+    assert [row["exact"][key] for key in ("least", "greatest", "uniform", "states")] == [0, 1, 1, 100]
+    assert (row["minimum"]["value"], row["maximum"]["value"], row["schedulers"]["agree"]) == (0, 1, False)
+    assert (row["traces"], row["passed"], "warning" in row) == (200, 200, False)
+    row = rows(command("verify", write(tmp_path, starving("Pmax")), "--format", "json").out)["p"]
+    assert row["probability"] == 1
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        ("--method", "adaptive"),
+        ("--confidence", "0.9"),
+        ("--epsilon", "0.1"),
+        ("--max-traces", "50"),
+        ("--max-steps", "1000"),
+        ("--seed", "0"),
+        ("--separate",),
+        ("--resume", "state.json"),
+        ("--traces", "out"),
+    ],
+)
+def test_an_option_for_traces_asks_for_traces(command: Command, tmp_path: Path, option: tuple[str, ...]) -> None:
+    row = rows(command("verify", write(tmp_path, coin()), "--format", "json", *option).out)["heads"]
+    assert "exact" not in row
+    assert row["lower"] < row["probability"] < row["upper"]
+
+
+def test_more_than_20000_states_are_left_to_traces(command: Command, tmp_path: Path) -> None:
+    for steps, is_small in ((198, True), (199, False)):
+        written = starving("Pmax", 100, steps)
+        out = command("verify", write(tmp_path, written)).out
+        assert (", exact, 20,000 states, " in out) is is_small
+
+
+@pytest.mark.parametrize("steps", [0, 500])
+def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command, tmp_path: Path, steps: int) -> None:
     """The value under uniform choices is 1, which is at least 0.9. But the property asks for the minimum, which is
     0."""
-    done = command("verify", write(tmp_path, starving(length=length)), "--expect", "p >= 0.9")
+    traces = ("--method", "adaptive")
+    done = command("verify", write(tmp_path, starving(steps=steps)), "--expect", "p >= 0.9", *traces)
     assert done.status == 1
     assert (
         "warning: this is the value under uniform choices, and the property asks for the minimum over all schedulers"
@@ -59,10 +111,10 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     )
     assert "schedulers range from 0 " in done.out
     assert "expected ≥ 0.9: NOT MET" in done.out
-    row = rows(command("verify", "model.jani", "--format", "json").out)["p"]
+    row = rows(command("verify", "model.jani", "--format", "json", *traces).out)["p"]
     assert row["probability"] == 1
     assert (row["minimum"]["value"], row["maximum"]["value"]) == (0, 1)
-    assert row["minimum"]["found"] == ("all states" if length == 50 else "sampled schedulers")
+    assert row["minimum"]["found"] == ("all states" if steps == 0 else "sampled schedulers")
     assert row["schedulers"]["agree"] is False
     assert "asks for the minimum" in row["warning"]
 
@@ -85,13 +137,15 @@ def test_the_side_that_is_asked_for_decides(command: Command, tmp_path: Path) ->
 def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin()), "--expect", "heads <= 0.4")
     assert done.status == 0
-    assert "all schedulers agree: there is only one choice in each of 3 states" in done.out
+    assert done.out.startswith("heads: = 0.3 for all schedulers, exact, 3 states, ")
     assert "expected ≤ 0.4: met\n" in done.out
     assert "warning" not in done.out
     row = rows(command("verify", "model.jani", "--format", "json").out)["heads"]
     assert row["schedulers"]["agree"] is True
     assert row["minimum"] == row["maximum"]
     assert "warning" not in row
+    traces = command("verify", "model.jani", "--method", "adaptive").out
+    assert "all schedulers agree: all 3 states were explored" in traces
 
 
 def hidden() -> Json:
@@ -156,16 +210,17 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
 
 
 def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
-    name = write(tmp_path, starving(length=6000))
+    name = write(tmp_path, starving(steps=500))
     done = command("verify", name, "--expect", "p >= 0.9")
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler 1, which lets `" in done.out
     row = rows(command("verify", name, "--expect", "p >= 0.9", "--format", "json").out)["p"]
     assert row["expectations"][0]["not_met"].startswith("under sampled scheduler 1, which lets `")
     few = write(tmp_path, starving(length=50), "few.jani")
-    done = command("verify", few, "--expect", "p >= 0.9")
+    done = command("verify", few, "--expect", "p >= 0.9", "--method", "adaptive")
     assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in done.out
-    exact = command("verify", few, "--expect", "p >= 0.9", "--exhaustive")
-    assert "  expected ≥ 0.9: NOT MET by the least value, which is 0\n" in exact.out
+    for options in ((), ("--exhaustive",)):
+        exact = command("verify", few, "--expect", "p >= 0.9", *options)
+        assert "  expected ≥ 0.9: NOT MET by the least value, which is 0\n" in exact.out
     assert command("verify", few, "--expect", "p <= 0.1", "--exhaustive").status == 0
     searched = command("verify", few, "--expect", "p >= 0.9", "--scheduler", "lss", "--epsilon", "0.1")
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler " in searched.out
@@ -192,7 +247,8 @@ def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tm
 )
 def test_verdicts_that_are_not_certain(command: Command, tmp_path: Path, expected: str, said: str) -> None:
     """The estimate is 0.302371 in [0.292749, 0.312123]."""
-    out = command("verify", write(tmp_path, coin()), "--scheduler", "uniform", "--expect", expected).out
+    options = ("--scheduler", "uniform", "--method", "adaptive")
+    out = command("verify", write(tmp_path, coin()), *options, "--expect", expected).out
     (line,) = (line for line in out.splitlines() if line.startswith("  expected "))
     assert line.partition(": ")[2] == said
 
@@ -247,7 +303,8 @@ def test_uniform_choices_that_are_requested(command: Command, tmp_path: Path, wa
     done = command("verify", name, "--expect", "p >= 0.9", *options)
     assert done.status == 0
     assert "expected ≥ 0.9: met" in done.out
-    assert "under uniform choices" not in done.out
+    assert done.out.startswith("p: = 1 under uniform choices, exact, 100 states, ")
+    assert "met under uniform choices" not in done.out
     assert "warning" not in done.out
     row = rows(command("verify", name, "--format", "json", *options).out)["p"]
     assert row["schedulers"] == {"wanted": "uniform"}
@@ -347,7 +404,7 @@ def test_a_property_that_cannot_be_answered_does_not_stop_the_others(command: Co
     text = command("verify", name)
     assert "nested: not answered: model.jani:" in text.out
     assert "supported are `Pmin` and `Pmax` of F, G, X, U, W and R" in text.out
-    assert "heads: 0.3" in text.out
+    assert "heads: = 0.3 " in text.out
     suites = ET.fromstring(command("verify", name, "--format", "junit").out)
     cases = {case.get("name"): case for case in suites.iter("testcase")}
     (error,) = cases["nested"].iter("error")
@@ -432,7 +489,10 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
     assert "it is one of a confidence sequence" in done.out
     row = rows(command("verify", "model.jani", "--method", "sprt", "--expect", "heads >= 0.5", "--format", "json").out)
     assert row["heads"]["interval"] == "confidence sequence"
-    assert rows(command("verify", "model.jani", "--format", "json").out)["heads"]["interval"] == "Clopper-Pearson"
+    assert (
+        rows(command("verify", "model.jani", "--epsilon", 0.02, "--format", "json").out)["heads"]["interval"]
+        == "Clopper-Pearson"
+    )
 
 
 # ------------------------------------------------------------------ numbers that make no sense

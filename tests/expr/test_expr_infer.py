@@ -207,7 +207,7 @@ PROBLEMS = [
 def test_problems(marked: str, expected: str) -> None:
     text = re.sub("[«»]", "", marked)
     problems = infer(tree_of(text), SCOPE.get)[1]
-    assert [told(problem) for problem in problems] == [expected]
+    assert [description(problem) for problem in problems] == [expected]
     start, end = marked.index("«"), marked.index("»") - 1
     assert problems[0].span == (start, end)
 
@@ -231,7 +231,7 @@ def test_several_problems(text: str, expected: list[str]) -> None:
     assert [f"{type(p).__name__} {text[p.span.start : p.span.end]}" for p in problems] == expected
 
 
-def told(problem: Problem) -> str:
+def description(problem: Problem) -> str:
     values = {field.name: getattr(problem, field.name) for field in fields(problem) if field.name != "span"}
     shown = (f"{k}={v!r}" if isinstance(v, (str, bool, int)) else f"{k}={v}" for k, v in values.items())
     return f"{type(problem).__name__}({' '.join(shown)})"

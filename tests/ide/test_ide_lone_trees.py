@@ -53,7 +53,7 @@ def offered(text: str, mark: str = "‸") -> dict[str, str]:
     return {item.label: item.detail for item in completions.items} if completions else {}
 
 
-def told(text: str, piece: str) -> str:
+def hover_text(text: str, piece: str) -> str:
     """The hover text at a caret `|` in a piece of a text."""
     before, _, after = piece.partition("|")
     clean = text.replace("‸", "").replace('"|"', '""')
@@ -95,14 +95,14 @@ def test_documentation_of_an_item() -> None:
 
 
 def test_hover_shows_ports_and_defaults() -> None:
-    assert "How hard, in N." in told(MODELS, 'for|ce="3"')
-    assert "`5` if not set" in told(MODELS, 'for|ce="3"')
-    assert "in force : int = 5" in told(MODELS, '<Gra|sp force="3"')
-    assert "Plans a path to a pose." in told(NAV2, "<Compute|PathToPose")
-    assert "*Nav2*" in told(NAV2, "<Compute|PathToPose")
-    assert "must be set" in told(NAV2, 'go|al="{goal}"')
-    assert "10.0" in told(NAV2, 'h|z="1.0"')
-    assert "translated" not in told(MODELS, "<Pre|condition")
+    assert "How hard, in N." in hover_text(MODELS, 'for|ce="3"')
+    assert "`5` if not set" in hover_text(MODELS, 'for|ce="3"')
+    assert "in force : int = 5" in hover_text(MODELS, '<Gra|sp force="3"')
+    assert "Plans a path to a pose." in hover_text(NAV2, "<Compute|PathToPose")
+    assert "*Nav2*" in hover_text(NAV2, "<Compute|PathToPose")
+    assert "must be set" in hover_text(NAV2, 'go|al="{goal}"')
+    assert "10.0" in hover_text(NAV2, 'h|z="1.0"')
+    assert "translated" not in hover_text(MODELS, "<Pre|condition")
 
 
 MAIN = """<root BTCPP_format="4" main_tree_to_execute="Main">

@@ -30,7 +30,7 @@ OURS = ("https://", "http://")
 EVIL = '<img src="x" onerror="alert(1)"> <!-- --> <a@b.c> ![p](x.png) [l](x) [r]: x `<b>` \\`<i>` &lt;b&gt; ```'
 
 
-def live(text: str) -> list[str]:
+def active_markup(text: str) -> list[str]:
     """The tags, pictures and links that a Markdown parser finds."""
     active = []
     for token in COMMONMARK.parse(text):
@@ -41,8 +41,8 @@ def live(text: str) -> list[str]:
 
 
 def test_the_reader_finds_them() -> None:
-    assert {token.partition(":")[0] for token in live(EVIL)} == {"html_inline", "image", "link_open"}
-    assert live("<div>\n\ntext")
+    assert {token.partition(":")[0] for token in active_markup(EVIL)} == {"html_inline", "image", "link_open"}
+    assert active_markup("<div>\n\ntext")
 
 
 FRAGMENTS = (
@@ -68,8 +68,8 @@ anything = st.lists(st.sampled_from(FRAGMENTS), max_size=12).map("".join)
 def test_pieces(first: str, second: str, third: str) -> None:
     """In any combination of the pieces."""
     made = paragraphs(lines(prose(first), name(second), file(third)), lines(names([first, third]), prose(second)))
-    assert live(made) == []
-    assert live(paragraphs(prose(first), code(second), prose(third))) == []
+    assert active_markup(made) == []
+    assert active_markup(paragraphs(prose(first), code(second), prose(third))) == []
 
 
 PROSE = [
@@ -143,7 +143,7 @@ def test_texts_of_hostile_models_are_escaped(model: str, pattern: str, suffix: s
     assert len(rendered) > 20
     for text in rendered:
         # Links of our own lead to the documents of the languages.
-        assert [tag for tag in live(text) if not any(ours in tag for ours in OURS)] == [], text
+        assert [tag for tag in active_markup(text) if not any(ours in tag for ours in OURS)] == [], text
 
 
 def test_analysis_of_hostile_models_is_one() -> None:

@@ -206,7 +206,7 @@ UNMET = [
 ]
 
 
-@pytest.mark.parametrize(("simple", "value", "wanted"), UNMET)
+@pytest.mark.parametrize(("simple", "value", "expected"), UNMET)
 def test_unmet(simple: SimpleType, value: str, expected: str) -> None:
     assert unmet(simple, value) == expected
 

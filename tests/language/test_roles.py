@@ -8,7 +8,7 @@ from lxml import etree
 from roaml.language import SYSTEM
 from roaml.language.resources import schema_path
 from roaml.model.system_file import SystemSection
-from roaml.roles import ELSEWHERE, Direction, NodeKind, ProtocolPart, RoleValue, SymbolKind, ValueRole
+from roaml.roles import ELSEWHERE, Direction, NodeKind, ProtocolPart, RoleValue, SymbolKind, ValuePart, ValueRole
 
 SCHEMAS = ("ascxml.xsd", "scxml.xsd", "roaml.xsd", "structs.xsd", "behaviortree.xsd", "properties.xsd")
 ROLES = "{urn:roaml:roles}"
@@ -42,6 +42,7 @@ def test_ports_nodes_and_values() -> None:
     assert written("port@direction") == values(*Direction) - values(Direction.INOUT)
     assert written("node@kind") == values(*NodeKind)
     assert written("value@is") == values(*ValueRole)
+    assert written("binds@only") == values(ValuePart.COND, ValuePart.BODY)
 
 
 def test_sections_of_system_files() -> None:

@@ -234,19 +234,19 @@ class RawServer:
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
 
-    def send(self, data: bytes) -> None:
+    def send_bytes(self, data: bytes) -> None:
         assert self._process.stdin is not None
         self._process.stdin.write(data)
 
-    def tell(self, method: str, params: object = None, id_: int | None = None) -> None:
+    def send(self, method: str, params: object = None, id_: int | None = None) -> None:
         message: dict[str, object] = {"jsonrpc": "2.0", "method": method}
         if params is not None:
             message["params"] = params
         if id_ is not None:
             message["id"] = id_
-        self.send(frame(message))
+        self.send_bytes(frame(message))
 
-    async def said(self, text: str) -> str:
+    async def read_log(self, text: str) -> str:
         """Wait until the log contains a text; return the log since the last call."""
         assert self._process.stdout is not None
         data = b""

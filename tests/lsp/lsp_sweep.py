@@ -263,7 +263,7 @@ class Sweep:
         self._next_id += len(sent)
         self.asked += len(sent)
         for number, (name, _, params) in enumerate(sent):
-            server.tell(name, params, first + number)
+            server.send(name, params, first + number)
         expected = [is_answer(first + number) for number in range(len(sent))]
         return [message for _, message in server.wait_for_all(*expected)] if expected else []
 

@@ -59,15 +59,15 @@ async def test_mistakes_and_their_mending(capsys: pytest.CaptureFixture[str]) ->
             folder, base = mistake.folder, mistake.base.parent
             client.folders(added=[folder])
             assert await by_editor(client, folder) == by_command_line(folder, capsys), mistake.id
-            mended = mend(client, folder, mistake.base)
-            good = {r for r in by_command_line(base, capsys) if r[0] in mended}
-            assert {r for r in await by_editor(client, folder) if r[0] in mended} == good, mistake.id
-            for name in mended:
+            restored = restore(client, folder, mistake.base)
+            good = {r for r in by_command_line(base, capsys) if r[0] in restored}
+            assert {r for r in await by_editor(client, folder) if r[0] in restored} == good, mistake.id
+            for name in restored:
                 client.close(folder / name)
             client.folders(removed=[folder])
 
 
-def mend(client: Client, folder: Path, base: Path) -> set[str]:
+def restore(client: Client, folder: Path, base: Path) -> set[str]:
     """Replace each file of a system with an error by the correct one, as an edit; return the names of the files."""
     names = set()
     for good in sorted(base.parent.iterdir()):

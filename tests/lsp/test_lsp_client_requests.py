@@ -28,16 +28,16 @@ async def asked(folder: Path, method: str, *files: str, **more: object) -> list[
     """The answers for some files, sent as bytes, because the library of the client would convert them to objects."""
     server = await start_raw()
     folders = [{"uri": folder.as_uri(), "name": "robot"}]
-    server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
-    server.tell("initialized", {})
+    server.send("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
+    server.send("initialized", {})
     for number, name in enumerate(files):
-        server.tell(method, {"textDocument": {"uri": (folder / name).as_uri()}, **more}, 10 + number)
+        server.send(method, {"textDocument": {"uri": (folder / name).as_uri()}, **more}, 10 + number)
     return await answers(server, len(files))
 
 
 async def answers(server: RawServer, count: int) -> list[Any]:
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, said, _ = await server.end()
     by_id = {message["id"]: message for message in said if "id" in message and "method" not in message}
     return [by_id[10 + number]["result"] for number in range(count)]

@@ -203,7 +203,7 @@ async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
         counted = next(d for d in client.published[main.as_uri()].diagnostics if d.code == "input-count")
         assert counted.data == {"kind": "TREE"}
 
-        async def mended_by(sent: types.Diagnostic) -> list[types.Diagnostic]:
+        async def fixed_by(sent: types.Diagnostic) -> list[types.Diagnostic]:
             actions = await client.fixes(main, counted.range, [sent])
             [action] = [action for action in actions if action.title == "List `tree.xml`"]
             resolved = await client.code_action_resolve_async(action)
@@ -211,6 +211,6 @@ async def test_facts_travel_with_diagnostics(tmp_path: Path) -> None:
             return list(resolved.diagnostics or ())
 
         translated = attrs.evolve(counted, message="in another language")
-        assert await mended_by(translated) == [translated]
+        assert await fixed_by(translated) == [translated]
         for data in (None, {"kind": "NONSENSE"}, {"kind": ["TREE"]}, [1, 2], "TREE", {"kind": "TREE", "more": 1}):
-            assert await mended_by(attrs.evolve(translated, data=data)) == [counted]
+            assert await fixed_by(attrs.evolve(translated, data=data)) == [counted]

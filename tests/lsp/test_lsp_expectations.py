@@ -153,7 +153,7 @@ async def test_an_expectation_is_set_in_the_configuration(tmp_path: Path) -> Non
     main, file, configuration = tmp_path / "main.xml", tmp_path / "properties.jani", tmp_path / "as2fm.toml"
     async with connect(tmp_path, options=COMMANDS) as client:
         client.open(file, language="jani")
-        await verify(client, main, ["ticks"], {"silent": True})
+        await verify(client, main, ["ticks"], {"silent": True, "seed": 0})
         known = await suggested(client, main, "ticks")
         assert (known["file"], known["suggestions"][0]) == ("as2fm.toml", ">= 1")
         answer = await set_expectation(client, main, "ticks", known["suggestions"][0])
@@ -175,6 +175,29 @@ async def test_an_expectation_is_set_in_the_configuration(tmp_path: Path) -> Non
         client.changed(configuration)
         problem = (await set_expectation(client, main, "ticks", "< 0.5"))["problem"]
         assert problem == 'cannot change as2fm.toml; add `ticks = "< 0.5"` to `verify.expect`'
+
+
+async def test_exact_values_are_shown_and_judged_again(tmp_path: Path) -> None:
+    """The system is small, so its value is exact. The traces remain as examples."""
+    clock.write(tmp_path)
+    main, file, configuration = tmp_path / "main.xml", tmp_path / "properties.jani", tmp_path / "as2fm.toml"
+    async with connect(tmp_path, options=COMMANDS) as client:
+        client.open(file, language="jani")
+        (row,) = (await verify(client, main, ["ticks"], {"silent": True}))["results"]
+        assert (row["short"], row["method"], row["probability"], row["exact"]["least"]) == ("1, exact", "exact", 1, 1)
+        ((hint, _),) = await hints(client, file)
+        assert hint == "= 1, exact, no expectation set"
+        assert (await suggested(client, main, "ticks"))["suggestions"] == [">= 1"]
+        assert "Show witness" in await lenses(client, file)
+        for expected, judged in ((">= 1", "✓ 1, exact"), ("< 0.5", "✗ 1, exact, not < 0.5")):
+            configuration.write_text(f'[verify.expect]\nticks = "{expected}"\n', encoding="utf-8")
+            client.changed(configuration)
+            ((hint, _),) = await hints(client, file)
+            assert hint == judged
+    settings: dict[str, object] = {"verify": {"exactIfSmall": False}}
+    async with connect(tmp_path, options={"settings": settings}) as client:
+        (row,) = (await verify(client, main, ["ticks"], {"silent": True}))["results"]
+        assert row["short"].startswith("1 [0.9")
 
 
 async def test_the_editors_settings_judge_as_well(tmp_path: Path) -> None:

@@ -15,10 +15,10 @@ INITIALIZE: dict[str, object] = {"processId": None, "rootUri": None, "capabiliti
 
 async def test_shutdown_and_exit() -> None:
     server = await start_raw(command=STARTED)
-    server.tell("initialize", INITIALIZE, 1)
-    server.tell("initialized", {})
-    server.tell("shutdown", id_=2)
-    server.tell("exit")
+    server.send("initialize", INITIALIZE, 1)
+    server.send("initialized", {})
+    server.send("shutdown", id_=2)
+    server.send("exit")
     status, messages, log = await server.end()
     assert (status, log) == (0, "")
     assert {"jsonrpc": "2.0", "id": 2, "result": None} in messages
@@ -26,8 +26,8 @@ async def test_shutdown_and_exit() -> None:
 
 async def test_exit_without_shutdown() -> None:
     server = await start_raw("--stdio", command=STARTED)
-    server.tell("initialize", INITIALIZE, 1)
-    server.tell("exit")
+    server.send("initialize", INITIALIZE, 1)
+    server.send("exit")
     status, messages, log = await server.end()
     assert (status, log) == (1, "")
     assert [message.get("id") for message in messages] == [1]
@@ -45,7 +45,7 @@ async def test_exit_without_shutdown() -> None:
 async def test_the_input_ends(data: bytes) -> None:
     """If the input ends, as after a crash of the editor, the process ends."""
     server = await start_raw(command=STARTED)
-    server.send(data)
+    server.send_bytes(data)
     status, _, _ = await server.end()
     assert status == 1
 
@@ -94,16 +94,16 @@ GARBAGE = [
 async def test_invalid_messages_do_not_end_the_server() -> None:
     """After each invalid piece, the server still answers as before."""
     server = await start_raw()
-    server.tell("initialize", INITIALIZE, 1)
-    server.tell("initialized", {})
+    server.send("initialize", INITIALIZE, 1)
+    server.send("initialized", {})
     opened = {"uri": "untitled:1", "languageId": "ascxml", "version": 1, "text": "<ascxml"}
-    server.tell("textDocument/didOpen", {"textDocument": opened})
-    server.tell("textDocument/codeAction", request("untitled:1"), 99)
+    server.send("textDocument/didOpen", {"textDocument": opened})
+    server.send("textDocument/codeAction", request("untitled:1"), 99)
     for number, garbage in enumerate(GARBAGE):
-        server.send(garbage)
-        server.tell("textDocument/codeAction", request("untitled:1"), 100 + number)
-    server.tell("shutdown", id_=2)
-    server.tell("exit")
+        server.send_bytes(garbage)
+        server.send("textDocument/codeAction", request("untitled:1"), 100 + number)
+    server.send("shutdown", id_=2)
+    server.send("exit")
     status, messages, _ = await server.end()
     assert status == 0
     answers = {message["id"]: message for message in messages if "id" in message and "method" not in message}
@@ -120,9 +120,9 @@ def request(uri: str) -> dict[str, object]:
 @pytest.mark.parametrize("options", [{"settings": [1], "diagnostics": 5}, [7]], ids=["object", "list"])
 async def test_odd_initialization_options(options: object) -> None:
     server = await start_raw()
-    server.tell("initialize", {**INITIALIZE, "initializationOptions": options}, 1)
-    server.tell("shutdown", id_=2)
-    server.tell("exit")
+    server.send("initialize", {**INITIALIZE, "initializationOptions": options}, 1)
+    server.send("shutdown", id_=2)
+    server.send("exit")
     status, messages, _ = await server.end()
     assert status == 0
     assert "error" not in messages[0]
@@ -130,9 +130,9 @@ async def test_odd_initialization_options(options: object) -> None:
 
 async def test_capabilities() -> None:
     server = await start_raw()
-    server.tell("initialize", {**INITIALIZE, "capabilities": {"textDocument": {"diagnostic": {}}}}, 1)
-    server.tell("shutdown", id_=2)
-    server.tell("exit")
+    server.send("initialize", {**INITIALIZE, "capabilities": {"textDocument": {"diagnostic": {}}}}, 1)
+    server.send("shutdown", id_=2)
+    server.send("exit")
     _, messages, _ = await server.end()
     result = messages[0]["result"]
     assert isinstance(result, dict)

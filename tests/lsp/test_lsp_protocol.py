@@ -34,8 +34,8 @@ def framed(body: bytes) -> bytes:
 
 async def finish(server: RawServer) -> tuple[int, dict[object, dict[str, Any]], str]:
     """Shut the server down; return its exit status, its answers by their ids, and its log."""
-    server.tell("shutdown", id_=1000)
-    server.tell("exit")
+    server.send("shutdown", id_=1000)
+    server.send("exit")
     status, messages, log = await server.end()
     return status, {message["id"]: message for message in messages if "method" not in message}, log
 
@@ -50,12 +50,12 @@ def code(answers: dict[object, dict[str, Any]], id_: object) -> object:
 async def test_requests_before_initialize() -> None:
     """Requests get the error that the protocol defines; notifications are ignored."""
     server = await start_raw()
-    server.tell("textDocument/hover", {"textDocument": 5}, 10)
-    server.tell("no/such", {}, 11)
-    server.tell("shutdown", None, 12)
-    server.tell("textDocument/didOpen", {"wrong": 1})
-    server.tell("initialized", {})
-    server.tell("initialize", INITIALIZE, 13)
+    server.send("textDocument/hover", {"textDocument": 5}, 10)
+    server.send("no/such", {}, 11)
+    server.send("shutdown", None, 12)
+    server.send("textDocument/didOpen", {"wrong": 1})
+    server.send("initialized", {})
+    server.send("initialize", INITIALIZE, 13)
     status, answers, log = await finish(server)
     assert [code(answers, id_) for id_ in (10, 11, 12, 13)] == [NOT_INITIALIZED] * 3 + [None]
     assert (status, log) == (0, "")
@@ -63,19 +63,19 @@ async def test_requests_before_initialize() -> None:
 
 async def test_exit_before_initialize() -> None:
     server = await start_raw()
-    server.tell("exit")
+    server.send("exit")
     assert (await server.end())[0] == 1
 
 
 async def test_a_second_initialize() -> None:
     """It is rejected and has no effect."""
     server = await start_raw()
-    server.tell("initialize", INITIALIZE, 10)
+    server.send("initialize", INITIALIZE, 10)
     encodings = {"general": {"positionEncodings": ["utf-8"]}}
-    server.tell("initialize", {**INITIALIZE, "capabilities": encodings}, 11)
+    server.send("initialize", {**INITIALIZE, "capabilities": encodings}, 11)
     document = {"uri": "untitled:1", "languageId": "ascxml", "version": 1, "text": "<!--é--><ascxml"}
-    server.tell("textDocument/didOpen", {"textDocument": document})
-    server.tell("textDocument/documentSymbol", {"textDocument": {"uri": "untitled:1"}}, 12)
+    server.send("textDocument/didOpen", {"textDocument": document})
+    server.send("textDocument/documentSymbol", {"textDocument": {"uri": "untitled:1"}}, 12)
     _, answers, _ = await finish(server)
     assert [code(answers, id_) for id_ in (10, 11, 12)] == [None, INVALID_REQUEST, None]
     assert answers[12]["result"][0]["location"]["range"]["start"]["character"] == 8
@@ -87,8 +87,8 @@ async def test_a_second_initialize() -> None:
 async def test_initialize_with_an_invalid_uri(folders: dict[str, object]) -> None:
     """It is rejected; a valid `initialize` is possible afterwards."""
     server = await start_raw()
-    server.tell("initialize", {**INITIALIZE, **folders}, 10)
-    server.tell("initialize", INITIALIZE, 11)
+    server.send("initialize", {**INITIALIZE, **folders}, 10)
+    server.send("initialize", INITIALIZE, 11)
     _, answers, log = await finish(server)
     assert [code(answers, id_) for id_ in (10, 11)] == [INVALID_PARAMS, None]
     assert log == ""
@@ -96,11 +96,11 @@ async def test_initialize_with_an_invalid_uri(folders: dict[str, object]) -> Non
 
 async def test_requests_for_an_empty_document() -> None:
     server = await start_raw()
-    server.tell("initialize", INITIALIZE, 10)
-    server.tell("textDocument/didOpen", {"textDocument": {"uri": "untitled:1", "languageId": "ascxml", "version": 1,
+    server.send("initialize", INITIALIZE, 10)
+    server.send("textDocument/didOpen", {"textDocument": {"uri": "untitled:1", "languageId": "ascxml", "version": 1,
         "text": ""}})  # fmt: skip
     place = {"textDocument": {"uri": "untitled:1"}, "positions": [{"line": 0, "character": 0}]}
-    server.tell("textDocument/selectionRange", place, 11)
+    server.send("textDocument/selectionRange", place, 11)
     _, answers, _ = await finish(server)
     nowhere = {"line": 0, "character": 0}
     assert answers[11]["result"] == [{"range": {"start": nowhere, "end": nowhere}}]
@@ -109,13 +109,13 @@ async def test_requests_for_an_empty_document() -> None:
 async def test_after_shutdown() -> None:
     """Requests are rejected and notifications ignored, except `exit`."""
     server = await start_raw()
-    server.tell("initialize", INITIALIZE, 10)
-    server.tell("shutdown", None, 11)
-    server.tell("textDocument/hover", {}, 12)
-    server.tell("shutdown", None, 13)
-    server.tell("initialize", INITIALIZE, 14)
-    server.tell("textDocument/didOpen", {"wrong": 1})
-    server.tell("exit")
+    server.send("initialize", INITIALIZE, 10)
+    server.send("shutdown", None, 11)
+    server.send("textDocument/hover", {}, 12)
+    server.send("shutdown", None, 13)
+    server.send("initialize", INITIALIZE, 14)
+    server.send("textDocument/didOpen", {"wrong": 1})
+    server.send("exit")
     status, messages, log = await server.end()
     assert (status, log) == (0, "")
     answers = {message["id"]: message for message in messages}
@@ -161,13 +161,13 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
 @pytest.mark.parametrize(("data", "id_", "expected"), BROKEN, ids=[str(data[:60]) for data, *_ in BROKEN])
 def test_invalid_messages(data: bytes, id_: object, expected: int | None) -> None:
     """They are answered as JSON-RPC defines, and the next message is handled as usual."""
-    answers = said(data + frame({"jsonrpc": "2.0", "id": 99, "method": "as2fm/properties", "params": {}}))
+    answers = responses_to(data + frame({"jsonrpc": "2.0", "id": 99, "method": "as2fm/properties", "params": {}}))
     assert answers.pop() == {"jsonrpc": "2.0", "id": 99, "result": []}
     assert [(answer["id"], answer["error"]["code"]) for answer in answers] == ([] if id_ == "-" else [(id_, expected)])
     assert all("\n" not in answer["error"]["message"] for answer in answers)
 
 
-def said(data: bytes) -> list[dict[str, Any]]:
+def responses_to(data: bytes) -> list[dict[str, Any]]:
     """The output of a server in this process for some bytes, after it was initialized."""
     source = BytesIO(frame({"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": INITIALIZE}) + data)
     target = _Kept()
@@ -217,18 +217,18 @@ async def test_an_odd_uri(tmp_path: Path, uri: str) -> None:
     """The document works with its own features, and other documents work as before."""
     main = clock.write(tmp_path)
     server = await start_raw()
-    server.tell("initialize", {**INITIALIZE, "workspaceFolders": [{"uri": tmp_path.as_uri(), "name": "robot"}]}, 10)
+    server.send("initialize", {**INITIALIZE, "workspaceFolders": [{"uri": tmp_path.as_uri(), "name": "robot"}]}, 10)
     document = {"uri": uri, "languageId": "ascxml", "version": 1, "text": clock.CLOCK}
-    server.tell("textDocument/didOpen", {"textDocument": document})
+    server.send("textDocument/didOpen", {"textDocument": document})
     of_it = {"textDocument": {"uri": uri}}
-    server.tell("workspace/symbol", {"query": "count"}, 11)
-    server.tell("textDocument/documentSymbol", of_it, 12)
-    server.tell("textDocument/codeLens", of_it, 13)
-    server.tell("as2fm/about", of_it, 14)
-    server.tell("workspace/executeCommand", {"command": "as2fm.translateToJani", "arguments": [uri]}, 15)
-    server.tell("as2fm/migrate", of_it, 16)
-    server.tell("textDocument/didClose", of_it)
-    server.tell("workspace/symbol", {"query": "count"}, 17)
+    server.send("workspace/symbol", {"query": "count"}, 11)
+    server.send("textDocument/documentSymbol", of_it, 12)
+    server.send("textDocument/codeLens", of_it, 13)
+    server.send("as2fm/about", of_it, 14)
+    server.send("workspace/executeCommand", {"command": "as2fm.translateToJani", "arguments": [uri]}, 15)
+    server.send("as2fm/migrate", of_it, 16)
+    server.send("textDocument/didClose", of_it)
+    server.send("workspace/symbol", {"query": "count"}, 17)
     status, answers, log = await finish(server)
     assert (status, log) == (0, "")
     assert [code(answers, id_) for id_ in (*range(10, 18), 1000)] == [None] * 9
@@ -244,8 +244,8 @@ async def test_it_ends_with_the_process_of_its_client() -> None:
     """The server ends although its input stays open, as when another process has inherited it."""
     other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     server = await start_raw(command=STARTED)
-    server.tell("initialize", {**INITIALIZE, "processId": other.pid}, 1)
-    await server.said("capabilities")
+    server.send("initialize", {**INITIALIZE, "processId": other.pid}, 1)
+    await server.read_log("capabilities")
     other.kill()  # nobody asks for its status: it stays as a zombie
     assert await server.ended() == 1
     other.wait()

@@ -27,17 +27,17 @@ CANCELLED, MODIFIED = -32800, -32801
 async def answers(*messages: tuple[str, object, int | None], **capabilities: object) -> dict[object, dict[str, object]]:
     """The answers to messages that are sent at once, after a request that takes long (with the id 9)."""
     server = await start_raw()
-    server.tell(
+    server.send(
         "initialize", {"processId": None, "capabilities": {"textDocument": {"diagnostic": {}}, **capabilities}}, 1
     )
-    server.tell("initialized", {})
+    server.send("initialized", {})
     document = {"uri": "untitled:long", "languageId": "ascxml", "version": 1, "text": LONG}
-    server.tell("textDocument/didOpen", {"textDocument": document})
-    server.tell("textDocument/diagnostic", {"textDocument": {"uri": "untitled:long"}}, 9)
+    server.send("textDocument/didOpen", {"textDocument": document})
+    server.send("textDocument/diagnostic", {"textDocument": {"uri": "untitled:long"}}, 9)
     for method, params, id_ in messages:
-        server.tell(method, params, id_)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+        server.send(method, params, id_)
+    server.send("shutdown", None, 2)
+    server.send("exit")
     status, messages, log = await server.end()
     assert (status, log) == (0, "")
     return {message["id"]: message for message in messages if "id" in message and "method" not in message}
@@ -101,11 +101,11 @@ async def test_a_cancelled_translation_writes_nothing(tmp_path: Path) -> None:
 
 async def test_invalid_requests_are_answered() -> None:
     server = await start_raw()
-    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
-    server.tell("textDocument/hover", {"textDocument": 5}, 10)
-    server.tell("textDocument/hover", None, 11)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("initialize", {"processId": None, "capabilities": {}}, 1)
+    server.send("textDocument/hover", {"textDocument": 5}, 10)
+    server.send("textDocument/hover", None, 11)
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, messages, _ = await server.end()
     by_id = {message["id"]: message for message in messages}
     assert [code(by_id[id_]) is not None for id_ in (10, 11, 2)] == [True, True, False]
@@ -115,12 +115,12 @@ async def test_a_refusal_is_not_an_internal_error(tmp_path: Path) -> None:
     """A rejected request is not an internal error, so the log stays empty."""
     main = clock.write(tmp_path)
     server = await start_raw()
-    server.tell("initialize", {"processId": None, "capabilities": {}}, 1)
+    server.send("initialize", {"processId": None, "capabilities": {}}, 1)
     params = {"textDocument": {"uri": main.as_uri()}, "position": {"line": 0, "character": 0}, "newName": "x"}
-    server.tell("textDocument/rename", params, 10)
-    server.tell("no/such", {}, 11)
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("textDocument/rename", params, 10)
+    server.send("no/such", {}, 11)
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, messages, log = await server.end()
     assert [code(message) for message in messages] == [None, -32803, -32601, None]
     assert log == ""
@@ -257,7 +257,7 @@ async def test_position_encodings(tmp_path: Path, encoding: str) -> None:
 @pytest.mark.parametrize("offers", [["utf-7", "utf-8", "utf-16"], ["utf-7"]], ids=["some", "none"])
 async def test_encodings_that_we_do_not_know(offers: list[str]) -> None:
     server = await start_raw()
-    server.send(
+    server.send_bytes(
         frame(
             {
                 "jsonrpc": "2.0",
@@ -267,8 +267,8 @@ async def test_encodings_that_we_do_not_know(offers: list[str]) -> None:
             }
         )
     )
-    server.tell("shutdown", None, 2)
-    server.tell("exit")
+    server.send("shutdown", None, 2)
+    server.send("exit")
     _, (answer, _), _ = await server.end()
     expected = "utf-8" if "utf-8" in offers else "utf-16"
     assert answer["result"]["capabilities"]["positionEncoding"] == expected  # type: ignore[index]

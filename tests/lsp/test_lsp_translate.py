@@ -20,7 +20,7 @@ async def translate(client: Client, *arguments: str) -> object:
     return await client.workspace_execute_command_async(types.ExecuteCommandParams(COMMAND, list(arguments)))
 
 
-def told(client: Client) -> list[tuple[types.MessageType, str]]:
+def shown_messages(client: Client) -> list[tuple[types.MessageType, str]]:
     return [(message.type, message.message) for message in client.messages]
 
 
@@ -33,7 +33,7 @@ async def test_same_as_the_command_line(tmp_path: Path) -> None:
         assert written.read_bytes() == (tmp_path / "expected.jani").read_bytes()
         size = "4 automata, 14 edges, 5 global variables, 1 property"
         assert answer == {"uri": written.as_uri(), "summary": size}
-        assert told(client) == [(types.MessageType.Info, f"Wrote main.jani: {size}.")]
+        assert shown_messages(client) == [(types.MessageType.Info, f"Wrote main.jani: {size}.")]
 
 
 async def test_an_omitted_property_is_reported(tmp_path: Path) -> None:
@@ -44,7 +44,7 @@ async def test_an_omitted_property_is_reported(tmp_path: Path) -> None:
     name = written["properties"][0]["name"]
     async with connect(tmp_path) as client:
         await translate(client, (tmp_path / "main.xml").as_uri())
-        (kind, text), _ = told(client)
+        (kind, text), _ = shown_messages(client)
     assert kind is types.MessageType.Warning
     assert text.startswith(f"the property `{name}` is left out of the JANI file: bounds on time ")
     assert text.endswith(" [ignored-bounds]")
@@ -77,7 +77,7 @@ async def test_errors_are_reported_and_nothing_is_written(tmp_path: Path) -> Non
         client.open(tmp_path / "clock.ascxml", clock.CLOCK)
         assert await translate(client, main.as_uri(), (tmp_path / "properties.jani").as_uri()) is None
         assert await translate(client, main.as_uri(), (tmp_path / "no/folder/x.jani").as_uri()) is None
-        texts = [text for kind, text in told(client) if kind is types.MessageType.Error]
+        texts = [text for kind, text in shown_messages(client) if kind is types.MessageType.Error]
     expected = (
         "main.xml has 1 error and was not translated.",
         "clock.ascxml: not a system file",
@@ -124,8 +124,8 @@ async def test_actions(tmp_path: Path) -> None:
     main = (tmp_path / "main.xml").as_uri()
     folders = [{"uri": tmp_path.as_uri(), "name": "robot"}]
     server = await start_raw()
-    server.tell("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
-    server.tell("initialized", {})
+    server.send("initialize", {"processId": None, "capabilities": {}, "workspaceFolders": folders}, 1)
+    server.send("initialized", {})
     asked = [(name, kind) for name in ("main.xml", "clock.ascxml") for kind in ("source", "quickfix")]
     start = {"line": 0, "character": 0}
     for number, (name, kind) in enumerate(asked):
@@ -134,9 +134,9 @@ async def test_actions(tmp_path: Path) -> None:
             "range": {"start": start, "end": start},
             "context": {"diagnostics": [], "only": [kind]},
         }
-        server.tell("textDocument/codeAction", params, 10 + number)
-    server.tell("shutdown", id_=2)
-    server.tell("exit")
+        server.send("textDocument/codeAction", params, 10 + number)
+    server.send("shutdown", id_=2)
+    server.send("exit")
     _, messages, _ = await server.end()
     answers = {message["id"]: message["result"] for message in messages if "result" in message}
 

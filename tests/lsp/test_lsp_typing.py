@@ -46,14 +46,14 @@ def test_typed(name: str) -> None:
             ids = range(10 + number * 10, 10 + number * 10 + len(asked))
             for id_, method in zip(ids, asked, strict=True):
                 params = {"textDocument": {"uri": uri}, "position": {"line": line, "character": column}}
-                server.tell(method, params, id_)
+                server.send(method, params, id_)
             for _, answer in server.wait_for_all(*map(is_answer, ids)):
                 assert "error" not in answer, (typed_text[-80:], answer["error"])
                 last[asked[answer["id"] - ids.start]] = answer["result"]
         assert typed_text == text
         typed = last["textDocument/diagnostic"]
         server.change(path, len(text) + 2, {"text": text})
-        server.tell("textDocument/diagnostic", {"textDocument": {"uri": uri}}, 1)
+        server.send("textDocument/diagnostic", {"textDocument": {"uri": uri}}, 1)
         whole = server.answer(1)[1]["result"]
     assert isinstance(typed, dict)
     assert typed["items"] == whole["items"] == []

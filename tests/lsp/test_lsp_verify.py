@@ -151,7 +151,7 @@ async def test_hints_can_be_left_out(tmp_path: Path) -> None:
     async with connect(tmp_path, options={"settings": {"inlayHints": {"results": False}}}) as client:
         await verify(client, main, ["ticks"], {"silent": True})
         assert await hints(client, properties) == []
-        assert any("Verify · 1 [" in title for title in await lenses(client, properties))
+        assert any("Verify · 1, exact" in title for title in await lenses(client, properties))
 
 
 async def test_the_client_is_asked_to_look_again(tmp_path: Path) -> None:

@@ -109,6 +109,18 @@ def test_trees_that_are_rejected(content: str, reason: str, tmp_path: Path, caps
     assert reason in refused(capsys, tree(tmp_path, content), "--mock", "*: 0.5")
 
 
+def test_models_of_nodes_of_nav2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A model of a node of Nav2, as Groot2 writes it into the tree, does not hide what the node does."""
+    content = "<RecoveryNode><RateController><Drive/></RateController><Wait wait_duration='1'/></RecoveryNode>"
+    models = """</BehaviorTree><TreeNodesModel>
+        <Control ID="RecoveryNode"><input_port name="number_of_retries">Number of retries</input_port></Control>
+        <Decorator ID="RateController"/><Action ID="Wait"><input_port name="wait_duration"/></Action>
+    </TreeNodesModel><BehaviorTree ID="Other"><AlwaysSuccess/>"""
+    measured = verified(capsys, tree(tmp_path, content + models), "--mock", "Drive: 0", "--mock", "Wait: 1")["tree"]
+    assert isinstance(measured, dict)
+    assert [row["value"] for row in measured["recoveries"]] == [1.0]
+
+
 def test_an_entry_of_the_host(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tree(tmp_path, "<ScriptCondition code='level &gt; 3'/>")
     for level, success in (("2", 0.0), ("4", 1.0)):
@@ -193,6 +205,17 @@ def test_a_trace_of_a_plugin_with_conditions(tmp_path: Path, capsys: pytest.Capt
     text = capsys.readouterr().out
     assert re.search(r"Mine \(bt_1001\) +is ticked in idle → failed: FAILURE", text)
     assert "_inner_" not in text
+
+
+def test_nodes_with_names_in_a_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nodes with children are left out while they only pass on ticks, whatever their names are and also in Nav2."""
+    content = '<RecoveryNode name="Try hard">\n<RateController>\n<Drive/></RateController><Wait/></RecoveryNode>'
+    arguments = ("--mock", "Drive: 0 in 300 ms", "--mock", "Wait: 0", "--max-traces", "50", "--explain")
+    assert run(["verify", tree(tmp_path, content), *arguments]) == 0
+    text = capsys.readouterr().out
+    assert "bt_1002_tick" not in text
+    assert re.search(r"Try hard \(bt_1000\) +returns FAILURE", text)
+    assert re.search(r"bt_1000 is Try hard \(\S*tree.xml:3\), bt_1001 is RateController \(\S*tree.xml:4\)", text)
 
 
 def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

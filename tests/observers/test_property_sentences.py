@@ -25,7 +25,7 @@ PORTS = """<ports>
 </ports>"""
 
 
-def said(inside: str, section: str = "guarantees") -> tuple[str, str]:
+def sentences_of(inside: str, section: str = "guarantees") -> tuple[str, str]:
     document = parse(f"<properties>{PORTS}<{section}>{inside}</{section}></properties>")
     file = build_property_file(document)
     assert file is not None
@@ -37,7 +37,7 @@ def of(pattern: str, events: str, scope: str = 'type="globally"', interval: str 
     conditions = [f"<event>{event}</event>" for event in events.split(" | ")]
     body = conditions[0] if len(conditions) == 1 else f"<events>{''.join(conditions)}</events>"
     time = f"<time_interval {interval}/>" if interval else ""
-    return said(f'<property id="p" pattern="{pattern}">{body}<scope {scope}/>{time}</property>')
+    return sentences_of(f'<property id="p" pattern="{pattern}">{body}<scope {scope}/>{time}</property>')
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_scopes(scope: str, expected: str) -> None:
     ],
 )  # fmt: skip
 def test_formulas(formula_: str, expected: str) -> None:
-    assert said(f'<property id="p" logic="pmtl" expr="{formula_}"/>')[0] == expected
+    assert sentences_of(f'<property id="p" logic="pmtl" expr="{formula_}"/>')[0] == expected
 
 
 @pytest.mark.parametrize(
@@ -139,15 +139,15 @@ def test_formulas(formula_: str, expected: str) -> None:
     ],
 )
 def test_incomplete_properties(inside: str, expected: str) -> None:
-    assert said(inside)[0] == expected
+    assert sentences_of(inside)[0] == expected
 
 
 def test_an_assumption_says_so() -> None:
     inside = '<property id="p" pattern="absence"><event>alarm</event><scope type="globally"/></property>'
-    assert said(inside, "assumes")[0] == "Assumed: a message is never published on `/alarm`."
+    assert sentences_of(inside, "assumes")[0] == "Assumed: a message is never published on `/alarm`."
 
 
 def test_the_expectation_is_part_of_the_sentence() -> None:
     body = '<event>alarm</event><scope type="globally"/>'
-    text, _ = said(f'<property id="p" pattern="absence" expect="&gt;= 0.9">{body}</property>')
+    text, _ = sentences_of(f'<property id="p" pattern="absence" expect="&gt;= 0.9">{body}</property>')
     assert text == "A message is never published on `/alarm`; the expected probability is `>= 0.9`."

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.explore import Explorer
@@ -14,28 +17,37 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import Options
-from roaml.smc.solve import solve
-from twin import plain_kernel
+from roaml.verification import small
+from roaml.verification.small import LIMITS, values_if_small
+from roaml.verification.target import target_of
+from roaml.verification.verifier import verifier_of
 
 GOAL = op("F", "done")
 
 
 def looked_at(written: Json, options: Options | None = None) -> Choices:
-    checker = ModelChecker(model(written))
-    options = options or Options(epsilon=0.03)
+    verifier = verifier_of(target_of(model(written)), None, options or Options(epsilon=0.03))
     with Pool() as pool:
-        answer = checker.answer(checker.compiled_properties[0], options, pool)
-        return checker.choices(checker.compiled_properties[0], answer, pool)
+        choices = verifier.verify(verifier.names[0], pool).choices
+    assert choices is not None
+    return choices
 
 
-def starving(length: int, chance: bool = False, operator: str = "Pmin") -> Json:
-    """A worker that is done after one step, and a machine that can continue for ever."""
+def starving(length: int, chance: bool = False, operator: str = "Pmin", steps: int = 0) -> Json:
+    """A worker that is done after `steps` + 1 steps, and a machine that can continue for ever."""
     goes_on = way("s", c=op("%", op("+", "c", 1), length))
     ways = [way("s", 0.5, c=op("%", op("+", "c", 1), length)), way("s", 0.5, c=0)] if chance else [goes_on]
     return document(
         automaton("busy", "s", [edge("s", *ways)]),
-        automaton("worker", "a b", [edge("a", way("b", done=True))]),
-        variables=[variable("c"), variable("done", "bool", False)],
+        automaton(
+            "worker",
+            "a b",
+            [
+                edge("a", way("b", done=True), guard=op("=", "w", steps)),
+                edge("a", way("a", w=op("+", "w", 1)), guard=op("<", "w", steps)),
+            ],
+        ),
+        variables=[variable("c"), variable("w"), variable("done", "bool", False)],
         properties={"p": probability(GOAL, operator)},
     )
 
@@ -53,7 +65,7 @@ def chain(length: int, type_: str = "mdp") -> Json:
 
 def test_nothing_to_choose() -> None:
     choices = looked_at(chain(5))
-    assert choices.agreement == "there is only one choice in each of 11 states"
+    assert choices.agreement == "all 11 states were explored"
     assert (choices.minimum, choices.differ) == (choices.maximum, False)
     assert looked_at(chain(10**6, "dtmc")).agreement == "the model has no nondeterminism"
 
@@ -84,7 +96,7 @@ def test_a_machine_that_can_be_made_to_wait_for_ever(chance: bool) -> None:
 
 
 def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
-    choices = looked_at(starving(6000))
+    choices = looked_at(starving(100, steps=300))
     assert choices.differ
     assert choices.minimum is not None
     assert (choices.minimum.value, choices.minimum.method) == (0, ExtremeMethod.SAMPLING)
@@ -95,7 +107,7 @@ def test_starving_is_found_by_sampling_where_there_are_many_states() -> None:
 
 
 def test_results_do_not_depend_on_workers() -> None:
-    checker = ModelChecker(model(starving(6000)))
+    checker = ModelChecker(model(starving(100, steps=300)))
     results = []
     for pool in (Pool(), Pool(2, start_delay_s=0)):
         with pool as used:
@@ -105,7 +117,7 @@ def test_results_do_not_depend_on_workers() -> None:
 
 
 def test_rewards_are_not_sampled() -> None:
-    written = starving(6000)
+    written = starving(100, steps=300)
     reward = {"op": "Emin", "exp": 1, "accumulate": ["steps"], "reach": "done"}
     written["properties"] = [{"name": "p", "expression": reward}]
     assert looked_at(written, Options(epsilon=0.3)) == Choices()
@@ -176,24 +188,33 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
     assert {outcomes(written, MEMORY | number)[0] for number in range(1, 40)} == {TRUE, FALSE}
 
 
-def test_limits_of_looking_at_all_states() -> None:
-    checker = ModelChecker(model(chain(100)))
-    compiled = checker.compiled(checker.compiled_properties[0])
-    assert solve(compiled, limit=50) is None
-    assert solve(compiled, work=50) is None
-    solution = solve(compiled)
-    assert solution is not None
-    assert solution.states == 201
-    assert solution.minimum is not None
-    assert solution.minimum.lower == pytest.approx(1 - 0.5**100)
+@pytest.mark.parametrize("limit", [{"states": 50}, {"transitions": 50}, {"work": 50}])
+def test_limits_of_looking_at_all_states(limit: dict[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    checker = ModelChecker(model(starving(100, chance=True)))
+    exact = values_if_small(checker, checker.compiled_properties[0])
+    assert exact is not None
+    assert (exact.states, exact.least, exact.average) == (200, 0, 1)
+    monkeypatch.setattr(small, "LIMITS", replace(LIMITS, **limit))
+    assert values_if_small(checker, checker.compiled_properties[0]) is None
 
 
-def test_goals_of_several_parts_are_not_solved() -> None:
-    """Whether a state is good depends on earlier states. The solver still determines that there is no choice."""
+def test_steps_are_part_of_the_work() -> None:
+    """A bound on steps that needs a million sweeps over all states is left to traces."""
+    written = starving(20, chance=True)
+    written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 10**7}})}]
+    checker = ModelChecker(model(written))
+    assert values_if_small(checker, checker.compiled_properties[0]) is None
+    written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 3}})}]
+    checker = ModelChecker(model(written))
+    exact = values_if_small(checker, checker.compiled_properties[0])
+    assert exact is not None
+    assert (exact.least, exact.greatest, exact.average) == (0, 1, pytest.approx(0.875))
+
+
+def test_goals_of_several_parts() -> None:
+    """Whether a state is good depends on earlier states."""
     written = chain(5)
     both = op("∧", op("F", "done"), op("F", op("=", "c", 2)))
     written["properties"] = [{"name": "p", "expression": probability(both)}]
-    checker = ModelChecker(model(written))
-    solution = solve(checker.compiled(checker.compiled_properties[0]))
-    assert solution is not None
-    assert (solution.minimum, solution.has_choices, solution.agrees) == (None, False, True)
+    choices = looked_at(written)
+    assert choices.agreement == "all 11 states were explored"

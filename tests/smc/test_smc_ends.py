@@ -9,6 +9,7 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 import clock
+from both_kernels import plain_kernel
 from roaml import api
 from roaml.jani.writer import write
 from roaml.smc import end, kernel
@@ -18,7 +19,6 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from stuck_models import CROSSED, hospital, system
-from twin import plain_kernel
 
 FINALLY = {"p": probability(op("F", op("=", "x", 9)))}
 GLOBALLY = {"p": probability(op("G", op("<", "x", 9)))}

@@ -16,13 +16,13 @@ from smc_models import answers, automaton, document, edge, model, op, probabilit
 from smc_random import networks
 
 import roaml.smc
+from both_kernels import difference, plain_kernel
 from examples import examples
 from roaml import api
 from roaml.smc import kernel, program
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import ModelChecker
 from roaml.smc.opcodes import Op
-from twin import difference, plain_kernel
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = Path(roaml.smc.__file__).parent

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from both_kernels import plain_kernel
 from roaml.smc import kernel
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -16,7 +17,6 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, FAULTY, UNKNOWN, Compiled, merged
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
-from twin import plain_kernel
 
 QUESTIONS: dict[str, Json] = {
     "soon": op("F", op("=", "x", 2)),

@@ -137,6 +137,15 @@ def test_only_the_visible_rows_are_drawn() -> None:
     assert len({group.hint.split(":")[0] for group in states}) == 2
 
 
+def test_the_numbers_of_the_axis_cover_the_rows_that_are_scrolled_beneath_them() -> None:
+    session = api.session(api.load(str(ROBOT)), seed=3)
+    session.until_decided()
+    timeline = timeline_of(session)
+    groups = draw_timeline(timeline, View(Axis.STEPS, 0.0, float(timeline.count), 900.0, cursor=3)).groups
+    assert groups[-1].role == "axis-names"
+    assert any(group.role == "event" for group in groups)
+
+
 def test_positions_lead_back_to_their_steps() -> None:
     session = api.session(api.load(str(ROBOT)), seed=3)
     session.until_decided()

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from storm import exact
-from test_property_twins import TWINS, files
+from test_equivalent_properties import EQUIVALENTS, files
 from test_translate_observers import PORTS, system
 from translating import loaded
 
@@ -13,12 +13,12 @@ from roaml import api
 from roaml.scxml.lowered_properties import lowered_properties
 from roaml.scxml.writer import write
 
-WRITTEN = [key for key in TWINS if "existence" not in key[1] and "response" not in key[1] and key[0] == "link"]
+WRITTEN = [key for key in EQUIVALENTS if "existence" not in key[1] and "response" not in key[1] and key[0] == "link"]
 
 
 @pytest.mark.parametrize("key", WRITTEN, ids=" ".join)
 def test_the_document_says_the_same(key: tuple[str, str]) -> None:
-    original = files(key[0], TWINS[key][0], [])
+    original = files(key[0], EQUIVALENTS[key][0], [])
     source = loaded(original)
     lowered = lowered_properties(api.to_scxml(source), source.observed)
     assert not lowered.left_out

@@ -40,7 +40,7 @@ ODD, EVEN = op("=", op("%", COUNT, 2), 1), op("=", op("%", COUNT, 2), 0)
 IS_ODD, IS_EVEN = "n % 2 == 1", "n % 2 == 0"
 LOW, IS_LOW = op("≤", COUNT, 1), "n &lt;= 1"
 ONE, TWO, THREE = "n == 1", "n == 2", "n == 3"
-TWINS = {
+EQUIVALENTS = {
     "response": (
         op("G", op("⇒", ODD, op("F", EVEN))),
         pattern("response", IS_ODD, IS_EVEN),
@@ -167,9 +167,9 @@ def only(in_jani: object = None, in_xml: str = "") -> dict[str, str]:
     return {**files, "properties.xml": f"<properties>{PORT if in_xml else ''}{guarantees}</properties>"}
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_the_twin_in_xml_has_the_same_answer(name: str) -> None:
-    in_jani, in_xml = TWINS[name]
+    in_jani, in_xml = EQUIVALENTS[name]
     assert answered(only(in_jani)) == answered(only(None, in_xml))
 
 
@@ -302,11 +302,11 @@ def test_random_formulas_in_traces(draw: Callable[[random.Random], object]) -> N
 # ------------------------------------------------------------------------- Storm
 
 BY_STORM = {
-    "response": TWINS["response"][0],
+    "response": EQUIVALENTS["response"][0],
     "negated": op("F", op("∧", ODD, op("G", ODD))),
-    "universality after": TWINS["universality after"][0],
+    "universality after": EQUIVALENTS["universality after"][0],
     "until": op("G", op("⇒", equal(1), op("U", op("≤", COUNT, 1), op("≥", COUNT, 2)))),
-    "two": op("∧", TWINS["response"][0], op("F", WHISTLE)),
+    "two": op("∧", EQUIVALENTS["response"][0], op("F", WHISTLE)),
 }
 
 
@@ -398,9 +398,9 @@ def test_other_forms_are_refused_and_reported(name: str) -> None:
     assert {finding.code for finding in reports} <= {"unsupported-property", "ignored-bounds"}
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_forms_that_are_answered_are_not_reported(name: str) -> None:
-    assert not reported(only(TWINS[name][0]), "twins.jani")
+    assert not reported(only(EQUIVALENTS[name][0]), "twins.jani")
 
 
 def test_without_a_clock_no_time_is_measured(tmp_path: Path) -> None:
@@ -410,5 +410,5 @@ def test_without_a_clock_no_time_is_measured(tmp_path: Path) -> None:
 
 
 def test_all_states_get_stuck_only_where_they_are_stuck() -> None:
-    verifier = api.verifier(loaded(only(TWINS["response"][0])), ["stuck"])
+    verifier = api.verifier(loaded(only(EQUIVALENTS["response"][0])), ["stuck"])
     assert all_states(verifier).maximum.upper == 0

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from xml.sax.saxutils import escape, quoteattr
 
 import pytest
-from test_translate_observers import COUNT, HEADS, PORTS, TAILS, op, system, twin
+from test_translate_observers import COUNT, HEADS, PORTS, TAILS, hand_written, op, system
 from translating import FOLDER, loaded
 
 from mending import applied
@@ -153,21 +153,21 @@ OTHER_FORMULAS = {
 
 @pytest.mark.parametrize("name", OTHER_FORMULAS)
 def test_other_formulas_are_not_offered(name: str) -> None:
-    assert not offered(opened(system("", [twin(name, OTHER_FORMULAS[name])])).snapshot(), TWINS, name)
+    assert not offered(opened(system("", [hand_written(name, OTHER_FORMULAS[name])])).snapshot(), TWINS, name)
 
 
 def test_a_maximum_is_not_offered() -> None:
-    greatest = twin("p", op("F", TAILS))
+    greatest = hand_written("p", op("F", TAILS))
     assert offered(opened(system("", [greatest])).snapshot(), TWINS, "p")
     text = json.dumps(greatest).replace("Pmin", "Pmax")
     assert not offered(opened(system("", [json.loads(text)])).snapshot(), TWINS, "p")
 
 
 def test_files_are_created_and_listed() -> None:
-    texts = {**system("", [twin("p", op("F", op("∧", TAILS, op("¬", HEADS))))])}
+    texts = {**system("", [hand_written("p", op("F", op("∧", TAILS, op("¬", HEADS))))])}
     main = texts["main.xml"].replace('<input type="xml" src="properties.xml" />', "")
     assert main != texts["main.xml"]
-    texts = {**texts, "main.xml": main, "twins.jani": json.dumps({"properties": [twin("p", op("F", TAILS))]})}
+    texts = {**texts, "main.xml": main, "twins.jani": json.dumps({"properties": [hand_written("p", op("F", TAILS))]})}
     del texts["properties.xml"]
     changed = converted_all(texts, TWINS, ["p"])
     assert 'src="properties.xml"' in changed["main.xml"]
@@ -195,7 +195,7 @@ def test_files_are_created_and_listed() -> None:
 def test_assumptions_prevent_the_conversion() -> None:
     key = KEYS[0]
     assert is_convertible(key)
-    texts = system(in_xml(key), [twin("p", op("F", TAILS))])
+    texts = system(in_xml(key), [hand_written("p", op("F", TAILS))])
     assumed = in_xml(KEYS[2]).replace(' expect="&gt;= 0.25"', "")
     text = texts["properties.xml"].replace("<guarantees>", f"<assumes>{assumed}</assumes><guarantees>")
     assert text != texts["properties.xml"]

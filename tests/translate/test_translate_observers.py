@@ -74,7 +74,7 @@ def weak_until(left: object, right: object) -> dict[str, object]:
     return op("∨", op("G", left), op("U", left, right))
 
 
-TWINS: Mapping[str, tuple[str, object]] = {
+EQUIVALENTS: Mapping[str, tuple[str, object]] = {
     "existence": (
         '<property id="{}" pattern="existence"><event>whistle</event><scope type="globally" /></property>',
         op("F", WHISTLE),
@@ -122,7 +122,7 @@ TWINS: Mapping[str, tuple[str, object]] = {
 }
 
 
-def system(guarantees: str, twins: object = (), seconds: int = 6) -> dict[str, str]:
+def system(guarantees: str, written_formulas: object = (), seconds: int = 6) -> dict[str, str]:
     inputs = '<input type="node-ascxml" src="coin.ascxml" /><input type="node-ascxml" src="judge.ascxml" />'
     return {
         "main.xml": f"""<roaml>
@@ -135,7 +135,7 @@ def system(guarantees: str, twins: object = (), seconds: int = 6) -> dict[str, s
         "coin.ascxml": COIN,
         "judge.ascxml": REFEREE,
         "properties.xml": f"<properties>{PORTS}<guarantees>{guarantees}</guarantees></properties>",
-        "twins.jani": json.dumps({"properties": list(twins)}),  # type: ignore[call-overload]
+        "twins.jani": json.dumps({"properties": list(written_formulas)}),  # type: ignore[call-overload]
     }
 
 
@@ -146,11 +146,11 @@ def hand_written(name: str, path: object) -> dict[str, object]:
 
 
 def translated(name: str) -> Model:
-    written, path = TWINS[name]
+    written, path = EQUIVALENTS[name]
     return api.to_jani(loaded(system(written.format(name), [hand_written("twin", path)])))
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_storm_gives_the_same(name: str) -> None:
     model = translated(name)
     observed, by_hand = exact(model, name), exact(model, "twin")
@@ -159,7 +159,7 @@ def test_storm_gives_the_same(name: str) -> None:
     assert 0 < observed.least < 1
 
 
-@pytest.mark.parametrize("name", TWINS)
+@pytest.mark.parametrize("name", EQUIVALENTS)
 def test_the_same_traces_satisfy_both(name: str) -> None:
     options = Options(method=EstimationMethod.FIXED, max_traces=300, seed=11)
     one, other = api.verify(translated(name), [name, "twin"], options, only_uniform=True)
@@ -176,7 +176,7 @@ def test_the_same_traces_satisfy_both(name: str) -> None:
 def test_other_properties_keep_their_answers() -> None:
     """The model with an observer does what the model without it does."""
     with_observer = translated("existence")
-    alone = api.to_jani(loaded(system("", [hand_written("twin", TWINS["existence"][1])])))
+    alone = api.to_jani(loaded(system("", [hand_written("twin", EQUIVALENTS["existence"][1])])))
     assert exact(alone, "twin").least == pytest.approx(exact(with_observer, "twin").least, abs=1e-9)
     assert not any(action.name == TIME_OVER_ACTION for action in alone.actions)
 
@@ -216,7 +216,7 @@ def test_what_is_open_at_the_end_of_time_is_undecided() -> None:
 
 
 def test_names_that_clash_are_changed() -> None:
-    clash = TWINS["existence"][0].format("topic_heads_msg")
+    clash = EQUIVALENTS["existence"][0].format("topic_heads_msg")
     model = api.to_jani(loaded(system(clash)))
     names = [automaton.name for automaton in model.automata]
     assert names[-1] == "topic_heads_msg___observer"
@@ -331,6 +331,7 @@ VACUOUS = f"""
 {ANSWERED.format("answered", "tails", "whistle", "globally")}
 {ANSWERED.format("dead", "count == 70", "whistle", "globally")}
 <property id="unopened" pattern="absence"><event>tails</event><scope type="after" event="count == 70" /></property>
+<property id="opened" pattern="absence"><event>tails</event><scope type="after" event="count == 1" /></property>
 """
 
 
@@ -352,6 +353,9 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     assert warning(results["dead"]) == "the property is vacuous: it was not triggered in any trace"
     assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
     assert warning(results["unopened"]) == "the property is vacuous: its scope was not evaluated in any trace"
+    assert rows["opened"]["vacuous"]["scope_not_judged"] / 300 == pytest.approx(0.7**6, abs=0.1)
+    assert rows["opened"]["vacuous"]["not_triggered"] == 0
+    assert rows["opened"]["failed"] > 0
     text = one_as_text(results["scoped"], str)
     assert re.search(r"\n  its scope was not evaluated in [0-9]+ of 300 traces \(", text)
     assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)

@@ -68,9 +68,9 @@ def test_forwarding_steps_are_omitted() -> None:
         "Deliver (bt_1004)",
         "Building",
     }
-    said = [text for line in story_lines for text in (line.what, *line.details)]
-    assert "sends srv_hand_over_response(success: true, message: 'taken')" in said
-    assert not [text for text in said if "_client_" in text or "_len" in text]
+    event_phrase = [text for line in story_lines for text in (line.what, *line.details)]
+    assert "sends srv_hand_over_response(success: true, message: 'taken')" in event_phrase
+    assert not [text for text in event_phrase if "_client_" in text or "_len" in text]
 
 
 def walked(written: Json) -> Story:

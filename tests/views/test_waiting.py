@@ -13,7 +13,7 @@ from roaml.rules import BY_CODE
 from roaml.scxml.events import Role
 from roaml.smc.run import Options
 from roaml.verification import stuck
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.waiting import NEEDS_TIME
 from stuck_models import CROSSED, hospital, system
 
@@ -235,13 +235,13 @@ def test_two_that_ask_each_other_without_a_clock(tmp_path: Path) -> None:
     ],
 )
 def test_events_in_words(event: str, words: str) -> None:
-    assert said(event, {"Fetch"}) == words
+    assert event_phrase(event, {"Fetch"}) == words
 
 
 def test_the_tick_of_a_timer_in_words() -> None:
     """The role decides, not the name of the automaton."""
-    assert said("ros_time_rate.second", {"Fetch"}, taken=True) == "the tick of its timer `second`"
-    assert said("ros_time_rate.second", {"Fetch"}, Role.TREE_ROOT, taken=True) == "its next tick"
+    assert event_phrase("ros_time_rate.second", {"Fetch"}, taken=True) == "the tick of its timer `second`"
+    assert event_phrase("ros_time_rate.second", {"Fetch"}, Role.TREE_ROOT, taken=True) == "its next tick"
 
 
 def test_the_rule_that_is_named_exists() -> None:

@@ -11,7 +11,7 @@ from types import TracebackType
 from as2fm_lsp.cli.status_line import StatusLine
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search
-from roaml.smc.run import Options, Tally, bounds_of, wanted_traces
+from roaml.smc.run import Options, Tally, bounds_of, trace_count
 
 BAR_CHARACTERS = 20
 
@@ -109,7 +109,7 @@ def search_line(question: Question, search: Search, options: Options) -> str:
 
 def progress(question: Question, options: Options, tally: Tally) -> float:
     """The finished part of the work, between 0 and 1."""
-    total = wanted_traces(options)
+    total = trace_count(options)
     if total is None:
         half = bounds_of(tally, question, options, tally.is_revised).half_width
         target = options.epsilon * (max(abs(tally.mean.mean), 1e-9) if question.is_reward else 1)

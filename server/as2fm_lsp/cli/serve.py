@@ -99,8 +99,8 @@ def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
     try:
         with sockets.listening_on(host, int(port), allow_remote) as listeners:
             for listener in listeners:
-                _say(f"listening on {sockets.shown_address(listener)}")
-            _say(f"the client must send as `token` in its initializationOptions: {token}")
+                _log(f"listening on {sockets.shown_address(listener)}")
+            _log(f"the client must send as `token` in its initializationOptions: {token}")
             return sockets.first_client(listeners, token)
     except sockets.RemoteError:
         text = f"--tcp {tcp}: other machines could connect there; use 127.0.0.1, or add --allow-remote"
@@ -114,12 +114,12 @@ def _socket_file_client(path: str) -> sockets.Connection:
         raise _UsageError("--socket: this system does not support socket files; use --tcp")
     try:
         with sockets.listening_at(path) as listeners:
-            _say(f"listening on {path}")
+            _log(f"listening on {path}")
             return sockets.first_client(listeners, token="")
     except OSError as error:
         raise _UsageError(f"--socket {path}: {error.strerror or error}") from None
 
 
-def _say(text: str) -> None:
+def _log(text: str) -> None:
     """Log on standard error: standard output may be used for a client."""
     print(f"as2fm-lsp: {text}", file=sys.stderr, flush=True)

@@ -18,7 +18,7 @@ from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
-from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
+from as2fm_lsp.translation import OutputError, check_not_an_input, jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
@@ -66,7 +66,7 @@ def run(arguments: Sequence[str]) -> int:
             system = api.load(options.main, options.ros_path, settings, overrides=overrides)
             for path in (output, options.map):
                 if path is not None:
-                    keep_off(path, system)
+                    check_not_an_input(path, system)
             status.stage("translating")
             network = api.to_scxml(system)
             model, left_out = without_bounded(api.to_jani(system, options.property or None))

@@ -54,6 +54,7 @@ from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.expectations import Expectation, RangeError, parse
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
+from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.stuck import StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
@@ -68,7 +69,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 examples:
-  as2fm-lsp verify main.xml                              all properties, to 0.01 with 95 percent confidence
+  as2fm-lsp verify main.xml                              all properties: exact values if the model has few states,
+                                                         otherwise to 0.01 with 95 percent confidence
   as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
@@ -87,6 +89,20 @@ exit status: 0 success; 1 an expectation is not met, a property cannot be answer
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
 """
 INTERRUPTED = 130
+TRACE_OPTIONS = (
+    "confidence",
+    "epsilon",
+    "method",
+    "max_traces",
+    "max_steps",
+    "seed",
+    "separate",
+    "resume",
+    "traces",
+    "dask",
+    "exhaustive",
+)
+"""The options with which `verify` does not decide by the size of the model whether values are exact."""
 STANDARD_OUTPUT = "-"
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
@@ -129,7 +145,15 @@ def _run(options: argparse.Namespace) -> int:
             status.stage("reading and translating")
             target = read_target(options, settings)
             status.stage("compiling")
-            verifier = api.verifier(target, names, limits, expectations, only_uniform=only_uniform)
+            verifier = api.verifier(
+                target,
+                names,
+                limits,
+                expectations,
+                only_uniform=only_uniform,
+                exact_if_small=not _asks_for_traces(options),
+                example_traces=EXAMPLE_TRACES,
+            )
     except (api.ModelError, api.JaniError) as error:
         return _errors(options, error_report(error))
     except FaultError as fault:
@@ -137,6 +161,12 @@ def _run(options: argparse.Namespace) -> int:
     if not verifier.names:
         raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
     return _Verification(options, verifier).run()
+
+
+def _asks_for_traces(options: argparse.Namespace) -> bool:
+    """Whether an option is given that has an effect only on traces."""
+    values = [getattr(options, name) for name in TRACE_OPTIONS]
+    return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS
 
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
@@ -383,7 +413,15 @@ class _Verification:
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
-        return f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        if all(result.exact is None for result in self.results):
+            return how
+        over = "" if self.verifier.only_uniform else "over all schedulers and "
+        computed = f"exact values: computed from all reachable states, {over}for uniform choices"
+        computed += " (--method adaptive: estimates from traces)"
+        has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
+        has_estimate = has_estimate or any(r.answer is not None and r.exact is None for r in self.results)
+        return f"{computed}\nestimates: {how}" if has_estimate else computed
 
     def _place(self, origin: Location) -> str:
         path, line, _ = self.target.place(origin) or ("", 0, 0)
@@ -514,20 +552,19 @@ def parser() -> ArgumentParser:
     add(
         "--confidence",
         type=_share,
-        default=0.95,
         metavar="C",
         help="the probability with which the interval contains the true value (0.95)",
     )
-    add("--epsilon", type=_width, default=0.01, metavar="E", help="half the width of the interval (0.01); for "
+    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
         "an expected reward relative to its value")  # fmt: skip
-    add("--method", action=WordAction, words=EstimationMethod, default=EstimationMethod.ADAPTIVE,
-        help="the number of traces: until the interval is narrow enough "
-        "(adaptive, the default), as many as Hoeffding's bound requires (okamoto), until it is decided whether the "
-        "expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--method", action=WordAction, words=EstimationMethod,
+        help="generate traces, also if the model is small: until the interval is narrow "
+        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
+        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
     add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=positive, default=1_000_000, metavar="N", help="cut traces after N steps; they stay "
+    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; they stay "
         "undecided (1000000)")  # fmt: skip
-    add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
+    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
     add(
         "--jobs",
         type=positive,
@@ -604,15 +641,10 @@ def _expectations(texts: Sequence[str]) -> list[Expectation]:
 
 
 def _limits(options: argparse.Namespace) -> Options:
+    names = ("confidence", "epsilon", "max_traces", "max_steps", "seed", "method")
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
     try:
-        return Options(
-            confidence=options.confidence,
-            epsilon=options.epsilon,
-            max_traces=options.max_traces,
-            max_steps=options.max_steps,
-            seed=options.seed,
-            method=options.method,
-        )
+        return Options(**given)
     except ValueError as error:
         raise UsageError(str(error)) from None
 
@@ -623,7 +655,7 @@ def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | 
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))
-    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed))
+    return Diagnostic(origin.path, fault.code, Severity.ERROR, origin.span, fault_message(fault, options.seed or 0))
 
 
 def _source_of(target: VerificationTarget) -> Callable[[str], SourceFile]:

@@ -61,7 +61,7 @@ class StateRequests:
         scopes = []
         for scope in debugger.values.scopes(frame):
             entries = [Shown(entry, before.get((scope.name, entry.name))) for entry in scope.entries]
-            hint = {"presentationHint": scope.hint} if scope.hint in ("locals", "arguments") else {}
+            hint = {} if scope.hint is None else {"presentationHint": scope.hint.value}
             reference = self._session.references.add(entries)
             scopes.append({"name": scope.name, "variablesReference": reference, "expensive": False,
                 "namedVariables": len(entries), **hint})  # fmt: skip

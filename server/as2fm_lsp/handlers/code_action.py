@@ -40,10 +40,10 @@ def register(context: Context) -> None:
         shown = _ClientDiagnostics(context, snapshot, source, params.context.diagnostics)
         offered = [
             _converted(context, snapshot, path, place, shown, action)
-            for action in _all(context, snapshot, path, place, lambda kind: _is_wanted(kind, only))
+            for action in _all(context, snapshot, path, place, lambda kind: _is_requested(kind, only))
             if _can(context, action)
         ]
-        if _is_wanted(types.CodeActionKind.Source, only):
+        if _is_requested(types.CodeActionKind.Source, only):
             offered += translate.actions(snapshot, path, session.convert)
         return offered
 
@@ -70,11 +70,11 @@ def register(context: Context) -> None:
 
 
 def _all(
-    context: Context, snapshot: Snapshot, path: str, place: Span, is_wanted: Callable[[str], bool]
+    context: Context, snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[str], bool]
 ) -> Iterator[CodeAction]:
     """The actions at a place: those of the models, and those of known results."""
-    yield from actions(snapshot, path, place, is_wanted)
-    if is_wanted(REWRITE):
+    yield from actions(snapshot, path, place, is_requested)
+    if is_requested(REWRITE):
         yield from expectation.actions(context, snapshot, path, place)
 
 
@@ -150,7 +150,7 @@ def _can(context: Context, action: CodeAction) -> bool:
     return all(resource in operations for resource in action.resources)
 
 
-def _is_wanted(kind: str, only: Sequence[str] | None) -> bool:
+def _is_requested(kind: str, only: Sequence[str] | None) -> bool:
     """Whether actions of `kind` are requested. A request for `quickfix` includes `quickfix.x`; a request for the empty
     kind includes all. Without `only`, every kind is requested except the one that fixes the whole file."""
     if not only:

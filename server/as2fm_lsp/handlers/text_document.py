@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.workspace import show_problems
-from roaml.model.kinds import CONFIG_FILES
+from roaml.model.config_files import CONFIG_FILES
 
 
 def register(context: Context) -> None:

@@ -15,7 +15,7 @@ from as2fm_lsp.context import Context
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.progress import Progress
-from as2fm_lsp.translation import OutputError, jani_path, keep_off, summary, without_bounded
+from as2fm_lsp.translation import OutputError, check_not_an_input, jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
@@ -105,15 +105,15 @@ async def _write(context: Context, shown: Progress, path: str, target: str) -> t
     snapshot = context.session.moment().snapshot(path)
     await shown.step("checking")
     system = api.loaded(snapshot, path)
-    keep_off(target, system)
+    check_not_an_input(target, system)
     await shown.step("translating")
     model, left_out = without_bounded(api.to_jani(system))
     await shown.step("writing")
-    write_file(target, _while_wanted(context, chain(jani_text(model), "\n")))
+    write_file(target, _while_needed(context, chain(jani_text(model), "\n")))
     return model, left_out
 
 
-def _while_wanted(context: Context, pieces: Iterable[str]) -> Iterator[str]:
+def _while_needed(context: Context, pieces: Iterable[str]) -> Iterator[str]:
     for piece in pieces:
         context.requests.checkpoint()
         yield piece

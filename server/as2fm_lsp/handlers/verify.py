@@ -170,7 +170,8 @@ class _VerifyCommand:
                 else:
                     self.reject(name, str(error))
             return None, {}
-        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform)
+        is_exact = settings.exact_if_small
+        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform, is_exact)
         properties = {}
         for name in usable:
             try:

@@ -9,7 +9,8 @@ from collections.abc import Iterable
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
-from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, PROJECT_EXTENSION
+from roaml.model.config_files import CONFIG_FILES
+from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
 
 WATCHED = (
     *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)),

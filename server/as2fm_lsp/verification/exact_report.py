@@ -8,19 +8,30 @@ from typing import Any
 
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import Exact, Proof
+from roaml.verification.results import Exact, Proof, Result
 
-_SAME = 1e-6
+EXACT = "exact"
+"""The method and the kind of interval of an exact value in JSON."""
+WIDTH = 1e-6
+"""The greatest width of the bounds of an exact value, relative for expected rewards."""
+_PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
+"""What all states prove, in JSON."""
 
 
-def lines(name: str, exact: Exact, seconds: float) -> list[str]:
-    """The lines of the report for users: the values and the shortest traces."""
+def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
+    """The lines of the report for users: the values and the shortest traces.
+
+    Args:
+        only_uniform: whether only the value under uniform choices is of interest.
+    """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}, {seconds:.1f} s"
     quality = "exact" if exact.is_precise else "not exact, the bounds did not become closer"
     shown: list[str] = []
-    if _same(exact.minimum, exact.maximum) and _same(exact.minimum, exact.uniform):
+    if exact.agrees:
         shown.append(f"{name}: = {_number(exact.minimum)} for all schedulers, {quality}, {end}")
+    elif only_uniform:
+        shown.append(f"{name}: = {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     else:
         both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
         shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
@@ -50,7 +61,7 @@ def row(exact: Exact) -> dict[str, Any]:
             for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
         },
         "precise": exact.is_precise,
-        "proof": exact.proof,
+        "proof": _PROOFS[exact.proof],
         "states": exact.states,
         "shortest": {
             name: None if (trace := exact.shortest(verdict)) is None else trace.steps
@@ -59,18 +70,29 @@ def row(exact: Exact) -> dict[str, Any]:
     }
 
 
-def _same(a: Bounds, b: Bounds) -> bool:
-    if a == b:
-        return True
-    lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)
-    return upper - lower <= _SAME * max(1.0, abs(lower))
+def estimate_row(result: Result) -> dict[str, Any]:
+    """The members for JSON that replace the estimate of the example traces."""
+    asked = result.asked_value()
+    assert asked is not None
+    assert result.answer is not None
+    bounds, value = asked
+    return {
+        "expected_value" if result.answer.question.is_reward else "probability": _finite(value),
+        "lower": _finite(bounds.lower),
+        "upper": _finite(bounds.upper),
+        "complete": True,
+        "interval": EXACT,
+        "confidence": 1,
+        "epsilon": WIDTH,
+        "method": EXACT,
+    }
 
 
 def _number(bounds: Bounds) -> str:
     """A value, or its bounds if they are far apart."""
     if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
         return "∞" if bounds.lower > 0 else "-∞"
-    if bounds.upper - bounds.lower > _SAME * max(1.0, abs(bounds.lower)):
+    if bounds.upper - bounds.lower > WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
     middle = (bounds.lower + bounds.upper) / 2
     return f"{next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle):.7g}"

@@ -104,8 +104,10 @@ class KnownResults:
 
 
 def short(result: Result) -> str:
-    """A short form of a result: `0.48 [0.47, 0.49]`."""
-    answer = result.answer
+    """A short form of a result: `0.48 [0.47, 0.49]`, or `0.4832, exact`."""
+    answer, exact = result.answer, result.asked_value()
+    if exact is not None:
+        return f"{_number(exact[1], 4)}, exact"
     if answer is None or answer.tally.traces == 0:
         return ""
     lower, upper = answer.bounds
@@ -117,7 +119,7 @@ def missed(result: Result) -> str:
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
 
 
-def _number(value: float) -> str:
+def _number(value: float, digits: int = 3) -> str:
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    return f"{value:.3g}"
+    return f"{value:.{digits}g}"

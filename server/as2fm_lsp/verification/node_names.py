@@ -35,6 +35,8 @@ def explained(text: str, model: Model, place_of: PlaceOf) -> str:
         node = NODE_AUTOMATON.fullmatch(automaton.name)
         if node and int(node[1]) in mentioned:
             origin = origins.get(tree_event_name(node[1], TreeEventKind.TICK))
+            if origin is not None and automaton.origin is not None and automaton.origin.path == origin.path:
+                origin = automaton.origin  # a node of a library, whose own place is in the tree
             place = f" ({place_of(origin)})" if origin is not None else ""
             explanations.append(f"bt_{node[1]} is {node[2]}{place}")
     return f"nodes of the behavior tree: {', '.join(explanations)}\n" if explanations else ""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
 from as2fm_lsp.verification.stuck_report import PROBABILITY
+from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
@@ -40,9 +41,9 @@ def as_text(
         if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, beneath `{result.name}`")
     open_ = [
-        (result.answer.question, result.choices)
+        (result.answer.question, result.choices or Choices())
         for result in results
-        if result.answer is not None and result.choices is not None and may_differ(result.choices)
+        if result.answer is not None and result.exact is None and may_differ(result.choices)
     ]
     return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
 
@@ -65,7 +66,10 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
     if result.undecided:
         lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
     if result.exact is not None:
-        lines += exact_report.lines(result.name, result.exact, result.seconds)
+        name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
+        lines += exact_report.lines(name, result.exact, result.seconds, only_uniform=result.is_uniform)
+    if result.exact is not None and result.answer is not None:
+        lines += [f"  {remark}" for remark in _example_remarks(result.answer)]
     for sampled in result.sampled:
         lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
         lines.append(f"  by {sampled.words}")
@@ -74,7 +78,7 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         lines += _remarks(sampled.answer)
     if result.tried:
         lines.append(f"  {result.tried:,} schedulers were tried, {result.seconds:.1f} s")
-    if result.answer is not None:
+    if result.answer is not None and result.exact is None:
         is_stuck = result.answer.question.is_stuck
         name = f"{result.name} ({PROBABILITY})" if is_stuck else result.name
         lines.append(f"{name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
@@ -151,6 +155,12 @@ def _remarks(answer: Answer) -> list[str]:
     return lines
 
 
+def _example_remarks(answer: Answer) -> list[str]:
+    """What the traces show that were generated as examples for an exact value."""
+    lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"]
+    return lines + activity_report.remarks(answer)
+
+
 def _number(value: float) -> str:
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
@@ -184,6 +194,8 @@ def row(result: Result) -> dict[str, Any]:
         values["error"] = _refusal_row(result.refusal)
     if result.answer is not None:
         values.update(_answer(result.answer))
+        if result.exact is not None:
+            values.update(exact_report.estimate_row(result))
         values.update(scheduler_report.rows(result.choices))
     if about := warning(result):
         values["warning"] = about
@@ -224,6 +236,7 @@ def warning(result: Result) -> str:
         parts.append(result.stuck.warning)
     if result.answer is not None:
         parts.append(activity_report.warning(result.answer))
+    if result.answer is not None and result.exact is None:
         parts.append(scheduler_report.warning(result.answer.question, result.choices))
     return "; ".join(filter(None, parts))
 

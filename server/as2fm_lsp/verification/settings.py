@@ -2,10 +2,11 @@
 """Settings for the verification in an editor: `as2fm.verify`, and the options of one call.
 
     {"verify": {"confidence": 0.95, "epsilon": 0.01, "maxSteps": 1000000, "expectations": {"alarm": ">= 0.95"},
-    "stuck": "warning"}}
+    "stuck": "warning", "exactIfSmall": true}}
 
 The options of a call have the same form, with `seed`, `silent` and `partialResultToken` in addition, and take
-precedence. An invalid value is reported, and the default is used.
+precedence. A call whose options contain one of `TRACE_OPTIONS` asks for traces, without exact values. An invalid value
+is reported, and the default is used.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from roaml.smc.run import MIN_EPSILON, Options
 from roaml.verification.expectations import Expectation, parse
 from roaml.verification.stuck import StuckLevel
 
+TRACE_OPTIONS = frozenset({"confidence", "epsilon", "maxSteps", "seed"})
+"""The options of a call that have an effect only on traces."""
+
 
 @dataclass(frozen=True, slots=True)
 class VerificationSettings:
@@ -25,6 +29,7 @@ class VerificationSettings:
 
     Attributes:
         is_silent: whether the results are not shown as messages.
+        exact_if_small: whether results of small models also have exact values.
         stuck: how a system that gets stuck is reported, a warning or an error.
         problems: messages about invalid values, as sentences.
         partial_result_token: the token with which the client requests each result as soon as it is complete.
@@ -34,6 +39,7 @@ class VerificationSettings:
     expectations: tuple[Expectation, ...]
     is_silent: bool
     problems: tuple[str, ...]
+    exact_if_small: bool = True
     stuck: StuckLevel = StuckLevel.WARNING
     partial_result_token: int | str | None = None
 
@@ -75,12 +81,17 @@ def verification_settings(settings: object, options: object = None) -> Verificat
     level = next((level for level in StuckLevel if level.value == word), None)
     if level is None:
         problems.append(f"verify.stuck must be one of {', '.join(map(str, StuckLevel))}, not {word!r}.")
+    exact = values.get("exactIfSmall", True)
+    if not isinstance(exact, bool):
+        problems.append(f"verify.exactIfSmall must be true or false, not {exact!r}.")
+        exact = True
     token = values.get("partialResultToken")
     return VerificationSettings(
         chosen,
         tuple(expectations),
         values.get("silent") is True,
         tuple(problems),
+        exact and TRACE_OPTIONS.isdisjoint(_mapping(options)),
         level or StuckLevel.WARNING,
         token if isinstance(token, (int, str)) and not isinstance(token, bool) else None,
     )

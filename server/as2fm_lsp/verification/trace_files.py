@@ -19,7 +19,7 @@ from roaml.jani.node import Origin
 from roaml.project.paths import seen_from
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
-from roaml.smc.run import Answer, Seen
+from roaml.smc.run import Answer, StoredTrace
 from roaml.verification.stuck import time_of
 from roaml.verification.target import VerificationTarget
 from roaml.views.waiting import waits
@@ -41,7 +41,7 @@ def write_traces(
     written = []
     for verdict, examples in answer.tally.examples.items():
         chosen = dict.fromkeys(seen.trace for seen in examples[:limit])
-        shortest: Seen | None = answer.tally.shortest.get(verdict)
+        shortest: StoredTrace | None = answer.tally.shortest.get(verdict)
         if shortest is not None and limit:
             chosen[shortest.trace] = None
         for trace in sorted(chosen):

@@ -116,11 +116,14 @@ def verifier(
     expectations: Iterable[str | Expectation] = (),
     *,
     only_uniform: bool = False,
+    exact_if_small: bool = False,
+    example_traces: int | None = None,
 ) -> Verifier:
     """A verifier, which verifies properties one by one. A verification can be observed, interrupted and continued.
 
     Args:
-        subject, properties, options, expectations, only_uniform: as for `verify`.
+        subject, properties, options, expectations, only_uniform, exact_if_small: as for `verify`.
+        example_traces: the number of traces for a result with exact values; `None` for as many as for others.
 
     Raises:
         PropertyError, FaultError, ValueError: as for `verify`.
@@ -129,7 +132,15 @@ def verifier(
     from roaml.verification.verifier import verifier_of  # noqa: PLC0415
 
     parsed = [_expectations.parse(e) if isinstance(e, str) else e for e in expectations]
-    return verifier_of(as_target(subject), properties, options, parsed, only_uniform=only_uniform)
+    return verifier_of(
+        as_target(subject),
+        properties,
+        options,
+        parsed,
+        only_uniform=only_uniform,
+        exact_if_small=exact_if_small,
+        example_traces=example_traces,
+    )
 
 
 def verify(
@@ -141,6 +152,7 @@ def verify(
     *,
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
+    exact_if_small: bool = False,
 ) -> Iterator[Result]:
     """Estimate the probabilities of properties by random traces with uniform choices. Properties share traces.
 
@@ -153,6 +165,8 @@ def verify(
         expectations: such as `alarm >= 0.95`; each adds a verdict to the result of its property.
         only_uniform: whether only uniform choices are considered. Otherwise, it is also examined whether other
             schedulers lead to other values, and the verdicts contain the result.
+        exact_if_small: whether a result also has exact values (`Result.exact`), which decide its verdicts, if the model
+            has few states.
 
     Raises:
         PropertyError: a property does not exist.
@@ -162,6 +176,8 @@ def verify(
     """
     from roaml.smc.pool import Pool  # noqa: PLC0415
 
-    ready = verifier(subject, properties, options, expectations, only_uniform=only_uniform)
+    ready = verifier(
+        subject, properties, options, expectations, only_uniform=only_uniform, exact_if_small=exact_if_small
+    )
     with Pool(jobs, executor) as pool:
         yield from ready.verify_all(pool)

@@ -53,7 +53,7 @@ def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
     if analysis is None or system is None:
         return
     session, path = debugger.session, debugger.sources.target.path
-    state, upcoming = session.state(), debugger.upcoming()
+    state, upcoming = debugger.state, debugger.upcoming()
     actors = {part.automaton for part in session.actors(upcoming)} if upcoming is not None else set()
     origins = {automaton.name: automaton.origin for automaton in session.automata_of_model}
     for machine in state.machines:
@@ -75,7 +75,7 @@ def active_edges(debugger: Debugger) -> Iterator[ActiveEdge]:
     if analysis is None or system is None:
         return
     session, upcoming = debugger.session, debugger.upcoming()
-    state, ids = session.state(), machine_node_ids(system)
+    state, ids = debugger.state, machine_node_ids(system)
     machines = {
         automaton.name: ids.get(automaton.origin.path, ())
         for instance, automaton in enumerate(session.automata_of_model)

@@ -18,6 +18,7 @@ from roaml.scxml.names import (
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
+    flag_of,
     is_timer,
     read_tree_event,
     sent_by,
@@ -26,7 +27,7 @@ from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session
 from roaml.smc.record import Plain, RecordedVariable
 from roaml.suggest import alternatives, close_names
-from roaml.views.event_words import interface_name, said
+from roaml.views.event_words import event_phrase, interface_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
         types = dict(_parameters(sources, event))
         template = {name: _default(type_) for name, type_ in types.items()}
         name = interface_name(event, automata) or event
-        text = said(event, automata)
+        text = event_phrase(event, automata)
         client = event.partition("_client_")[2]
         text += f" for {client}" if client in automata else ""
         names = {name: str(type_) for name, type_ in types.items()}
@@ -136,7 +137,7 @@ def _written(
             if cells.has(f"{form.event}{SEPARATOR}{prefix}{name}"):
                 cells.set(f"{form.event}{SEPARATOR}{prefix}{name}", type_, value, (), path)
                 break
-    valid = f"{form.event}.valid"
+    valid = flag_of(form.event)
     if cells.has(valid):
         cells.set(valid, None, True, (), valid)
     yield from cells.changes(-1)

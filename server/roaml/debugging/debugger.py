@@ -15,7 +15,7 @@ from functools import cached_property
 
 from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
 from roaml.debugging.evaluate import Scope
-from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, Stacks, node_of, threads
+from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, threads
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
@@ -23,6 +23,7 @@ from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent
 from roaml.simulation.choices import Choice, Outcome
 from roaml.simulation.intervention import Intervention
 from roaml.simulation.session import Session, ends_tick
+from roaml.simulation.state import SystemState
 from roaml.simulation.verdicts import Decided, Verdicts
 from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceStep, TraceVerdict
@@ -107,6 +108,7 @@ class Debugger:
         self._matcher: Matcher | None = None
         self._looked_at = -1
         self._upcoming: TraceStep | None = None
+        self._state: SystemState | None = None
         self._values: Values | None = None
         self._stacks: Stacks | None = None
         self._thread = self.threads[0].number if self.threads else TREE_THREAD
@@ -135,7 +137,7 @@ class Debugger:
         """The next step; `None` at the end of the run, and if the step fails (`fault`)."""
         if self._looked_at != self.session.position:
             self._looked_at = self.session.position
-            self._values = self._stacks = None
+            self._state = self._values = self._stacks = None
             self.fault = None
             try:
                 self._upcoming = self.session.upcoming()
@@ -144,19 +146,27 @@ class Debugger:
         return self._upcoming
 
     @property
+    def state(self) -> SystemState:
+        """The state of the system at the position."""
+        self.upcoming()
+        if self._state is None:
+            self._state = self.session.state()
+        return self._state
+
+    @property
     def values(self) -> Values:
         upcoming = self.upcoming()
         if self._values is None:
             session = self.session
             verdicts = self._verdicts.verdicts(session.position)
-            self._values = Values(session, self.sources, session.state(), upcoming, verdicts)
+            self._values = Values(session, self.sources, self.state, upcoming, verdicts)
         return self._values
 
     @property
     def stacks(self) -> Stacks:
         upcoming = self.upcoming()
         if self._stacks is None:
-            self._stacks = Stacks(self.session, self.sources, self.session.state(), upcoming)
+            self._stacks = Stacks(self.session, self.sources, self.state, upcoming)
         return self._stacks
 
     def stack(self, thread: int) -> list[Frame]:
@@ -165,7 +175,7 @@ class Debugger:
 
     def scope(self, instance: int) -> Scope:
         """The values of names in expressions, as an instance sees them."""
-        return self.values.names(Frame(0, "", None, instance, 0, "statement"))
+        return self.values.names(Frame(0, "", None, instance, 0, FrameRole.STATEMENT))
 
     @property
     def verdicts(self) -> dict[str, TraceVerdict]:
@@ -220,7 +230,7 @@ class Debugger:
             step = self.session.step()
         except FaultError as fault:
             self._looked_at, self._upcoming, self.fault = self.session.position, None, fault
-            self._values = self._stacks = None
+            self._state = self._values = self._stacks = None
             return self._stop(StopReason.EXCEPTION, fault.message, filter_="fault")
         if step is None:
             return self._end()
@@ -308,17 +318,19 @@ class Debugger:
         tick = tree_event_name(frame.node, TreeEventKind.TICK)
         for index in range(position - 1, -1, -1):
             step = steps[index]
-            if frame.role == "node":
+            if frame.role is FrameRole.NODE:
                 if received_by(step.action or "") == tick:
                     return self.go_to(index)
                 continue
             for part in step.parts:
                 if part.instance != frame.instance:
                     continue
-                is_handler = frame.role in ("handler", "statement") and received_by(step.action or "")
+                is_handler = frame.role in (FrameRole.HANDLER, FrameRole.STATEMENT) and received_by(step.action or "")
                 if is_handler:
                     return self.go_to(index)
-                if frame.role == "state" and self._enters(part.source, part.destination.location, part.instance):
+                if frame.role is FrameRole.STATE and self._enters(
+                    part.source, part.destination.location, part.instance
+                ):
                     return self.go_to(index + 1)
         return self.go_to(0)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from enum import Enum
 
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
@@ -18,7 +19,7 @@ from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, NodeState, NodeStatus, SystemState
 from roaml.simulation.words import who
 from roaml.smc.record import AutomatonStep, TraceStep
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 
 TREE_THREAD = 1
 FIRST_MACHINE_THREAD = 2
@@ -33,6 +34,15 @@ class DebugThread:
     instance: int
 
 
+class FrameRole(Enum):
+    """What a frame of a stack shows."""
+
+    STATEMENT = "statement"
+    HANDLER = "handler"
+    STATE = "state"
+    NODE = "node of the tree"
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """A frame of a stack.
@@ -41,7 +51,6 @@ class Frame:
         origin: the place of the statement, handler, state or node.
         instance: the automaton whose variables the frame shows; -1 if it has none.
         node: the number of the node of the tree; 0 for a machine.
-        role: `statement`, `handler`, `state` or `node`.
     """
 
     thread: int
@@ -49,7 +58,7 @@ class Frame:
     origin: Origin | None
     instance: int
     node: int
-    role: str
+    role: FrameRole
 
 
 def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
@@ -107,22 +116,27 @@ class Stacks:
         drawn = None if part is None or len(part.edge.destinations) < 2 else part.destination.origin
         if part is not None and drawn not in (None, part.edge.origin):
             yield Frame(
-                thread, f"{machine.name}: {self._sources.tag(drawn)} by chance", drawn, instance, node, "statement"
+                thread,
+                f"{machine.name}: {self._sources.tag(drawn)} by chance",
+                drawn,
+                instance,
+                node,
+                FrameRole.STATEMENT,
             )
         if not self._session.is_resting(instance, location):
             edge = part.edge if part is not None else next(e for e in automaton.edges if e.source == location)
             name = self._sources.tag(edge.origin) or f"{edge.action or location}"
-            yield Frame(thread, f"{machine.name}: {name}", edge.origin, instance, node, "statement")
+            yield Frame(thread, f"{machine.name}: {name}", edge.origin, instance, node, FrameRole.STATEMENT)
         elif received and part is not None:
             handler, event = part.edge.origin, received
         else:
             handler, event = None, ""
         states = self._sources.states(automaton)
         if handler is not None and handler != states.get(machine.state):
-            text = said(event, self._session.automata, taken=True)
-            yield Frame(thread, f"{machine.name}: {text}", handler, instance, node, "handler")
+            text = event_phrase(event, self._session.automata, taken=True)
+            yield Frame(thread, f"{machine.name}: {text}", handler, instance, node, FrameRole.HANDLER)
         origin = states.get(machine.state, machine.origin)
-        yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, "state")
+        yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, FrameRole.STATE)
 
     def _tree_frames(self, thread: int) -> Iterator[Frame]:
         statuses = {node.number: node for node in self._state.nodes}
@@ -138,7 +152,9 @@ class Stacks:
             status = statuses[number].status.value if number in statuses else NodeStatus.IDLE.value
             name = f"{node.name} (bt_{number})" if node.name == node.plugin else f"{node.name} : {node.plugin}"
             origin = self._sources.node_origins.get(number)
-            yield Frame(thread, f"{name}: {status}", origin, self._instances.get(node.automaton, -1), number, "node")
+            yield Frame(
+                thread, f"{name}: {status}", origin, self._instances.get(node.automaton, -1), number, FrameRole.NODE
+            )
             number = node.parent
 
     def _active_node(self, statuses: Mapping[int, NodeState]) -> int:

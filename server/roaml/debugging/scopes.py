@@ -11,6 +11,7 @@ from roaml.debugging.evaluate import Scope
 from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
+from roaml.exhaustive import Vocabulary
 from roaml.model.expand import PortConstant
 from roaml.scxml.names import (
     BLACKBOARD,
@@ -46,13 +47,20 @@ class ScopeEntry:
     variable: WatchedVariable | None = None
 
 
+class ScopeHint(Vocabulary):
+    """The kind of a scope, in DAP's words."""
+
+    LOCALS = "locals"
+    ARGUMENTS = "arguments"
+
+
 @dataclass(frozen=True, slots=True)
 class ScopeEntries:
-    """A scope of a frame. `hint` is its kind, in DAP's words."""
+    """A scope of a frame. `hint` is its kind; `None` for a scope that all frames have."""
 
     name: str
     entries: tuple[ScopeEntry, ...]
-    hint: str = ""
+    hint: ScopeHint | None = None
 
 
 class Values:
@@ -84,23 +92,23 @@ class Values:
         """The scopes of a frame that are not empty."""
         own_scopes = []
         if frame.instance >= 0:
-            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), "locals"))
+            own_scopes.append(ScopeEntries("Variables", tuple(self._own(frame.instance)), ScopeHint.LOCALS))
             message = self.message(frame.instance)
             if message:
                 entries = (ScopeEntry(name, value, type_of(value), name) for name, value in message.items())
-                own_scopes.append(ScopeEntries("Message", tuple(entries), "arguments"))
+                own_scopes.append(ScopeEntries("Message", tuple(entries), ScopeHint.ARGUMENTS))
         if frame.node:
-            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), "arguments"))
+            own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), ScopeHint.ARGUMENTS))
         return [scope for scope in (*own_scopes, *self.shared_scopes()) if scope.entries]
 
     def shared_scopes(self) -> Iterator[ScopeEntries]:
         """The scopes that all frames have."""
-        yield ScopeEntries("Blackboard", tuple(self._blackboard()), "globals")
-        yield ScopeEntries("Tree", tuple(self._nodes()), "globals")
-        yield ScopeEntries("Messages", tuple(self._messages()), "globals")
-        yield ScopeEntries("Global variables", tuple(self._shared()), "globals")
-        yield ScopeEntries("Time", tuple(self._time()), "globals")
-        yield ScopeEntries("Properties", tuple(self._properties()), "globals")
+        yield ScopeEntries("Blackboard", tuple(self._blackboard()))
+        yield ScopeEntries("Tree", tuple(self._nodes()))
+        yield ScopeEntries("Messages", tuple(self._messages()))
+        yield ScopeEntries("Global variables", tuple(self._shared()))
+        yield ScopeEntries("Time", tuple(self._time()))
+        yield ScopeEntries("Properties", tuple(self._properties()))
 
     def machines(self) -> Iterator[tuple[MachineState, tuple[ScopeEntry, ...]]]:
         """The machines and plugins, with their variables."""

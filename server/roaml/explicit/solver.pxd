@@ -29,6 +29,7 @@ cdef class Solver:
     cdef int[::1] range_first, range_last, end_first, end_last
     cdef int bounds, ends, sets, is_reward, accepts, is_signed, rises, falls, has_before
     cdef i64 work, size
+    cdef public i64 most_work
     cdef public int has_ended_early, is_unclear
 
     @cython.locals(state=int, label=int)

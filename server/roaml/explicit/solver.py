@@ -35,7 +35,7 @@ MAX_DIRECT_STATES = 2_500
 """The maximum number of states of a component that is solved directly if value iteration is slow; the matrix then
 occupies 50 MB."""
 MAX_WORK = 20_000_000_000
-"""The maximum number of additions for all components. After that, bounds stay as wide as they are."""
+"""The maximum number of additions, unless `Solver.most_work` is changed."""
 
 
 def compiled() -> bool:
@@ -51,6 +51,7 @@ class Solver:
         mode: MAXIMUM, MINIMUM or MEAN.
 
     Attributes:
+        most_work: the maximum number of additions for all components. After that, bounds stay as wide as they are.
         has_ended_early: whether some bounds are wider than intended.
         is_unclear: whether the minimum is unknown because of negative rewards in an end component.
     """
@@ -88,6 +89,7 @@ class Solver:
         self.is_reward = 0
         self.accepts = NOTHING
         self.work = 0
+        self.most_work = MAX_WORK
         self.has_ended_early = 0
         self.is_unclear = 0
         self.is_signed = 0
@@ -712,16 +714,16 @@ class Solver:
         tolerance = RELATIVE_TOLERANCE / 10
         change = INFINITE
         is_proven = 0
-        limit = MAX_WORK
+        limit = self.most_work
         if last - first <= MAX_DIRECT_STATES:
-            limit = self.work + self.size + self._direct_work(first, last)
+            limit = min(limit, self.work + self.size + self._direct_work(first, last))
         while is_proven == 0:
             while change > tolerance and self.work < limit:
                 change = self._step(first, last, self.low)
-            if change > tolerance and limit < MAX_WORK:
+            if change > tolerance and limit < self.most_work:
                 if self._solve_directly(first, last, gap) != 0:
                     return
-                limit = MAX_WORK
+                limit = self.most_work
                 continue
             for i in range(first, last):
                 own = self.group[self.order[i]]
@@ -737,7 +739,7 @@ class Solver:
                     break
             if is_proven != 0:
                 break
-            if tolerance < MIN_TOLERANCE or self.work >= MAX_WORK:
+            if tolerance < MIN_TOLERANCE or self.work >= self.most_work:
                 break
             tolerance /= 10
         if is_proven != 0 and self.is_signed != 0:

@@ -23,6 +23,8 @@ Watch: TypeAlias = Callable[[int, int], None]
 
 STRIDE = 16_384
 """The number of states that are expanded between two calls of a watch."""
+SHORT_STRIDE = 64
+"""The same, if the number of transitions is limited."""
 MAX_STATES = 0x7FFFFFF0
 MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state. Exploring this many takes some seconds."""
@@ -37,11 +39,15 @@ class StateLimits:
         bytes: the maximum memory in bytes; `None` for half of the free memory.
         combinations: the maximum number of combinations of edges and destinations in one state. With n automata of k
             edges on one action there are kⁿ.
+        transitions: the number of transitions after which the search ends soon; `None` if there is no limit.
+        work: the maximum number of additions for each value of a question; `None` for the limit of the solver.
     """
 
     states: int = MAX_STATES
     bytes: int | None = None
     combinations: int = MAX_COMBINATIONS
+    transitions: int | None = None
+    work: int | None = None
 
 
 class LimitError(Exception):
@@ -78,6 +84,12 @@ class Space:
     def states(self) -> int:
         return int(self.search.count)
 
+    @property
+    def can_get_stuck(self) -> bool:
+        """Whether a trace can get stuck before the goal is decided."""
+        labels = set(bytes(memoryview(self.search.label)[: self.search.expanded]))
+        return any(label & codes.GETS_STUCK for label in labels)
+
 
 def explore(
     checker: ModelChecker,
@@ -109,11 +121,14 @@ def explore(
         available() // 2 if limits.bytes is None else limits.bytes,
         limits.combinations,
     )
+    stride = STRIDE if limits.transitions is None else SHORT_STRIDE
     while True:
-        status = search.run(STRIDE)
+        status = search.run(stride)
         if watch is not None:
             watch(search.count, search.expanded)
         match status:
+            case codes.PART if limits.transitions is not None and search.transitions > limits.transitions:
+                raise LimitError(search.count, f"there are more than {limits.transitions:,} transitions")
             case codes.PART:
                 continue
             case codes.COMPLETE:

@@ -17,6 +17,8 @@ NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
 _OPEN_SHARE = 1e-6
 """Up to this probability, traces that the end of the model's time leaves undecided are neglected."""
 
+_TOO_MUCH_WORK = "its values need too much work"
+
 
 class NoValueError(Exception):
     """A question has no value; the message contains the reason."""
@@ -36,21 +38,23 @@ class GoalValues:
     is_precise: bool
 
 
-def values_of(space: Space, modules: Any = None) -> GoalValues:
+def values_of(space: Space, modules: Any = None, work: int | None = None) -> GoalValues:
     """The values of the question of a space.
 
     Args:
         modules: the module of the solver, for tests.
+        work: the maximum number of additions for each value; `None` for the limit of the solver.
 
     Raises:
-        NoValueError: the question has no value.
+        NoValueError: the question has no value, or a value needs more work.
     """
-    return _Question(space, modules or solver).values()
+    return _Question(space, modules or solver, work).values()
 
 
 class _Question:
-    def __init__(self, space: Space, module: Any) -> None:
+    def __init__(self, space: Space, module: Any, work: int | None) -> None:
         self.space = space
+        self.work = work
         self.module = module
         self.goal = space.compiled_property.goal
         self.question = space.compiled_property.question
@@ -70,7 +74,10 @@ class _Question:
         return GoalValues(minimum, maximum, uniform, self.is_precise)
 
     def solver(self, mode: int) -> Any:
-        return self.module.Solver(self.space.search, mode)
+        solver_ = self.module.Solver(self.space.search, mode)
+        if self.work is not None:
+            solver_.most_work = self.work
+        return solver_
 
     def bounds(self, mode: int) -> Bounds:
         goal = self.goal
@@ -86,6 +93,9 @@ class _Question:
             if is_negated and mode != MEAN:
                 mode = MAXIMUM if mode == MINIMUM else MINIMUM
             if goal.is_bounded and (goal.lower[0] > 0 or goal.upper[0] >= 0):
+                steps = max(goal.lower[0], goal.upper[0])
+                if self.work is not None and steps * self.space.search.code_end > self.work:
+                    raise NoValueError(_TOO_MUCH_WORK)
                 bounds = self.closed(self.solver(mode), "bounded", target, goal.lower[0], goal.upper[0])
             else:
                 bounds = self.closed(self.solver(mode), "probability", target, 0, NOTHING)
@@ -100,6 +110,8 @@ class _Question:
         if solver_.is_unclear:
             raise NoValueError("rewards are negative in a part of the model that can be repeated for ever")
         if solver_.has_ended_early:
+            if self.work is not None:
+                raise NoValueError(_TOO_MUCH_WORK)
             self.is_precise = False
         # Equal bounds can be in the wrong order after rounding.
         return Bounds(min(low, high), max(low, high))

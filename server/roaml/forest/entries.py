@@ -150,6 +150,7 @@ def _intended(forest: Forest, uses: tuple[Use, ...]) -> Iterator[Key]:
             if port is not None and port.direction is Direction.OUT and entry_of(setting) is None:
                 text = setting.value.value.strip().strip("{}")
                 yield _name(tree), text if _NAME.match(text) else ""
+                yield _name(tree), port.name
 
 
 def _uses(forest: Forest) -> Iterator[Use]:

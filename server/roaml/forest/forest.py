@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roaml.forest.cpp_types import normal
@@ -157,7 +157,9 @@ class Forest:
                 for node in nodes(tree):
                     name = node.plugin.value if node.plugin and not node.is_subtree else ""
                     entry = known.nodes.get(name)
-                    if entry is None or name in self.models or name in self.trees:
+                    if entry is None or name in self.trees:
+                        continue
+                    if name in self.models and not _is_model_of(self.models[name], entry):
                         continue
                     if name not in _COMMON_NAMES:
                         return True
@@ -170,10 +172,29 @@ class Forest:
         declaration = CPP.nodes.get(name)
         if declaration is not None and not declaration.until and not self.is_newer_than_used(declaration):
             return declaration
-        declaration = self.models.get(name)
+        declaration = self._described.get(name)
         if declaration is not None:
             return declaration
         return next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
+
+    @cached_property
+    def _described(self) -> Mapping[str, Node]:
+        """The nodes in models. Groot2 also writes models of nodes of libraries. Such a model determines which ports the
+        node has; its behaviour, and types and defaults that the model does not state, are those of the library."""
+        described = dict(self.models)
+        for known in self.libraries:
+            for name, model in self.models.items():
+                entry = known.nodes.get(name)
+                if entry is not None and _is_model_of(model, entry):
+                    described[name] = replace(
+                        model,
+                        ports=tuple(_completed(port, entry) for port in model.ports),
+                        children=entry.children,
+                        running=entry.running,
+                        succeeds=entry.succeeds,
+                        behaviour=known.name,
+                    )
+        return described
 
     def is_newer_than_used(self, node: Node) -> bool:
         """Whether the node is newer than the version of the library that is used."""
@@ -248,6 +269,18 @@ def _is_old(node: TreeNode) -> bool:
         or (not node.compact and not node.is_subtree and name in _OLD_TAGS)
         or (node.is_subtree and any(node.element.get(attribute) for attribute in OLD_ATTRIBUTES))
     )
+
+
+def _is_model_of(model: Node, node: Node) -> bool:
+    """Whether a model describes a node of a library: its kind is the same, and the library has all its ports."""
+    return model.kind is node.kind and all(node.port(port.name) is not None for port in model.ports)
+
+
+def _completed(port: Port, node: Node) -> Port:
+    """A port of a model of a node of a library, with the type and default of the library if the model has none."""
+    known = node.port_by_name[port.name]
+    default = known.default if port.default is None else port.default
+    return replace(port, type=port.type or known.type, default=default, text=port.text or known.text)
 
 
 def _is_clear(model: NodeModel) -> bool:

@@ -87,7 +87,7 @@ class PossibleStatuses:
         if node.is_subtree or self.forest.names_tree(node):
             return self._tree(name) if name in self.forest.trees else ANY_STATUS
         known = self.forest.known_node(node)
-        if known is None or not known.library:
+        if known is None or not known.behaviour:
             return ANY_STATUS
         if name in _SEQUENCES:
             return _in_turn(below, S, F) | ({R} if name.startswith("Async") else frozenset())
@@ -121,10 +121,14 @@ class PossibleStatuses:
             case "RetryUntilSuccessful":
                 endless = (child - {F}) | {R}
                 return endless if _number(node, "num_attempts") == "-1" else child | {R, F}
-            case "Delay":
+            case "Delay" | "RateController" | "DistanceController" | "SpeedController" | "GoalUpdatedController":
                 return child | {R}
-            case "Timeout":
+            case "Timeout" | "SingleTrigger":
                 return child | {F}
+            case "PathLongerOnApproach":
+                return child | {S}
+            case "GoalUpdater":
+                return child
         return ANY_STATUS
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
@@ -170,7 +174,7 @@ class PossibleStatuses:
             known = self.forest.known_node(node)
             if known is None:
                 return False
-            if name in (*_CHILD_FIRST, *_TRANSPARENT) and known.library and node.children:
+            if name in (*_CHILD_FIRST, *_TRANSPARENT) and known.behaviour and node.children:
                 node = node.children[0]
                 continue
             return known.running is True and not _is_zero(node)

@@ -20,14 +20,14 @@ from roaml.ide.names.in_property_file import SYMBOL_KINDS
 from roaml.ide.verifiable import verifiable
 from roaml.model.kinds import FileKind
 from roaml.model.property_file import (
-    ASSUMES,
-    GUARANTEES,
     NAME_ATTRIBUTES,
+    PORTS,
     ObservedPart,
     Port,
     PortKind,
     PortVariableKind,
     PropertyFile,
+    PropertySection,
     build_property_file,
 )
 from roaml.model.property_links import clock_step
@@ -184,7 +184,9 @@ def new_property(
     lines = _property(name, pattern, scope, written, within)
     if file is None or path is None:
         path = new_file.free_path(analysis, folder_of(system), FILE_NAME)
-        text = "\n".join(_section("properties", [*_section("ports", ports), *_section(GUARANTEES, lines)]))
+        text = "\n".join(
+            _section("properties", [*_section(PORTS, ports), *_section(PropertySection.GUARANTEES.value, lines)])
+        )
         listing = add_input(analysis, system, SystemSection.PROPERTIES, "xml", path)
         return NewProperty(name, path, WorkspaceEdit({system: listing}, created={path: f"{text}\n"}))
     source = analysis.source(path)
@@ -199,18 +201,18 @@ def _is_ours(analysis: Analysis, path: str) -> bool:
 
 def _added(file: PropertyFile, ports: Sequence[str], lines: Sequence[str]) -> Iterator[Edit]:
     root, document = file.element, file.document
-    written, guarantees = root.find("ports"), root.find(GUARANTEES)
+    written, guarantees = root.find(PORTS), root.find(PropertySection.GUARANTEES.value)
     new: list[str] = []
     if ports and written is not None:
         yield last_in(document, written, *ports)
-    elif ports and (guarantees is not None or root.find(ASSUMES) is not None):
-        yield first_in(document, root, *_section("ports", ports))
+    elif ports and (guarantees is not None or root.find(PropertySection.ASSUMES.value) is not None):
+        yield first_in(document, root, *_section(PORTS, ports))
     elif ports:
-        new = _section("ports", ports)
+        new = _section(PORTS, ports)
     if guarantees is not None:
         yield last_in(document, guarantees, *lines)
     else:
-        new += _section(GUARANTEES, lines)
+        new += _section(PropertySection.GUARANTEES.value, lines)
         others = root.elements
         yield after(document, others[-1], *new) if others else first_in(document, root, *new)
 

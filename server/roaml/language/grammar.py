@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from roaml.language.resources import schema_path
-from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValueRole
+from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValuePart, ValueRole
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -112,11 +112,11 @@ class Multiplicity:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """An event variable. It is available in conditions if `only` is "cond", in bodies if `only` is "body", and in both
-    if `only` is empty."""
+    """An event variable. It is available in conditions if `only` is `COND`, in bodies if `only` is `BODY`, and in both
+    if `only` is `None`."""
 
     name: str
-    only: str = ""
+    only: ValuePart | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -309,7 +309,7 @@ class _Reader:
             sends=_part(roles.get("sends")),
             receives=_part(roles.get("receives")),
             code=int({**roles.get("sends", {}), **roles.get("receives", {})}.get("code", "0")),
-            binds=tuple(Binding(r["name"], r.get("only", "")) for kind, r in _roles(node) if kind == "binds"),
+            binds=tuple(_binding(r) for kind, r in _roles(node) if kind == "binds"),
             ignored=ignored is not None,
             use=deprecated["use"] if deprecated else "",
             node=NodeKind(kind) if (kind := tree_node.get("kind")) else None,
@@ -411,6 +411,10 @@ def _local(node: Any) -> str:
 def _documentation(node: Any) -> str:
     text = node.findtext(f"{_XS}annotation/{_XS}documentation")
     return text.strip() if text else ""
+
+
+def _binding(role: Mapping[str, str]) -> Binding:
+    return Binding(role["name"], ValuePart(role["only"]) if "only" in role else None)
 
 
 def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:

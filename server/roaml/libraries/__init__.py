@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-from roaml.libraries.node import Absent, Library, Node, Port, Renamed
+from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
 from roaml.roles import UNBOUNDED, Direction, NodeKind
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "Library",
     "Node",
     "Port",
+    "PortLimits",
     "Renamed",
     "library",
     "node_in_libraries",
@@ -63,7 +64,8 @@ def _read(root: Any) -> Library:
         hint = element.get("not-translated", "")
         absent[name] = Absent(name, kind, _text(element), element.get("instead", ""), hint)
     entries = frozenset(element.get("name") for element in root.iterchildren("entry"))
-    return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries)
+    foreign = {element.get("id"): element.get("to") for element in root.iterchildren("foreign")}
+    return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries, foreign)
 
 
 def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
@@ -82,6 +84,7 @@ def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
         element.get("program-only") == "true",
         element.get("in-systems", ""),
         element.get("succeeds") == "true",
+        library_name,
     )
 
 
@@ -97,6 +100,26 @@ def _port(element: Any) -> Port:
         element.get("system-type", ""),
         Direction(direction) if (direction := element.get("system-direction")) else None,
         element.get("system-constant") == "true",
+        _limits(element),
+    )
+
+
+_LIMITS = ("min", "above", "counts-children", "at-most", "less-than")
+"""The attributes of ports that limit numbers."""
+
+
+def _limits(element: Any) -> PortLimits | None:
+    if not any(element.get(attribute) for attribute in _LIMITS):
+        return None
+    minimum = element.get("min", element.get("above"))
+    return PortLimits(
+        None if minimum is None else float(minimum),
+        element.get("above") is not None,
+        frozenset(map(float, element.get("special", "").split())),
+        element.get("counts-children") == "true",
+        element.get("at-most", ""),
+        element.get("less-than", ""),
+        element.get("effect", ""),
     )
 
 

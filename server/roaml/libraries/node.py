@@ -19,6 +19,29 @@ WORLD_NODES = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
+class PortLimits:
+    """The numbers that are useful values of a port (docs/spec/lone-trees.md#limits).
+
+    Attributes:
+        minimum: the least useful number; `None` if there is no minimum.
+        is_exclusive: whether `minimum` itself is not useful.
+        special: the numbers below the minimum that have a meaning of their own.
+        counts_children: whether the number is a number of children: at least 1, or at most -1, where -1 means all
+            children, -2 all except one, and so on.
+        at_most, less_than: the name of another port whose number is an upper bound, or "".
+        effect: what the node does with other numbers, as a sentence without full stop, or "".
+    """
+
+    minimum: float | None = None
+    is_exclusive: bool = False
+    special: frozenset[float] = frozenset()
+    counts_children: bool = False
+    at_most: str = ""
+    less_than: str = ""
+    effect: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Port:
     """A port of a node.
 
@@ -28,6 +51,7 @@ class Port:
         required: whether the node needs a value; known only for ports of libraries and of subtrees.
         alias_of: the port of which this is another name in trees of systems, or "".
         system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
+        limits: the useful numbers; `None` if all are useful.
     """
 
     name: str
@@ -40,6 +64,7 @@ class Port:
     system_type: str = ""
     system_direction: Direction | None = None
     system_constant: bool = False
+    limits: PortLimits | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +73,8 @@ class Node:
 
     Attributes:
         library: the name of its library, "" for nodes of a `<TreeNodesModel>`.
+        behaviour: the name of the library whose node it is, even if a `<TreeNodesModel>` describes it; "" if its
+            behaviour is not known.
         children: the minimum and maximum number of children.
         since: the first version of the library that has the node, "" if all supported versions have it.
         until: the first version that no longer has the node, or "".
@@ -70,6 +97,7 @@ class Node:
     program_only: bool = False
     in_systems: str = ""
     succeeds: bool = False
+    behaviour: str = ""
 
     @cached_property
     def port_by_name(self) -> Mapping[str, Port]:
@@ -110,6 +138,7 @@ class Library:
 
     Attributes:
         renamed: the names of version 3 that other names replace.
+        foreign: the names of nodes in other libraries of behavior trees, with the names of these nodes in this library.
         absent: the names that are known not to be nodes.
         entries: the blackboard entries set by the program that executes a tree.
     """
@@ -120,3 +149,4 @@ class Library:
     renamed: Mapping[str, Renamed]
     absent: Mapping[str, Absent]
     entries: frozenset[str]
+    foreign: Mapping[str, str]

@@ -18,7 +18,7 @@ from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import PortRead
 from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings, find_handle, port_type
-from roaml.roles import SymbolKind
+from roaml.roles import SymbolKind, ValuePart
 from roaml.scxml.events import ScxmlEvent
 from roaml.text import Decoded, Location, Span
 
@@ -52,9 +52,9 @@ class LoweringContext:
             return Location(self.automaton.path, span)
         return self.program.place_of(self.automaton)
 
-    def scope(self, handler: Handler | None = None, part: str = "body") -> LoweringScope:
-        """The names that can be used in `part` of a handler, "cond" or "body"; without a handler, those in `<onentry>`
-        and `<onexit>`."""
+    def scope(self, handler: Handler | None = None, part: ValuePart = ValuePart.BODY) -> LoweringScope:
+        """The names that can be used in `part` of a handler, its condition or its body; without a handler, those in
+        `<onentry>` and `<onexit>`."""
         if handler is None:
             return LoweringScope(self.variables, {}, {})
         return LoweringScope(self.variables, bindings(handler, part, self.machine, self.program.environment), {})

@@ -299,7 +299,7 @@ class LibraryTreeBuilder:
         number = self.index[id(part)]
         is_condition = node.type in (*MACHINES, "SubTree")
         values = PortValues() if is_condition else port_values(node, program, self.board)
-        if program.asks_world:
+        if program.reads_world:
             probability = event_probability(node)
             values.known["event"] = EVENT_PROBABILITY if probability is None else probability
         return NodeCode(

@@ -26,7 +26,7 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton as PlainAutomaton
 from roaml.scxml.model import Data, Send, State, Statement, Target, Transition
@@ -238,7 +238,7 @@ class _ChartLowering:
     def condition(self, handler: Handler) -> Expr | None:
         if handler.cond is None:
             return None
-        scope = self.context.scope(handler, "cond")
+        scope = self.context.scope(handler, ValuePart.COND)
         if handler.trigger in (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED):
             scope = replace(scope, constants=STATUSES)
         return lower_expr(handler.cond.tree, scope)

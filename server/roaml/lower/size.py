@@ -42,7 +42,8 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind, ValuePart
+from roaml.scxml.names import FLAG
 
 _EDGE = 4
 """The size of an edge without its expressions: a destination, an action and two locations."""
@@ -148,7 +149,7 @@ def _variables(chart: Chart, program: TranslatableSystem) -> dict[str, Type]:
 
 def _parts(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) -> Iterator[Share]:
     counted: dict[tuple[int, int], tuple[int, int]] = {}
-    events = sum(variable.parameter == "valid" for variable in globals_.values())
+    events = sum(variable.parameter == FLAG for variable in globals_.values())
     automata, syncs = events, 2 * events
     for automaton, machine in _members(program):
         children = len(automaton.instance.children) if automaton.instance else 0
@@ -172,7 +173,7 @@ class _Query(NamedTuple):
 
     tree: Expr
     handler: Handler | None
-    part: str
+    part: ValuePart
     type: Type
 
 
@@ -231,7 +232,7 @@ class _Counter:
             copies = self.copies(handler)
             condition = _nodes(handler.cond.tree) + 2 if handler.cond else 0
             condition += _CHILD_CONDITION if self.by_variable(handler) else 0
-            condition += self.comparisons(handler.cond, handler, "cond")
+            condition += self.comparisons(handler.cond, handler, ValuePart.COND)
             trigger = self.trigger(handler)
             before = earlier.get(trigger, 0)
             bodies = sum(
@@ -334,19 +335,19 @@ class _Counter:
         return 3 + self.value(param.value, handler) + padding + drawn
 
     def value(self, value: Expression, handler: Handler | None) -> int:
-        return _nodes(value.tree) + self.comparisons(value, handler, "body")
+        return _nodes(value.tree) + self.comparisons(value, handler, ValuePart.BODY)
 
     def choice(self, statement: If, handler: Handler | None) -> int:
         count, earlier = 2 * _EDGE, 0
         for branch in statement.branches:
             condition = _nodes(branch.cond.tree) + 2 if branch.cond else 0
-            condition += self.comparisons(branch.cond, handler, "body")
+            condition += self.comparisons(branch.cond, handler, ValuePart.BODY)
             count += _EDGE + condition + earlier + self.body(branch.body, handler)
             earlier += condition
         otherwise = self.body(statement.otherwise.body, handler) if statement.otherwise else 0
         return count + _EDGE + earlier + otherwise
 
-    def comparisons(self, value: Expression | None, handler: Handler | None, part: str) -> int:
+    def comparisons(self, value: Expression | None, handler: Handler | None, part: ValuePart) -> int:
         """The number of parts of the comparisons of arrays in an expression, which compare each element."""
         count = 0
         for node in walk(value.tree) if value else ():
@@ -357,12 +358,12 @@ class _Counter:
                     count += 10 * min(cells_of(side, self.program.parameters.max_array_size) for side in arrays)
         return count
 
-    def type(self, tree: Expr, handler: Handler | None, part: str = "body") -> Type:
+    def type(self, tree: Expr, handler: Handler | None, part: ValuePart = ValuePart.BODY) -> Type:
         type_ = self.inferred(tree, handler, part)
         self.queries.append(_Query(tree, handler, part, type_))
         return type_
 
-    def inferred(self, tree: Expr, handler: Handler | None, part: str) -> Type:
+    def inferred(self, tree: Expr, handler: Handler | None, part: ValuePart) -> Type:
         known = bindings(handler, part, self.machine, self.program.environment) if handler else {}
         return infer(tree, {**self.variables, **known}.get)[0]
 

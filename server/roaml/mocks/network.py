@@ -171,7 +171,7 @@ class _Builder:
             outputs = tuple(self.outputs(node, board))
         else:
             values = port_values(node, program, board)
-        if program.asks_world:
+        if program.reads_world:
             values.known["event"] = self.event(node)
         return NodeCode(
             str(node.number),

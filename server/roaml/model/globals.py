@@ -22,9 +22,11 @@ from roaml.scxml.names import (
     BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
+    FLAG,
     TreeEventKind,
     action_stem,
     cancel_request,
+    flag_of,
     safe_name,
     service_stem,
     topic_message,
@@ -41,7 +43,7 @@ class GlobalVariable:
 
     Attributes:
         event: the event whose data it contains.
-        parameter: the parameter of the event; "valid" for the flag.
+        parameter: the parameter of the event; `FLAG` for the flag.
         source: the part of the models that sends the event; `None` if it has no symbol.
     """
 
@@ -56,7 +58,7 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     """All global variables by name."""
     table: dict[str, GlobalVariable] = {}
     for event, source, params in _events(system, interface):
-        table.setdefault(f"{event}.valid", GlobalVariable(f"{event}.valid", BOOL, event, "valid", source))
+        table.setdefault(flag_of(event), GlobalVariable(flag_of(event), BOOL, event, FLAG, source))
         for name, type_ in params:
             for variable, leaf in _flatten(f"{event}__{name}", type_):
                 table.setdefault(variable, GlobalVariable(variable, leaf, event, name, source))

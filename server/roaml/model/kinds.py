@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, Grammar
+from roaml.model.config_files import CONFIG_FILE, PROJECT_FILE
 
 
 class FileKind(enum.Enum):
@@ -42,11 +43,6 @@ EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIO
 """The extensions of files that are searched for. Files with other extensions are read only if a user or a file names
 them."""
 
-CONFIG_FILE = "as2fm.toml"
-PROJECT_FILE = "pyproject.toml"
-"""The name of files that may contain a configuration in the table `tool.as2fm`."""
-
-CONFIG_FILES = (CONFIG_FILE, PROJECT_FILE)
 
 _ROOTS = {
     **dict.fromkeys(HL_SCXML.roots, FileKind.MACHINE),

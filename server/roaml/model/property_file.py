@@ -63,7 +63,17 @@ NAME_ATTRIBUTES = {
 }
 """Kind of port -> the attribute with the name of the interface, node or event that the port listens to."""
 
-GUARANTEES, ASSUMES = "guarantees", "assumes"
+
+class PropertySection(Vocabulary):
+    """A section of a property file that contains properties. The values are the names of the elements."""
+
+    GUARANTEES = "guarantees"
+    ASSUMES = "assumes"
+
+
+_SECTIONS = {section.value: section for section in PropertySection}
+PORTS = "ports"
+"""The section with the ports."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,11 +135,11 @@ class WrittenFormula:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrittenProperty:
-    """A property as written. `section` is `GUARANTEES` or `ASSUMES`; `conditions` are the conditions in `<event>` or
+    """A property as written. `conditions` are the conditions in `<event>` or
     `<events>`."""
 
     element: Element
-    section: str
+    section: PropertySection
     id: Name | None
     pattern: Name | None
     logic: Name | None
@@ -171,14 +181,14 @@ def build_property_file(document: Document) -> PropertyFile | None:
     ports = [
         _port(document, element)
         for section in root.elements
-        if section.name == "ports"
+        if section.name == PORTS
         for element in section.elements
         if element.name in _PORTS
     ]
     properties = [
-        _property(document, element, section.name)
+        _property(document, element, _SECTIONS[section.name])
         for section in root.elements
-        if section.name in (GUARANTEES, ASSUMES)
+        if section.name in _SECTIONS
         for element in section.elements
         if element.name == "property"
     ]
@@ -202,7 +212,7 @@ def _variable(document: Document, element: Element) -> PortVariable:
     )
 
 
-def _property(document: Document, element: Element, section: str) -> WrittenProperty:
+def _property(document: Document, element: Element, section: PropertySection) -> WrittenProperty:
     holders = [child for child in element.elements if child.name in ("event", "events")]
     events = [child for h in holders for child in ([h] if h.name == "event" else h.elements) if child.name == "event"]
     contents = (document.content(event) for event in events)

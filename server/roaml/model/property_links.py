@@ -29,9 +29,9 @@ from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
 from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
-    ASSUMES,
     PortVariableKind,
     PropertyFile,
+    PropertySection,
     TimeInterval,
     WrittenProperty,
     WrittenScope,
@@ -232,7 +232,7 @@ class _Linker:
         property_, conditions = expressions
         names = {node.name for c in conditions.values() for node in walk(c.tree) if isinstance(node, Name)}
         ports = tuple(p for p in self.linked_ports if any(variable.id in names for variable in p.variables))
-        is_assumption = written.section == ASSUMES
+        is_assumption = written.section is PropertySection.ASSUMES
         return LinkedProperty(
             written.id.value,
             is_assumption,
@@ -249,7 +249,7 @@ class _Linker:
         if expect is None:
             return
         comparison = read_comparison(expect.value)
-        if written.section == ASSUMES:
+        if written.section is PropertySection.ASSUMES:
             self.report(ProblemKind.FORM, expect.span, "an assumption has no probability; remove `expect`")
         elif comparison is None or not 0 <= comparison.number <= 1:
             message = "`expect` must compare the probability with a number from 0 to 1: `>= 0.9`"

@@ -23,7 +23,7 @@ from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.roles import ProtocolPart
-from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, safe_name, sanitise, topic_message
+from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, flag_of, safe_name, sanitise, topic_message
 from roaml.scxml.observed import PortEvent
 from roaml.suggest import alternatives, close_names
 from roaml.text import Span
@@ -329,7 +329,7 @@ class PortLinker:
 
     def _parameters(self, event: str) -> dict[str, Type] | None:
         """The parameters of an event of the translation; `None` if there is no event with this name."""
-        if f"{event}.valid" not in self.variables:
+        if flag_of(event) not in self.variables:
             return None
         names = (v for v in self.variables.values() if v.event == event and v.name.startswith(f"{event}__"))
         return {v.name.removeprefix(f"{event}__"): v.type for v in names if "." not in v.name[len(event) :]}
@@ -399,7 +399,7 @@ def observed_names(file: PropertyFile) -> Iterator[str]:
     for port in file.ports:
         if port.name is not None and port.kind in (PortKind.TOPIC, PortKind.PLAIN):
             name = topic_message(port.name.value) if port.kind is PortKind.TOPIC else port.name.value
-            yield f"{name}.valid"
+            yield flag_of(name)
 
 
 def part_of(port: Port, find: Callable[[str, str], InterfaceType | None]) -> Struct | None:

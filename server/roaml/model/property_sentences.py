@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 
 from roaml.expr.tree import Name as NameExpr
 from roaml.model.property_file import (
-    ASSUMES,
     ObservedPart,
     Port,
     PortKind,
     PortVariableKind,
     PropertyFile,
+    PropertySection,
     WrittenProperty,
 )
 from roaml.model.syntax import Expression, Name
@@ -26,7 +26,7 @@ def sentence(file: PropertyFile, written: WrittenProperty) -> str:
     text = _sentence(file, written)
     if text and written.expect is not None:
         text = f"{text[:-1]}; the expected probability is {quoted(written.expect.value)}."
-    return f"Assumed: {text[:1].lower()}{text[1:]}" if text and written.section == ASSUMES else text
+    return f"Assumed: {text[:1].lower()}{text[1:]}" if text and written.section is PropertySection.ASSUMES else text
 
 
 def sentences(file: PropertyFile) -> Mapping[str, str]:

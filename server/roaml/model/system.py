@@ -41,6 +41,7 @@ from roaml.scxml.names import (
     TOPIC_PREFIX,
     TREE_PREFIX,
     cancel_request,
+    flag_of,
     is_interface_event,
     sanitise,
 )
@@ -438,7 +439,7 @@ class System:
         names = self._sorted_observed
         following = bisect.bisect_left(names, f"{event}__")
         is_parameter = following < len(names) and names[following].startswith(f"{event}__")
-        return is_parameter or f"{event}.valid" in self.observed
+        return is_parameter or flag_of(event) in self.observed
 
     @cached_property
     def _sorted_observed(self) -> Sequence[str]:
@@ -550,7 +551,7 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
         case GapAct.SENDS | GapAct.PARAMETER:
             if name is None:
                 return not (is_interface_event(variable) or variable.startswith(TREE_PREFIX))
-            return variable == f"{name}.valid" or variable.startswith(f"{name}__")
+            return variable == flag_of(name) or variable.startswith(f"{name}__")
         case GapAct.TREE | GapAct.VARIABLE:
             return variable.startswith(TREE_PREFIX)
         case GapAct.NAME:

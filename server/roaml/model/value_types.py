@@ -48,7 +48,7 @@ from roaml.model.machine import (
 )
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES
 from roaml.xml_syntax import Element
 
@@ -108,7 +108,7 @@ class ValuePlace:
     """The place of a value in a machine.
 
     Attributes:
-        part: "data", "cond", "body", "onentry" or "onexit".
+        part: the part of the machine that contains the value.
         late: whether an event is sent, or a condition of an `<if>` is evaluated, between the arrival of the event and
             the evaluation of this value, so that the event data may be newer
             (docs/spec/machines.md#event-data-lifetime).
@@ -119,7 +119,7 @@ class ValuePlace:
     chart: Chart
     state: State | None
     handler: Handler | None
-    part: str
+    part: ValuePart
     late: bool = False
     branch_conditions: BranchConditions | None = None
 
@@ -190,17 +190,17 @@ GOAL_ID = BASE_TYPES["int32"]
 STATUS = BASE_TYPES["int8"]
 
 
-def bindings(handler: Handler, part: str, machine: Machine, environment: Environment) -> dict[str, Type]:
-    """The event variables available in the `part` ("cond" or "body") of a handler, with their types."""
+def bindings(handler: Handler, part: ValuePart, machine: Machine, environment: Environment) -> dict[str, Type]:
+    """The event variables available in the `part` (`COND` or `BODY`) of a handler, with their types."""
     return {binding.name: event_variable(binding, handler, machine, environment) for binding in bound_in(handler, part)}
 
 
-def bound_in(handler: Handler, part: str) -> tuple[Binding, ...]:
+def bound_in(handler: Handler, part: ValuePart) -> tuple[Binding, ...]:
     """The event variables available in a part of a handler (docs/spec/machines.md#event-variables). A transition
     without an event has none."""
     if handler.trigger is None:
         return ()
-    return tuple(binding for binding in handler.type.binds if binding.only in ("", part))
+    return tuple(binding for binding in handler.type.binds if binding.only in (None, part))
 
 
 def event_variable(binding: Binding, handler: Handler, machine: Machine, environment: Environment) -> Type:
@@ -342,11 +342,11 @@ class _Typer:
             if data.id is not None:
                 variables.setdefault(data.id.value, self.declared(data))
         self.variables[chart.scope] = variables
-        place = ValuePlace(chart, None, None, "data")
+        place = ValuePlace(chart, None, None, ValuePart.DATA)
         for data in chart.data:
             self.data(data, place)
         for state in chart.states:
-            for body, part in ((state.entry, "onentry"), (state.exit, "onexit")):
+            for body, part in ((state.entry, ValuePart.ENTRY), (state.exit, ValuePart.EXIT)):
                 if body is not None:
                     _Body(self, variables, {}, ValuePlace(chart, state, None, part)).run(body.statements)
             late = state.exit is not None and any(not isinstance(s, Assign) for s in state.exit.statements)
@@ -382,14 +382,14 @@ class _Typer:
             self.values += self.taken_over[handler]
             return
         if handler.cond is not None:
-            known = bindings(handler, "cond", self.machine, self.environment)
+            known = bindings(handler, ValuePart.COND, self.machine, self.environment)
             if "_bt" in known:
                 known |= dict.fromkeys(STATUSES, STATUS)
-            body = _Body(self, variables, known, ValuePlace(chart, state, handler, "cond"))
+            body = _Body(self, variables, known, ValuePlace(chart, state, handler, ValuePart.COND))
             body.value(ValueUse.CONDITION, handler.cond, BOOL, handler.element)
-        known = bindings(handler, "body", self.machine, self.environment)
+        known = bindings(handler, ValuePart.BODY, self.machine, self.environment)
         for target in handler.targets:
-            _Body(self, variables, known, ValuePlace(chart, state, handler, "body", late)).run(target.body)
+            _Body(self, variables, known, ValuePlace(chart, state, handler, ValuePart.BODY, late)).run(target.body)
 
 
 GOAL_STATUSES = {4: "STATUS_SUCCEEDED", 5: "STATUS_CANCELED", 6: "STATUS_ABORTED"}

@@ -15,7 +15,7 @@ from typing import Any
 
 from roaml.diagnostics import Finding, Fix
 from roaml.disk import UnreadableReason
-from roaml.model.kinds import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
+from roaml.model.config_files import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, SettingProblem, Settings, folders_above, folders_in, settings_from
 from roaml.text import SourceFile, Span, TextEdit

@@ -11,7 +11,8 @@ import os
 from collections.abc import Iterable, Iterator
 
 from roaml.disk import Roots, UnreadableReason, read, status_of
-from roaml.model.kinds import CONFIG_FILES, EXTENSIONS, FileKind, kind_of
+from roaml.model.config_files import CONFIG_FILES
+from roaml.model.kinds import EXTENSIONS, FileKind, kind_of
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.files import Files
 from roaml.project.paths import is_below, relative

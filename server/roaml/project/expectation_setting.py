@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from roaml.model.kinds import CONFIG_FILE
+from roaml.model.config_files import CONFIG_FILE
 from roaml.text import Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 

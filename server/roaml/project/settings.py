@@ -17,7 +17,7 @@ from roaml.comparison import Comparison, read_comparison
 from roaml.diagnostics import Severity
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
-from roaml.model.kinds import CONFIG_FILE
+from roaml.model.config_files import CONFIG_FILE
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.project import exclude

@@ -15,7 +15,8 @@ from collections.abc import Callable, Iterable, Mapping
 from roaml.disk import Roots
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
-from roaml.model.kinds import CONFIG_FILE, FileKind
+from roaml.model.config_files import CONFIG_FILE
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate

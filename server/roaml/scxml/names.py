@@ -291,6 +291,21 @@ _ON_RECEIVE = "_on_receive"
 # --------------------------------------------------------------------- variables
 
 
+FLAG = "valid"
+"""The last part of the name of the variable that states whether an event has been sent."""
+
+
+def flag_of(event: str) -> str:
+    """The name of the variable that states whether an event has been sent."""
+    return f"{event}.{FLAG}"
+
+
+def flagged_by(variable: str) -> str:
+    """The event whose flag `variable` is; "" if it is not a flag."""
+    event, _, last = variable.rpartition(".")
+    return event if last == FLAG else ""
+
+
 VIOLATED, SATISFIED, PENDING, OPEN, ASKED, OPENED = "violated", "satisfied", "pending", "open", "asked", "opened"
 """The ends of the names of the variables of an observer (docs/spec/jani.md#observers)."""
 

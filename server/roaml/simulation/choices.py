@@ -21,7 +21,7 @@ from roaml.simulation.run import Decision, Enabled, EnabledEdges
 from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.record import Plain
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
 from roaml.views.values import shown_value
 
@@ -149,7 +149,7 @@ def _consequences(automaton: Automaton, destination: Destination, clients: Seque
         visited.add(location)
         event = sent_by(following[0].action or "")
         if event:
-            yield f"{name} sends {said(event, clients)}"
+            yield f"{name} sends {event_phrase(event, clients)}"
         (destination,) = following[0].destinations
 
 
@@ -164,7 +164,7 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
     if description:
         return description
     if event:
-        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {said(event, clients)}"
+        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {event_phrase(event, clients)}"
     event = received_by(action)
     if event and is_timer(event):
         automata = [part.automaton.name for part in actors]
@@ -174,12 +174,12 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
         if all(automaton_role(taker) is Role.TREE_ROOT for taker in takers):
             return "the tree begins its next tick"
         names = [who(taker) for taker in takers]
-        return f"{_listed(names)} {_verb(names, 'takes', 'take')} {said(event, clients, taken=True)}"
+        return f"{_listed(names)} {_verb(names, 'takes', 'take')} {event_phrase(event, clients, taken=True)}"
     if event:
         parameters = _parameters(events.parameters(event))
         if not names:
-            return f"nobody receives {said(event, clients)}{parameters}"
-        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {said(event, clients)}{parameters}"
+            return f"nobody receives {event_phrase(event, clients)}{parameters}"
+        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
     if not names:
         names = [who(part.automaton.name) for part in parts]
     return f"{_listed(names)} {_verb(names, 'goes', 'go')} on"

@@ -31,7 +31,7 @@ from roaml.simulation.state import (
 )
 from roaml.simulation.words import STATUS_NAMES, who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
-from roaml.views.event_words import interface_name, said
+from roaml.views.event_words import event_phrase, interface_name
 from roaml.views.events import EventReader
 from roaml.views.turns import is_inner
 
@@ -191,7 +191,7 @@ class Follower:
             yield EventState(
                 event,
                 self.events.name(event),
-                said(event, self._names),
+                event_phrase(event, self._names),
                 who(sender) if sender else "",
                 parameters,
                 step,

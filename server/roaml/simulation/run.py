@@ -122,10 +122,10 @@ class Run:
         self.position = 0
         self.status = self._kernel.begin(self.seed, self.trace)
         self._check()
-        self._look_for_end()
+        self._check_end()
         self._reader.start()
 
-    def _look_for_end(self) -> None:
+    def _check_end(self) -> None:
         self.has_ended = self._kernel.ended()
         if self.has_ended:
             self._learn(self._kernel.close())
@@ -221,7 +221,7 @@ class Run:
             self._learn(self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)))
             self._learn(self._kernel.look())
             self.position += 1
-        self._look_for_end()
+        self._check_end()
         if self.position % SNAPSHOT_INTERVAL == 0 and self.position not in self._snapshots:
             self._snapshots[self.position] = self.status, self.has_ended, self._kernel.save()
 

@@ -311,7 +311,7 @@ class ExpressionAssembler:
 
     def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
         """An array that is stored in new registers."""
-        region = Region(kind, shape, self.tape.room(kind, product(shape)))
+        region = Region(kind, shape, self.tape.reserve(kind, product(shape)))
         self.fill(node, region, names)
         return region
 

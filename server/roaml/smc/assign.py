@@ -93,7 +93,7 @@ class AssignmentAssembler:
         storage, accesses = self.assigned(target, names)
         place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         if place.offset >= 0:
-            offset = self.tape.room(INT, 1)
+            offset = self.tape.reserve(INT, 1)
             self.tape.emit(Op.MOVE, offset, place.offset)
             place = Region(place.kind, place.shape, place.base, offset)
         self.tape.place(value.origin or target.origin or origin)
@@ -101,7 +101,7 @@ class AssignmentAssembler:
             return Later(
                 place, self.expressions.materialized(value, storage.kind, place.shape, names).base, storage.watch
             )
-        register = self.tape.room(storage.kind, 1)
+        register = self.tape.reserve(storage.kind, 1)
         operand = self.expressions.stored(value, storage.kind, names, register)
         self.check_bounds(operand, storage)
         return Later(place, register, storage.watch)

@@ -185,10 +185,10 @@ def run_in_worker(task: Task) -> BatchOutcome:
     Raises:
         StoppedError: the batch is no longer needed.
     """
-    _look(0, 0)
-    return run(task, _look)
+    _checkpoint(0, 0)
+    return run(task, _checkpoint)
 
 
-def _look(trace: int, steps: int) -> None:
+def _checkpoint(trace: int, steps: int) -> None:
     if _stopping is not None and _stopping.is_set():
         raise StoppedError

@@ -3,7 +3,7 @@
 unknown, the range of the values of sampled schedulers.
 
 1. A model without nondeterminism has only one scheduler.
-2. If there are few states, all are explored (`solve`): the minimum and the maximum are known.
+2. If there are few states, the minimum and the maximum are known from all states (`roaml.verification.small`).
 3. Otherwise schedulers are sampled (`lss.probe`), with a part of the effort of the result.
 
 The method depends only on the model, the question, the options and the traces of the result.
@@ -17,14 +17,14 @@ from dataclasses import dataclass
 from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Model, ModelType
 from roaml.smc.batch import Payload
-from roaml.smc.explore import NO_REGISTERS, Registers
 from roaml.smc.lss import candidates, described, probe
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.program import Compiled
+from roaml.smc.program import Program
 from roaml.smc.run import Answer
-from roaml.smc.solve import solve
 from roaml.smc.statistics import Bounds
 
+NO_NONDETERMINISM = "the model has no nondeterminism"
+"""The reason why all schedulers of a model of type `dtmc` agree."""
 _RESULT_STEPS_PER_PROBE_STEP = 5
 """The effort for the result, divided by the effort for schedulers."""
 _MIN_STEPS, _MAX_STEPS = 50_000, 400_000
@@ -89,18 +89,16 @@ class Choices:
 
 def check_choices(
     model: Model,
-    compiled: Compiled,
+    program: Program,
     payload: Payload,
     answer: Answer,
     automata: Sequence[str],
     pool: Pool,
     pulse: Pulse | None = None,
-    ignored: Registers = NO_REGISTERS,
 ) -> Choices:
     """Determine whether other schedulers may have other values, and which ones.
 
     Args:
-        ignored: registers that neither the goal nor a choice depends on.
         answer: the answer under uniform choices.
         automata: the names of the elements of the system.
 
@@ -108,20 +106,11 @@ def check_choices(
         TraceFaultError: a trace under some scheduler failed.
     """
     if model.type is ModelType.DTMC:
-        return Choices("the model has no nondeterminism", *_of_answer(answer))
-    solution = solve(compiled, ignored=ignored)
-    if solution is not None:
-        states = "1 state" if solution.states == 1 else f"{solution.states:,} states"
-        if not solution.has_choices:
-            return Choices(f"there is only one choice in each of {states}", *_of_answer(answer))
-        if solution.minimum is not None and solution.maximum is not None:
-            least, greatest = (_exact(exact) for exact in (solution.minimum, solution.maximum))
-            if least is not None and greatest is not None:
-                return Choices(f"all {states} were explored" if solution.agrees else "", least, greatest)
+        return Choices(NO_NONDETERMINISM, *_of_answer(answer))
     question, tally = answer.question, answer.tally
     if question.is_reward or not tally.traces:
         return Choices()
-    size = compiled.program.int_count + compiled.program.real_count + compiled.program.instances
+    size = program.int_count + program.real_count + program.instances
     most = _MAX_STEPS * _MAX_CHEAP_REGISTERS // (_MAX_CHEAP_REGISTERS + size)
     budget = max(_MIN_STEPS, min(most, tally.steps // _RESULT_STEPS_PER_PROBE_STEP))
     length = tally.steps / tally.traces
@@ -137,15 +126,6 @@ def check_choices(
     least = sampled[0] if sampled[0].bounds.upper < own_least.bounds.lower else own_least
     greatest = sampled[1] if sampled[1].bounds.lower > own_greatest.bounds.upper else own_greatest
     return Choices("", least, greatest, extremes.tried)
-
-
-def _exact(bounds: Bounds) -> Extreme | None:
-    """The extreme that exact bounds give; `None` if the bounds are too far apart to be called exact."""
-    if bounds.half_width > 5e-7:
-        return None
-    middle = (bounds.lower + bounds.upper) / 2
-    nearest = next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle)
-    return Extreme(nearest, bounds, ExtremeMethod.EXPLORATION)
 
 
 def _of_answer(answer: Answer) -> tuple[Extreme, Extreme]:

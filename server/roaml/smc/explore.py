@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All states of a model, if there are few: for exact results, and for tests of the engine itself."""
+"""All states of a model, if there are few, in plain data: tests compare the engines with it."""
 
 from __future__ import annotations
 
@@ -24,16 +24,6 @@ class ExploredState(NamedTuple):
     place: tuple[int, ...]
     ints: tuple[int, ...]
     reals: tuple[float, ...]
-
-
-class Registers(NamedTuple):
-    """Some of the registers of a program."""
-
-    ints: tuple[int, ...] = ()
-    reals: tuple[int, ...] = ()
-
-
-NO_REGISTERS = Registers()
 
 
 class Successor(NamedTuple):
@@ -65,17 +55,13 @@ class Explorer:
     Args:
         limit: the maximum number of combinations of edges and destinations that are enumerated in one state. With n
             automata of k edges on one action there are kⁿ of them.
-        ignored: registers that neither the goal nor a choice depends on; states that differ only there are treated as
-            the same state.
     """
 
-    def __init__(self, compiled: Compiled, limit: int = MAX_COMBINATIONS, ignored: Registers = NO_REGISTERS) -> None:
+    def __init__(self, compiled: Compiled, limit: int = MAX_COMBINATIONS) -> None:
         self._limit = limit
-        self._ignored = ignored
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._instances = compiled.program.instances
         self._kernel.begin(0, 0)
-        self._start = self._kernel.snapshot()
         self.initial = self._state()
 
     def verdict(self, state: ExploredState) -> int:
@@ -135,9 +121,5 @@ class Explorer:
 
     def _state(self) -> ExploredState:
         ints, reals = self._kernel.snapshot()
-        for register in self._ignored.ints:
-            ints[register] = self._start[0][register]
-        for register in self._ignored.reals:
-            reals[register] = self._start[1][register]
         place = tuple(self._kernel.location(i) for i in range(self._instances))
         return ExploredState(place, tuple(ints), tuple(reals))

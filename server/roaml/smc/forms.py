@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
@@ -30,7 +31,6 @@ from roaml.jani.properties import (
     walk,
 )
 from roaml.smc.fault import FaultError
-from roaml.smc.nested import is_nested, without_nesting
 from roaml.smc.normal_form import NestingError, lasting_condition
 
 UNSUPPORTED = "unsupported-property"
@@ -172,6 +172,8 @@ def _in_path(path: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
 
 def _in_nested(path: UnaryPath | BinaryPath, step: int | None) -> Iterator[tuple[str, Node]]:
     """The errors in a path formula that contains other path formulas."""
+    from roaml.smc.nested import without_nesting  # noqa: PLC0415 - most properties are not nested
+
     try:
         without_nesting(path, step, lambda _: path)
     except NestingError as error:

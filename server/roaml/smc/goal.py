@@ -266,10 +266,12 @@ class _Writer:
         triggered, opened = self.outputs.triggered, self.outputs.opened
         if triggered is None and opened is None:
             return -1
-        idle: Expression = Integer(Activity.IDLE)
+        # Without an event that triggers it, a property is triggered when its scope is evaluated.
+        value: Expression = Integer(Activity.TRIGGERED)
+        if triggered is not None:
+            value = Conditional(triggered, value, Integer(Activity.IDLE))
         if opened is not None:
-            idle = Conditional(opened, idle, Integer(Activity.CLOSED))
-        value = Conditional(triggered, Integer(Activity.TRIGGERED), idle) if triggered is not None else idle
+            value = Conditional(opened, value, Integer(Activity.CLOSED))
         return self.compilation.expressions.integer(value, self.names)
 
     def variables(self) -> tuple[str, ...]:

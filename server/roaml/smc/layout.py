@@ -219,7 +219,7 @@ def _assignments(automaton: Automaton) -> Iterator[Assignment]:
 
 
 def _place(storage: Storage, value: Value, tape: Tape) -> None:
-    storage.base = tape.room(storage.kind, product(storage.shape))
+    storage.base = tape.reserve(storage.kind, product(storage.shape))
     cells: MutableSequence[Any] = tape.reals if storage.kind == REAL else tape.ints
     _fill(cells, storage.base, storage.shape, value)
 

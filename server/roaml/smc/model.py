@@ -8,21 +8,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
-from roaml.jani.model import Model
-from roaml.jani.passive import unread_variables, without_passive
+from roaml.jani.model import Model, ModelType
+from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property
 from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
-from roaml.smc.explore import Registers
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, compile_property, compile_stuck, conditional
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program, merged
-from roaml.smc.registers import REAL, product
 from roaml.smc.run import (
     Answer,
     Inquiry,
@@ -106,6 +104,11 @@ class ModelChecker:
         return compile_property(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
 
     @property
+    def is_deterministic(self) -> bool:
+        """Whether the type of the model excludes nondeterminism."""
+        return self.model.type is ModelType.DTMC
+
+    @property
     def legend(self) -> Legend:
         return self._compilation.legend
 
@@ -128,17 +131,6 @@ class ModelChecker:
             includes_stuck=property_.question.is_stuck,
             outputs=self._outputs(property_),
         )
-
-    def _ignored(self, property_: CompiledProperty) -> Registers:
-        """The registers that only other questions depend on."""
-        names = unread_variables(self.model, *self._read(property_))
-        ints: list[int] = []
-        reals: list[int] = []
-        for storage in self.legend.layout.shared:
-            if storage.name in names:
-                registers = reals if storage.kind == REAL else ints
-                registers += range(storage.base, storage.base + product(storage.shape))
-        return Registers(tuple(ints), tuple(reals))
 
     def _read(self, property_: CompiledProperty) -> tuple[Formula, ...]:
         """All formulas on which the probability of a question depends."""
@@ -247,13 +239,8 @@ class ModelChecker:
         Raises:
             FaultError: a trace under some scheduler failed.
         """
-        compiled, payload, ignored = (
-            self.compiled(property_),
-            self.payload(property_),
-            self._ignored(property_),
-        )
         try:
-            return check_choices(self.model, compiled, payload, answer, self.automata, pool, pulse, ignored)
+            return check_choices(self.model, self.program, self.payload(property_), answer, self.automata, pool, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 

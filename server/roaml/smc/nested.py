@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import TypeVar
 
 from roaml.jani.expressions import Expression, Integer, Real
+from roaml.jani.nesting import is_about_paths, is_nested
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     BinaryFormula,
@@ -21,7 +22,6 @@ from roaml.jani.properties import (
     BinaryPathOperator,
     Formula,
     PathBounds,
-    Predicate,
     ProperFormula,
     UnaryFormula,
     UnaryPath,
@@ -77,20 +77,6 @@ class ObservedFormula:
 
     property: observed.Property
     conditions: tuple[tuple[str, Expression], ...]
-
-
-def is_nested(formula: Formula) -> bool:
-    """Whether a path operator is applied to a path formula."""
-    if not isinstance(formula, (UnaryPath, BinaryPath)):
-        return False
-    operands = (formula.operand,) if isinstance(formula, UnaryPath) else (formula.left, formula.right)
-    return any(_is_about_paths(operand) for operand in operands)
-
-
-def _is_about_paths(formula: Formula) -> bool:
-    while isinstance(formula, UnaryFormula):
-        formula = formula.operand
-    return isinstance(formula, ProperFormula) and not isinstance(formula, Predicate)
 
 
 def without_nesting(formula: Formula, step: int | None, observe: Callable[[ObservedFormula], Formula]) -> Formula:
@@ -313,7 +299,7 @@ class _Recogniser:
             case UnaryPath(operator=UnaryPathOperator.FINALLY, operand=operand):
                 event = {LEFT: _condition(operand), **conditions}
                 return self.pattern(Pattern.EXISTENCE, ScopeKind.AFTER, event, self.window(path))
-            case UnaryPath(operator=UnaryPathOperator.GLOBALLY, operand=operand) if not _is_about_paths(operand):
+            case UnaryPath(operator=UnaryPathOperator.GLOBALLY, operand=operand) if not is_about_paths(operand):
                 always = {LEFT: _condition(operand), **conditions}
                 return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER, always, self.window(path))
             case UnaryPath(operator=UnaryPathOperator.GLOBALLY, operand=operand) if path.time_bounds is None:

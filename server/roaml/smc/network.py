@@ -23,7 +23,7 @@ _PROBABILITY_TOLERANCE = 1e-6
 
 
 @dataclass(slots=True)
-class Way:
+class WeightedDestination:
     """A destination of an edge. `probability` is `None` if it depends on the state."""
 
     destination: Destination
@@ -35,7 +35,7 @@ class EdgeStep:
     """An edge of an instance that can be taken. `guard` is `None` if the edge is always enabled."""
 
     edge: Edge
-    ways: list[Way]
+    ways: list[WeightedDestination]
     guard: Expression | None
     is_inert: bool
 
@@ -157,7 +157,7 @@ class CompiledNetwork:
             if probability is not None and probability < 0:
                 raise FaultError("a probability must not be negative", destination.origin or edge.origin)
             if probability != 0:
-                ways.append(Way(destination, None if probability is None else float(probability)))
+                ways.append(WeightedDestination(destination, None if probability is None else float(probability)))
         if not ways:
             raise FaultError("the probabilities of this edge do not add up to 1", edge.origin)
         if any(way.probability is None for way in ways):

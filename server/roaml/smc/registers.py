@@ -98,11 +98,11 @@ class Tape:
         key = (f"{kind}{str(value)[0]}", value)
         register = self._constants.get(key)
         if register is None:
-            register = Operand(kind, self.room(kind, 1, value), value)
+            register = Operand(kind, self.reserve(kind, 1, value), value)
             self._constants[key] = register
         return register
 
-    def room(self, kind: str, size: int, value: Number = 0) -> int:
+    def reserve(self, kind: str, size: int, value: Number = 0) -> int:
         """Reserve consecutive registers; return the number of the first one."""
         if kind == REAL:
             self.reals += [float(value)] * size
@@ -120,11 +120,11 @@ class Tape:
         """A register for an intermediate result in this piece of code."""
         if kind == REAL:
             if self._used_reals == len(self._free_reals):
-                self._free_reals.append(self.room(kind, 1))
+                self._free_reals.append(self.reserve(kind, 1))
             self._used_reals += 1
             return self._free_reals[self._used_reals - 1]
         if self._used_ints == len(self._free_ints):
-            self._free_ints.append(self.room(kind, 1))
+            self._free_ints.append(self.reserve(kind, 1))
         self._used_ints += 1
         return self._free_ints[self._used_ints - 1]
 

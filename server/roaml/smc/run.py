@@ -83,7 +83,7 @@ class Options:
             raise ValueError("the method `fixed` needs a number of traces (--max-traces)")
 
 
-class Seen(NamedTuple):
+class StoredTrace(NamedTuple):
     """A stored trace: its number and its steps."""
 
     trace: int
@@ -95,7 +95,7 @@ class Ended:
     """The traces that have ended for one reason: their number, and the shortest one."""
 
     count: int
-    shortest: Seen
+    shortest: StoredTrace
 
 
 @dataclass(slots=True)
@@ -126,8 +126,8 @@ class Tally:
     accepted: bool | None = None
     is_finished: bool = False
     is_revised: bool = False
-    examples: dict[int, list[Seen]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
-    shortest: dict[int, Seen] = field(default_factory=dict)
+    examples: dict[int, list[StoredTrace]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
+    shortest: dict[int, StoredTrace] = field(default_factory=dict)
     ends: dict[End, Ended] = field(default_factory=dict)
 
     @property
@@ -180,10 +180,10 @@ class Tally:
             accepted=value["accepted"],
             is_finished=bool(value["finished"]),
             is_revised=bool(value["revised"]),
-            examples={int(v): [Seen(*example) for example in seen] for v, seen in value["examples"].items()},
-            shortest={int(v): Seen(*example) for v, example in value["shortest"].items()},
+            examples={int(v): [StoredTrace(*example) for example in seen] for v, seen in value["examples"].items()},
+            shortest={int(v): StoredTrace(*example) for v, example in value["shortest"].items()},
             ends={
-                End[name.upper()]: Ended(int(count), Seen(int(trace), int(steps)))
+                End[name.upper()]: Ended(int(count), StoredTrace(int(trace), int(steps)))
                 for name, (count, trace, steps) in value["ends"].items()
             },
         )
@@ -414,7 +414,7 @@ def _stops_freely(tally: Tally, options: Options) -> bool:
     return options.method is EstimationMethod.SPRT or tally.is_revised
 
 
-def wanted_traces(options: Options) -> int | None:
+def trace_count(options: Options) -> int | None:
     """The number of traces of a method that is not adaptive; `None` for an adaptive one."""
     if options.method is EstimationMethod.OKAMOTO:
         return okamoto(options.confidence, options.epsilon)
@@ -424,9 +424,7 @@ def wanted_traces(options: Options) -> int | None:
 def _limit(question: Question, options: Options) -> int | None:
     """The maximum number of traces; `None` if there is no limit. Okamoto's number is not a limit for a question with
     assumptions, because it is not known in advance how many traces they accept."""
-    required = (
-        None if question.is_conditional and options.method is EstimationMethod.OKAMOTO else wanted_traces(options)
-    )
+    required = None if question.is_conditional and options.method is EstimationMethod.OKAMOTO else trace_count(options)
     limits = [limit for limit in (options.max_traces, required) if limit is not None]
     return min(limits) if limits else None
 
@@ -464,10 +462,10 @@ def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Option
             tally.idle += 1
         examples = tally.examples[verdict]
         if len(examples) < MAX_KEPT_TRACES:
-            examples.append(Seen(trace, steps))
+            examples.append(StoredTrace(trace, steps))
         if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
-            tally.shortest[verdict] = Seen(trace, steps)
-        _add_end(tally, reason, Seen(trace, steps))
+            tally.shortest[verdict] = StoredTrace(trace, steps)
+        _add_end(tally, reason, StoredTrace(trace, steps))
         if ratio is not None and question.threshold is not None:
             good = tally.successes + (0 if question.threshold.is_lower else tally.undecided)
             above = ratio.decision(good, tally.traces)
@@ -493,7 +491,7 @@ def _given(both: Sequence[Rows]) -> Iterator[tuple[int, int, int, int, float]]:
             yield (REJECTED if assumed == FALSE else UNKNOWN), end, steps, row[3], 0.0
 
 
-def _add_end(tally: Tally, reason: int, seen: Seen) -> None:
+def _add_end(tally: Tally, reason: int, seen: StoredTrace) -> None:
     ended = tally.ends.get(reason)  # type: ignore[call-overload]
     if ended is None:
         tally.ends[End(reason)] = Ended(1, seen)

@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, Seen, Tally
+from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, StoredTrace, Tally
 
 _MAX_COUNT = 1 << 62
 """A limit that no counter reaches."""
@@ -81,7 +81,7 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
         total += sum(example.steps for example in seen)
         _expect((verdict in tally.shortest) == (count > 0), "shortest")
         if count:
-            least: Seen = tally.shortest[verdict]
+            least: StoredTrace = tally.shortest[verdict]
             first = min(seen, key=lambda example: (example.steps, example.trace))
             _expect(least == first if count <= MAX_KEPT_TRACES else least.steps <= first.steps, "shortest")
             _expect(least.trace < tally.simulated, "shortest")

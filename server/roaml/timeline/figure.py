@@ -121,7 +121,8 @@ class _Painter:
 
     def groups(self) -> Iterator[Group]:
         timeline = self._timeline
-        yield from self._axis()
+        rules, names = self._axis()
+        yield rules
         for index, lane in enumerate(timeline.lanes):
             if self._is_visible(_lane_top(index), LANE):
                 yield from self._lane(index, lane)
@@ -134,13 +135,15 @@ class _Painter:
             if 0 <= x <= self._view.width:
                 line = Polyline((Point(x, 0), Point(x, height_of(timeline))), role="cursor")
                 yield Group("cursor", Tone.FAILURE, (line,))
+        yield names  # above the rows that are scrolled beneath it
 
     def _is_visible(self, top: float, height: float) -> bool:
         return top + height >= self._view.top and top <= self._view.bottom
 
     # ------------------------------------------------------------ axis
 
-    def _axis(self) -> Iterator[Group]:
+    def _axis(self) -> tuple[Group, Group]:
+        """The lines of the axis, and its numbers."""
         view = self._view
         distance = _round_distance((view.end - view.start) * 90.0 / max(view.width, 1.0))
         if view.axis is Axis.STEPS:
@@ -160,8 +163,7 @@ class _Painter:
             if left >= free_from:
                 names.append(TextItem(text, left, AXIS - 8.0, SMALL, "muted"))
                 free_from = left + width + 6.0
-        yield Group("axis", Tone.PLAIN, tuple(rules))
-        yield Group("axis-names", Tone.PLAIN, tuple(names))
+        return Group("axis", Tone.PLAIN, tuple(rules)), Group("axis-names", Tone.PLAIN, tuple(names))
 
     # ------------------------------------------------------------ lanes
 

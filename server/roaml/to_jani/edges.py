@@ -19,7 +19,7 @@ from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
 from roaml.scxml.events import Role
 from roaml.scxml.model import Assign, Body, If, Send, State
-from roaml.scxml.names import on_receive, on_send
+from roaml.scxml.names import flag_of, on_receive, on_send
 from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import EventUsage
@@ -31,7 +31,7 @@ FIRST = "-first-exec"
 
 
 @dataclass(slots=True)
-class _Way:
+class _Destination:
     """A destination under construction."""
 
     probability: Clause | None
@@ -56,13 +56,16 @@ class _Draft:
     source: str
     action: str
     guard: Expression | None
-    ways: list[_Way]
+    ways: list[_Destination]
     origin: Origin
 
     def finished(self) -> Edge:
         guard = None if self.guard is None else Clause(self.guard)
         destinations = tuple(
-            Destination(way.location, way.probability, tuple(way.assignments), origin=way.origin) for way in self.ways
+            Destination(
+                destination.location, destination.probability, tuple(destination.assignments), origin=destination.origin
+            )
+            for destination in self.ways
         )
         return Edge(self.source, destinations, self.action, guard, origin=self.origin)
 
@@ -153,22 +156,24 @@ class _FlowBuilder:
         awaited = move.transition.event
         action = on_receive(awaited) if awaited else stem
         ways = [
-            _Way(_CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin)
+            _Destination(
+                _CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin
+            )
             for outcome in move.outcomes
         ]
         self.drafts.append(_Draft(move.source, action, guard, ways, move.transition.origin))
-        for k, (way, outcome) in enumerate(zip(ways, move.outcomes, strict=True)):
+        for k, (destination, outcome) in enumerate(zip(ways, move.outcomes, strict=True)):
             tag = stem if len(ways) == 1 else f"{stem}.{k}"
-            self.run(outcome.body, way, tag, outcome.state, scope)
+            self.run(outcome.body, destination, tag, outcome.state, scope)
 
     def start(self, body: Body, initial: str) -> str:
         """Add the edges that execute the `<onentry>` of the initial state, and return the location at which they
         begin."""
         origin = self.behavior.automaton.origin
         first = self.location(f"{initial}{FIRST}", origin)
-        way = _Way(_CERTAIN, origin)
-        self.drafts.append(_Draft(first, first, None, [way], origin))
-        self.run(body, way, first, initial, self.scope(""))
+        destination = _Destination(_CERTAIN, origin)
+        self.drafts.append(_Draft(first, first, None, [destination], origin))
+        self.run(body, destination, first, initial, self.scope(""))
         return first
 
     def discarding(
@@ -180,75 +185,79 @@ class _FlowBuilder:
         for event in events:
             conditions = handled.get(event, ())
             if None not in conditions and (conditions or not self.table[event].role.is_synchronising):
-                way = _Way(_CERTAIN, state.origin, state.id)
+                destination = _Destination(_CERTAIN, state.origin, state.id)
                 guard = _unless(None, conditions)
-                self.drafts.append(_Draft(state.id, on_receive(self.table[event].event), guard, [way], state.origin))
+                self.drafts.append(
+                    _Draft(state.id, on_receive(self.table[event].event), guard, [destination], state.origin)
+                )
 
     # ------------------------------------------------------------------- bodies
 
-    def run(self, body: Body, way: _Way, tag: str, final: str, scope: JaniScope) -> None:
-        """Add all statements of `body` to `way` and to new edges. The last edge ends in the location `final`."""
+    def run(self, body: Body, destination: _Destination, tag: str, final: str, scope: JaniScope) -> None:
+        """Add all statements of `body` to `destination` and to new edges. The last one ends in the location `final`."""
         for i, statement in enumerate(body):
             stem = f"{tag}-{i}"
             match statement:
                 case Assign():
-                    way = self.assign(statement, way, stem, scope)
+                    destination = self.assign(statement, destination, stem, scope)
                 case Send():
-                    way = self.send(statement, way, stem, scope)
+                    destination = self.send(statement, destination, stem, scope)
                 case If():
-                    way = self.choose(statement, way, stem, tag, scope)
-        way.location = final
+                    destination = self.choose(statement, destination, stem, tag, scope)
+        destination.location = final
 
-    def next_way(self, source: str, action: str, origin: Origin, guard: Expression | None = None) -> _Way:
+    def next_destination(
+        self, source: str, action: str, origin: Origin, guard: Expression | None = None
+    ) -> _Destination:
         """Add an edge with one destination, and return the destination."""
-        way = _Way(None, origin)
-        self.drafts.append(_Draft(source, action, guard, [way], origin))
-        return way
+        destination = _Destination(None, origin)
+        self.drafts.append(_Draft(source, action, guard, [destination], origin))
+        return destination
 
-    def assign(self, statement: Assign, way: _Way, stem: str, scope: JaniScope) -> _Way:
+    def assign(self, statement: Assign, destination: _Destination, stem: str, scope: JaniScope) -> _Destination:
         draws = _count_draws(statement.value)
         if draws == 0:
-            way.store(assigned(statement.location, statement.value, scope), statement.origin)
-            return way
+            destination.store(assigned(statement.location, statement.value, scope), statement.origin)
+            return destination
         origin = statement.origin
         before, after = self.location(f"{stem}-draw", origin), self.location(f"{stem}-drawn", origin)
-        way.location = before
+        destination.location = before
         chance = Clause(jani.Real(1 / self.random_values**draws))
         ways = []
         for numbers in itertools.product(range(self.random_values), repeat=draws):
             drawn = _with_numbers(statement.value, (number / self.random_values for number in numbers))
-            drawn_way = _Way(chance, origin, after)
-            drawn_way.store(assigned(statement.location, drawn, scope), origin)
-            ways.append(drawn_way)
+            drawn_destination = _Destination(chance, origin, after)
+            drawn_destination.store(assigned(statement.location, drawn, scope), origin)
+            ways.append(drawn_destination)
         self.drafts.append(_Draft(before, before, None, ways, origin))
-        return self.next_way(after, "after-draw", origin)
+        return self.next_destination(after, "after-draw", origin)
 
-    def send(self, statement: Send, way: _Way, stem: str, scope: JaniScope) -> _Way:
-        way.location = self.location(stem, statement.origin)
-        following = self.next_way(way.location, on_send(statement.event), statement.origin)
+    def send(self, statement: Send, destination: _Destination, stem: str, scope: JaniScope) -> _Destination:
+        destination.location = self.location(stem, statement.origin)
+        following = self.next_destination(destination.location, on_send(statement.event), statement.origin)
         if not statement.event.role.is_internal:
             params = self.table[statement.event.name].params
             for param in statement.params:
                 shape = shape_of(params[param.name], self.max_array_size, sent=True)
                 variable = f"{statement.event.name}__{param.name}"
                 following.send(stored_in(variable, shape, param.value, scope), param.origin)
-            following.send([(jani.Name(f"{statement.event.name}.valid"), jani.Boolean(True))], statement.origin)
+            following.send([(jani.Name(flag_of(statement.event.name)), jani.Boolean(True))], statement.origin)
         return following
 
-    def choose(self, statement: If, way: _Way, stem: str, tag: str, scope: JaniScope) -> _Way:
+    def choose(self, statement: If, destination: _Destination, stem: str, tag: str, scope: JaniScope) -> _Destination:
         origin = statement.origin
         before, after = self.location(f"{stem}-if", origin), self.location(f"{stem}-endif", origin)
-        way.location = before
+        destination.location = before
         earlier: list[Expression | None] = []
         branches = [(branch.cond, branch.body, branch.origin) for branch in statement.branches]
         for j, (cond, body, place) in enumerate([*branches, (None, statement.otherwise, origin)]):
             condition = None if cond is None else scope.scalar(cond)
-            inner = _Way(_CERTAIN, place)
+            inner = _Destination(_CERTAIN, place)
             branch_tag = f"{stem}.{j}"
             self.drafts.append(_Draft(before, branch_tag, _unless(condition, earlier), [inner], place))
             self.run(body, inner, branch_tag, after, scope)
             earlier.append(condition)
-        return self.next_way(after, f"{tag}-endif", origin)
+        return self.next_destination(after, f"{tag}-endif", origin)
 
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:

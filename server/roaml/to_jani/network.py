@@ -10,6 +10,7 @@ from roaml.jani.properties import Property
 from roaml.jani.types import BOOL
 from roaml.scxml.events import EventRole, Role
 from roaml.scxml.model import Data, Network
+from roaml.scxml.names import flag_of
 from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
@@ -100,7 +101,7 @@ def _local_variables(data: Data, max_array_size: int) -> Iterator[Variable]:
 def _global_shapes(event: EventUsage, max_array_size: int) -> Iterator[tuple[str, tuple[ArrayShape, Location]]]:
     """The names, shapes and origins of the variables of an event: its flag, its parameters and their lengths
     (docs/spec/jani.md#global-variables)."""
-    yield f"{event.name}.valid", (ArrayShape(BOOL), event.origin)
+    yield flag_of(event.name), (ArrayShape(BOOL), event.origin)
     for param, type_ in event.params.items():
         name, origin = f"{event.name}__{param}", event.places[param]
         shape = shape_of(type_, max_array_size, sent=True)

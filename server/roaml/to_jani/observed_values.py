@@ -18,6 +18,7 @@ from roaml.expr.types import ScalarKind, is_kind
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.model import Variable
 from roaml.jani.semantics import evaluate
+from roaml.scxml.names import flag_of
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
 from roaml.text import NO_SPAN, Location
 from roaml.to_jani.assignments import stored_in
@@ -138,7 +139,7 @@ def _stored(
     value = Name(NO_SPAN, parameter)
     if _is_zero(initial, shape):
         return value
-    return Conditional(NO_SPAN, Name(NO_SPAN, f"{event.name}.valid"), value, initial)
+    return Conditional(NO_SPAN, Name(NO_SPAN, flag_of(event.name)), value, initial)
 
 
 def _declared(copy: _Copy, initial: Expr, origin: Location) -> Iterator[Variable]:

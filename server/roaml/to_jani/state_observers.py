@@ -15,6 +15,7 @@ from typing import TypeAlias
 
 from roaml.jani.expressions import ArrayAccess, Boolean, Expression, Name
 from roaml.jani.model import Action, Assignment, Edge, Function, Model, Sync
+from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node
 from roaml.jani.properties import BinaryFormula, Formula, Probability, Property, UnaryFormula, walk
 from roaml.jani.rewrite import rewrite
@@ -23,7 +24,7 @@ from roaml.observers.properties import PatternProperty, Since
 from roaml.observers.properties import walk as parts_of
 from roaml.scxml.names import CLOCK, CLOCK_ACTION
 from roaml.smc.names import variables_in
-from roaml.smc.nested import ObservedFormula, is_nested, without_nesting, without_nesting_before
+from roaml.smc.nested import ObservedFormula, without_nesting, without_nesting_before
 from roaml.smc.normal_form import NestingError, lasting_condition
 from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
 from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS, TraceVerdict
-from roaml.smc.run import Seen
+from roaml.smc.run import StoredTrace
 from roaml.text import Location
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
@@ -43,7 +43,7 @@ def unwanted_verdict(result: Result) -> int:
     return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE
 
 
-def unwanted_trace(result: Result) -> Seen | None:
+def unwanted_trace(result: Result) -> StoredTrace | None:
     """The shortest trace that contradicts an expectation; an undecided one if there is none; `None` if there is
     neither.
 
@@ -57,7 +57,7 @@ def unwanted_trace(result: Result) -> Seen | None:
     return shortest.get(unwanted_verdict(result)) or shortest.get(UNKNOWN)
 
 
-def witness_trace(result: Result) -> Seen | None:
+def witness_trace(result: Result) -> StoredTrace | None:
     """The shortest trace that supports a property: one that is as expected or, if nothing is expected, one in which the
     property holds. `None` if there is none."""
     if result.answer is None:
@@ -80,7 +80,7 @@ def witness(result: Result, place_of: Callable[[Location], str] | None = None) -
 
 
 def _counterexample(
-    result: Result, seen: Seen | None, place_of: Callable[[Location], str] | None
+    result: Result, seen: StoredTrace | None, place_of: Callable[[Location], str] | None
 ) -> Counterexample | None:
     traces = result.traces
     if seen is None or traces is None:

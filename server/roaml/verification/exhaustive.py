@@ -51,7 +51,7 @@ def exact_values(
         fault = checker.fault(space.problem)
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)
     try:
-        values = values_of(space)
+        values = values_of(space, work=limits.work)
     except NoValueError as error:
         raise UndecidedError(str(error)) from None
     paths = [path for verdict in (FALSE, TRUE) if (path := shortest(space, verdict)) is not None]
@@ -62,6 +62,7 @@ def exact_values(
         space.states,
         values.is_precise,
         _proof(space, values),
+        space.can_get_stuck,
         tuple(ShortestTrace(space, path) for path in paths),
     )
 
@@ -77,20 +78,36 @@ def _proof(space: Space, values: GoalValues) -> Proof | None:
     return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
-def check_exactly(expectation: Expectation, exact: Exact, question: Question) -> Verdict:
-    """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation."""
+def check_exactly(
+    expectation: Expectation,
+    exact: Exact,
+    question: Question,
+    *,
+    only_uniform: bool = False,
+    width: float = _SLACK,
+) -> Verdict:
+    """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation.
+
+    Args:
+        only_uniform: whether to judge the value under uniform choices instead.
+        width: the difference that `=` allows.
+    """
     threshold = expectation.threshold
-    what, bounds, value = ("least", exact.minimum, exact.least)
-    if not is_minimised(question):
-        what, bounds, value = ("greatest", exact.maximum, exact.greatest)
+    bounds, value = exact.minimum, exact.least
+    missed_by = f"by the least value, which is {value:.6g}"
+    if only_uniform:
+        bounds, value, missed_by = exact.uniform, exact.average, ""
+    elif not is_minimised(question):
+        bounds, value = exact.maximum, exact.greatest
+        missed_by = f"by the greatest value, which is {value:.6g}"
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
 
     def is_met(number: float) -> bool:
         if threshold.relation is BinaryOperator.EQUAL:
-            return abs(number - threshold.number) <= _SLACK
+            return abs(number - threshold.number) <= width + 1e-12
         slack = 0.0 if is_strict else _SLACK
         return threshold.met(number + slack) or threshold.met(number - slack)
 
     met = is_met(value)
     is_certain = exact.is_precise or is_met(bounds.lower) is is_met(bounds.upper)
-    return Verdict(expectation, met, is_certain, under="" if met else f"by the {what} value, which is {value:.6g}")
+    return Verdict(expectation, met, is_certain, under="" if met else missed_by)

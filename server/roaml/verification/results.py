@@ -21,6 +21,7 @@ from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import Verdict
 from roaml.verification.refusal import Refusal
+from roaml.verification.schedulers import is_minimised
 from roaml.verification.stuck import Stuck
 from roaml.verification.target import VerificationTarget
 
@@ -52,6 +53,10 @@ class ShortestTrace:
         return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
+_SAME = 1e-6
+"""The relative distance up to which values are equal."""
+
+
 class Proof(Enum):
     """What all states prove about the condition of a property."""
 
@@ -70,6 +75,7 @@ class Exact:
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
         proof: for a property about one condition that is always or never reached: whether the condition holds in all
             states or in none; `None` otherwise.
+        can_get_stuck: whether a trace can get stuck before the property is decided.
         traces: the shortest traces in which the property fails or holds, if there are any.
     """
 
@@ -79,6 +85,7 @@ class Exact:
     states: int
     is_precise: bool = True
     proof: Proof | None = None
+    can_get_stuck: bool = False
     traces: tuple[ShortestTrace, ...] = field(default=(), repr=False, compare=False)
 
     @property
@@ -94,9 +101,22 @@ class Exact:
         """The value with uniform choices."""
         return _value(self.uniform)
 
+    @property
+    def agrees(self) -> bool:
+        """Whether all schedulers have the same value."""
+        return is_same(self.minimum, self.maximum) and is_same(self.minimum, self.uniform)
+
     def shortest(self, verdict: int) -> ShortestTrace | None:
         """The shortest trace with a verdict; `None` if there is none."""
         return next((trace for trace in self.traces if trace.verdict == verdict), None)
+
+
+def is_same(a: Bounds, b: Bounds) -> bool:
+    """Whether two values are equal, as far as their bounds show."""
+    if a == b:
+        return True
+    lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)
+    return upper - lower <= _SAME * max(1.0, abs(lower))
 
 
 def _value(bounds: Bounds) -> float:
@@ -157,7 +177,7 @@ class Result:
 
     Attributes:
         answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
-            requested.
+            requested. If there are exact values, too, these traces are examples.
         verdicts: one for each expectation.
         seconds: the duration in s.
         is_interrupted: whether the work was ended before the answer was complete.
@@ -199,6 +219,23 @@ class Result:
             t.space.compiled_property.question for t in traces
         ]
         return any(question.is_stuck for question in questions)
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether the result is only about uniform choices."""
+        return self.answer is not None and self.choices is None and not self.includes_stuck
+
+    def asked_value(self) -> tuple[Bounds, float] | None:
+        """The exact value that the property asks for, with its bounds: its minimum, its maximum, or its value under
+        uniform choices. `None` if there are no exact values beside the answer of traces."""
+        exact, answer = self.exact, self.answer
+        if exact is None or answer is None:
+            return None
+        if self.is_uniform:
+            return exact.uniform, exact.average
+        if is_minimised(answer.question):
+            return exact.minimum, exact.least
+        return exact.maximum, exact.greatest
 
     @property
     def epsilon(self) -> float:

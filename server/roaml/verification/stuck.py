@@ -19,7 +19,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import Answer, EstimationMethod, Options, Seen, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options, StoredTrace, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Stuck:
 
     count: int
     traces: int
-    seen: Seen
+    seen: StoredTrace
     time: float | None
     waits: tuple[Wait, ...]
 

@@ -25,6 +25,10 @@ def _candidates(result: Result) -> Iterator[str]:
     answer, choices = result.answer, result.choices
     if answer is None or answer.tally.traces == 0:
         return
+    exact = result.asked_value()
+    if exact is not None:
+        yield from _around(exact[1], answer.question.is_reward)
+        return
     lower, upper = answer.bounds
     for extreme in (choices.minimum, choices.maximum) if choices is not None else ():
         if extreme is not None:
@@ -44,6 +48,15 @@ def _candidates(result: Result) -> Iterator[str]:
         yield f">= {_rounded(lower, math.floor)}"
     if _rounded(upper, math.ceil) != "1":
         yield f"<= {_rounded(upper, math.ceil)}"
+
+
+def _around(value: float, is_reward: bool) -> Iterator[str]:
+    """Bounds on an exact value, without those that every probability satisfies."""
+    if math.isfinite(value):
+        if is_reward or value > 0:
+            yield f">= {_rounded(value, math.floor)}"
+        if is_reward or value < 1:
+            yield f"<= {_rounded(value, math.ceil)}"
 
 
 def _rounded(number: float, rounding: Callable[[float], int]) -> str:

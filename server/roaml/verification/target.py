@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from roaml.comparison import Comparison
 from roaml.jani.model import Model
+from roaml.jani.nesting import is_nested
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property, walk
 from roaml.scxml.names import assumptions_of
-from roaml.smc.nested import is_nested
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
-from roaml.smc.choices import Choices
+from roaml.smc.choices import NO_NONDETERMINISM, Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import Search, Side, described, sampling_options
@@ -22,8 +22,9 @@ from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.refusal import refusal
-from roaml.verification.results import Result, SampledResult, Traces
+from roaml.verification.results import Exact, Result, SampledResult, Traces
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
+from roaml.verification.small import choices_of, values_if_small
 from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.ends import marks, observer_outputs
@@ -74,12 +75,15 @@ def verifier_of(
     expectations: Iterable[Expectation] = (),
     *,
     only_uniform: bool = False,
+    exact_if_small: bool = False,
+    example_traces: int | None = None,
 ) -> Verifier:
     """A target prepared for verification.
 
     Args:
         properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
+        exact_if_small, example_traces: see `Verifier`.
 
     Raises:
         PropertyError: a property, or the property of an expectation, does not exist.
@@ -101,7 +105,7 @@ def verifier_of(
         for expectation in (*expectations, *target.expectations):
             if expectation.name == property_.question.name:
                 check_range(expectation, property_.question)
-    return Verifier(target, checker, options or Options(), expectations, only_uniform)
+    return Verifier(target, checker, options or Options(), expectations, only_uniform, exact_if_small, example_traces)
 
 
 def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
@@ -114,7 +118,7 @@ def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -
 
 
 def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
-    """The result of traces with uniform choices, compared with other expectations, without new traces.
+    """The result of traces with uniform choices, or exact values, compared with other expectations, without new traces.
 
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
@@ -123,10 +127,18 @@ def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
     if traces is None or answer is None:
         return result
     expectations = [e for e in expectations_of(traces.compiled_property, given) if is_possible(e, answer.question)]
-    return replace(result, verdicts=_verdicts(expectations, answer, result.choices))
+    return replace(result, verdicts=_verdicts(expectations, answer, result.choices, result.exact))
 
 
-def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choices | None) -> tuple[Verdict, ...]:
+def _verdicts(
+    expectations: Iterable[Expectation], answer: Answer, choices: Choices | None, exact: Exact | None
+) -> tuple[Verdict, ...]:
+    if exact is not None:
+        only_uniform, width = choices is None and not answer.question.is_stuck, answer.options.epsilon
+        return tuple(
+            check_exactly(expectation, exact, answer.question, only_uniform=only_uniform, width=width)
+            for expectation in expectations
+        )
     return tuple(
         under_all_schedulers(check_expectation(expectation, answer), answer, choices) for expectation in expectations
     )
@@ -134,13 +146,20 @@ def _verdicts(expectations: Iterable[Expectation], answer: Answer, choices: Choi
 
 @dataclass(frozen=True, slots=True)
 class Verifier:
-    """A target with compiled properties, and their expectations; see `verifier_of`."""
+    """A target with compiled properties, and their expectations; see `verifier_of`.
+
+    Attributes:
+        exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
+        example_traces: the number of traces that are generated for such a result; `None` for as many as for others.
+    """
 
     target: VerificationTarget
     checker: ModelChecker
     options: Options = field(default_factory=Options)
     expectations: tuple[Expectation, ...] = ()
     only_uniform: bool = False
+    exact_if_small: bool = False
+    example_traces: int | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -206,7 +225,8 @@ class Verifier:
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, from traces with uniform choices.
+        """The result of a property, from traces with uniform choices; with exact values if they are wanted and the
+        model is small.
 
         Args:
             tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
@@ -221,9 +241,10 @@ class Verifier:
         """
         self.check_method(property_)
         began = time.monotonic()
-        answer = self.checker.answer(property_, self.options, pool, tally, watch, pulse)
-        choices = self._choices(property_, answer, pool, pulse)
-        return self._with_verdicts(property_, answer, choices, time.monotonic() - began)
+        small = self._small(property_)
+        options = self._trace_options(self._shown(small))
+        answer = self.checker.answer(property_, options, pool, tally, watch, pulse)
+        return self._finished(property_, answer, small, pool, pulse, began)
 
     def can_share(self, property_: CompiledProperty) -> bool:
         """Whether the traces of other properties can answer a property: it must be about a probability, and not about
@@ -256,36 +277,72 @@ class Verifier:
             seconds[property_.question.name] = time.monotonic() - began
             watch(property_, tally)
 
-        answers = self.checker.answer_together(properties, self.options, pool, tallies, watch_time, pulse)
-        return [
-            self._result(property_, answer, pool, pulse, seconds.get(property_.question.name, 0.0))
-            for property_, answer in zip(properties, answers, strict=True)
-        ]
+        small = [self._small(property_) for property_ in properties]
+        groups: dict[Options, list[int]] = {}
+        for i, exact in enumerate(small):
+            groups.setdefault(self._trace_options(self._shown(exact)), []).append(i)
+        answers: dict[int, Answer | FaultError] = {}
+        for options, group in groups.items():
+            together = self.checker.answer_together(
+                [properties[i] for i in group], options, pool, [tallies[i] for i in group], watch_time, pulse
+            )
+            answers.update(zip(group, together, strict=True))
+        results = []
+        for i, property_ in enumerate(properties):
+            name, since = property_.question.name, time.monotonic()
+            answer = answers[i]
+            if isinstance(answer, FaultError):
+                results.append(self.refused(name, answer))
+                continue
+            try:
+                since -= seconds.get(name, 0.0)
+                results.append(self._finished(property_, answer, small[i], pool, pulse, since))
+            except FaultError as fault:
+                results.append(self.refused(name, fault))
+        return results
 
-    def _result(
+    def _small(self, property_: CompiledProperty) -> Exact | None:
+        """The exact values of a property of a small model, for its result or to compare schedulers."""
+        if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
+            return values_if_small(self.checker, property_)
+        return None
+
+    def _shown(self, small: Exact | None) -> Exact | None:
+        """The exact values that the result contains. If traces can get stuck, it contains none, because the value is
+        doubtful and traces are needed as examples."""
+        return None if not self.exact_if_small or small is None or small.can_get_stuck else small
+
+    def _trace_options(self, exact: Exact | None) -> Options:
+        if exact is None or self.example_traces is None:
+            return self.options
+        return replace(self.options, method=EstimationMethod.FIXED, max_traces=self.example_traces)
+
+    def _finished(
         self,
         property_: CompiledProperty,
-        answer: Answer | FaultError,
+        answer: Answer,
+        small: Exact | None,
         pool: Pool,
         pulse: Pulse | None,
-        seconds: float,
+        began: float,
     ) -> Result:
-        """The result that contains an answer, which took `seconds` s to compute; a refusal if the answer is a fault."""
-        began = time.monotonic()
-        try:
-            if isinstance(answer, FaultError):
-                raise answer
-            choices = self._choices(property_, answer, pool, pulse)
-        except FaultError as fault:
-            return self.refused(property_.question.name, fault)
-        return self._with_verdicts(property_, answer, choices, seconds + time.monotonic() - began)
+        """The result that contains an answer.
 
-    def _choices(self, property_: CompiledProperty, answer: Answer, pool: Pool, pulse: Pulse | None) -> Choices | None:
-        """What is known about other schedulers; `None` if the question is only about uniform choices."""
-        question = property_.question
-        if self.only_uniform or question.is_stuck or question.is_conditional:
-            return None
-        return self.checker.choices(property_, answer, pool, pulse)
+        Args:
+            small: the exact values, if the model is small.
+            began: the time at which the work began.
+        """
+        choices = None
+        if self._considers_choices(property_):
+            if small is None:
+                choices = self.checker.choices(property_, answer, pool, pulse)
+            else:
+                choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
+        return self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
+
+    def _considers_choices(self, property_: CompiledProperty) -> bool:
+        """Whether the question is about all schedulers, not only about uniform choices."""
+        return not (self.only_uniform or property_.question.is_stuck or property_.question.is_conditional)
 
     def check_method(self, property_: CompiledProperty) -> None:
         """Check that a sequential test has a number to compare with, if one is requested.
@@ -366,14 +423,20 @@ class Verifier:
         return stuck.check_stuck(self.target, self.checker, self.options, level, pulse)
 
     def _with_verdicts(
-        self, property_: CompiledProperty, answer: Answer, choices: Choices | None, seconds: float
+        self,
+        property_: CompiledProperty,
+        answer: Answer,
+        choices: Choices | None,
+        seconds: float,
+        exact: Exact | None = None,
     ) -> Result:
         return Result(
             property_.question.name,
             answer,
-            _verdicts(self.expected(property_), answer, choices),
+            _verdicts(self.expected(property_), answer, choices, exact),
             seconds,
             stuck=stuck.stuck_in(self.target, self.checker, property_, answer),
+            exact=exact,
             choices=choices,
             traces=Traces(self.target, self.checker, property_, self.options),
         )

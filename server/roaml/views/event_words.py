@@ -41,7 +41,7 @@ _PHRASES = {
 }
 
 
-def said(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
+def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE, taken: bool = False) -> str:
     """A phrase for an event.
 
     Args:

@@ -8,10 +8,8 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.scxml.names import FIELD_PREFIX, is_length, received_by, sent_by
+from roaml.scxml.names import FIELD_PREFIX, flagged_by, is_length, received_by, sent_by
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
-
-_VALID = ".valid"
 
 
 class EventReader:
@@ -72,8 +70,8 @@ class EventReader:
 
     def _is_of_event(self, name: str) -> bool:
         """Whether a variable of the model belongs to an event. If it does, its parameter is stored."""
-        if name.endswith(_VALID):
-            return name.removesuffix(_VALID) in self._events
+        if event := flagged_by(name):
+            return event in self._events
         at = name.rfind("__")
         while at > 0:
             if name[:at] in self._events:

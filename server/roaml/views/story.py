@@ -162,8 +162,8 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
         sender = turn.heard.sender if turn.heard else None
         if turn.heard and sender and sender.instance in lanes and not turn.is_answered:
             arrow = f"{actor(sender)}->>{actor(turn)}"
-            said = f"tick, {turn.status}" if turn.is_ticked and turn.status else _message(turn.heard)
-            body.append(f"{arrow}: {_escaped(said + place)}")
+            event_phrase = f"tick, {turn.status}" if turn.is_ticked and turn.status else _message(turn.heard)
+            body.append(f"{arrow}: {_escaped(event_phrase + place)}")
         else:
             body.append(f"Note over {actor(turn)}: {_escaped(_what(turn) + place)}")
         details = "<br/>".join(_escaped(detail) for detail in _details(turn))

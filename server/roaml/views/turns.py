@@ -29,7 +29,6 @@ from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.events import EventReader
 
-_VALID = ".valid"
 _ENDS = ("SUCCESS", "FAILURE")
 
 
@@ -232,8 +231,14 @@ class _Reader:
 def is_inner(automaton: Automaton) -> bool:
     """Whether an automaton only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
     node = NODE_AUTOMATON.fullmatch(automaton.name)
-    comes_along = _is_builtin(node[2]) if node else is_generated(automaton.name)
+    comes_along = _is_builtin(node[2]) or _is_in_tree(automaton) if node else is_generated(automaton.name)
     return comes_along and any(_kind(sent_by(edge.action or "")) in _CALLS for edge in automaton.edges)
+
+
+def _is_in_tree(automaton: Automaton) -> bool:
+    """Whether the behaviour of a node is that of a library: the node has no file of its own, so its origin is its place
+    in the tree. In the automaton's name, the name of the node may replace that of its type."""
+    return automaton.origin is not None and automaton.origin.path.lower().endswith(".xml")
 
 
 def _is_builtin(plugin: str) -> bool:

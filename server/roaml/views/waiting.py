@@ -37,7 +37,7 @@ from roaml.scxml.names import (
 )
 from roaml.smc.standstill import Standstill
 from roaml.views.ends import is_event
-from roaml.views.event_words import said
+from roaml.views.event_words import event_phrase
 from roaml.views.turns import is_inner, name_of
 
 
@@ -312,13 +312,14 @@ class _Chain:
         if link.event is None:
             does = "takes" if received_by(link.action) else "sends"
             event = received_by(link.action) or sent_by(link.action)
-            text = f"stays{where} and never {does} {said(event, self.clients(), role)}"
+            text = f"stays{where} and never {does} {event_phrase(event, self.clients(), role)}"
         elif not link.event:
             text = f"waits{where} for a condition that can never become true"
         elif link.is_taken:
             takers = {self.role(other) for other, _ in shown}
             taker = Role.TREE_ROOT if takers == {Role.TREE_ROOT} else Role.MACHINE
-            text = f"waits{where} for {them or 'nobody'} to take {said(link.event, self.clients(), taker, taken=True)}"
+            event = event_phrase(link.event, self.clients(), taker, taken=True)
+            text = f"waits{where} for {them or 'nobody'} to take {event}"
         elif answered_by(link.event):
             is_halt = any(event.endswith("_halt_response") for _, event in shown)
             unanswered = TreeEventKind.HALT if is_halt else TreeEventKind.TICK
@@ -327,7 +328,7 @@ class _Chain:
         else:
             is_message = link.event.startswith(TOPIC_PREFIX)
             senders = f" from {' or '.join(others)}" if is_message and others else ""
-            text = f"waits{where} for {said(link.event, self.clients(), role)}{senders}"
+            text = f"waits{where} for {event_phrase(link.event, self.clients(), role)}{senders}"
             for_timer = is_timer(link.event)
             if for_timer:
                 text += ", which ticks when the clock advances"

@@ -7,13 +7,13 @@ import json
 from collections.abc import Iterator
 from random import Random
 
+from both_kernels import difference
 from fuzz.networks import NetworkCase, network
 from fuzz.strategy import Failure, Strategy
 from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
-from twin import difference
 
 TRACES = 3
 STEPS = 25

@@ -138,7 +138,8 @@ export class Window {
 
     /** The document of a diagram, inside the frames of its webview; if there are several, the one with content. */
     async picture(shown = "svg.picture"): Promise<Frame> {
-        for (;;) {
+        const end = Date.now() + TIMEOUT_MS;
+        while (Date.now() < end) {
             for (const frame of this.page.frames()) {
                 if (
                     await frame
@@ -150,6 +151,8 @@ export class Window {
             }
             await this.page.waitForEvent("framenavigated", { timeout: 1000 }).catch(() => undefined);
         }
+        await this.screenshot("failed-picture");
+        throw new Error(`no webview shows ${shown}; see failed-picture.png`);
     }
 
     /** Saves a picture of the window or a part of it, for the README and the walkthrough. */

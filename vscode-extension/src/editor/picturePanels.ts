@@ -9,6 +9,7 @@ import type { LanguageServer } from "./server";
 import { webviewPage } from "./webviewPage";
 
 const DELAY_MS = 200;
+const LOADING_LIMIT_MS = 10_000;
 
 export class PicturePanels implements vscode.Disposable {
     private readonly panels = new Map<PictureKind, PicturePanel>();
@@ -39,6 +40,10 @@ export class PicturePanels implements vscode.Disposable {
         ];
     }
 
+    /**
+     * Resolves when the page of the picture has loaded. In a browser, the pages of all webviews share a service worker,
+     * which each new page replaces. So pages that are opened at the same time can lose their scripts and stay empty.
+     */
     async open(kind: PictureKind, uri: vscode.Uri, column = vscode.ViewColumn.Beside): Promise<void> {
         let panel = this.panels.get(kind);
         if (!panel) {
@@ -49,6 +54,7 @@ export class PicturePanels implements vscode.Disposable {
             panel.onDispose(() => this.panels.delete(kind));
         }
         await panel.show(uri);
+        await panel.loaded;
     }
 
     /** Highlight nodes in all open pictures and in those that are opened later. Earlier highlights are removed. */
@@ -102,6 +108,9 @@ class PicturePanel implements vscode.Disposable {
     private activeEdges: Activity["edges"] = [];
     private shownUri = "";
     private ready = false;
+    /** Resolves when the page can draw, or after `LOADING_LIMIT_MS`. */
+    readonly loaded: Promise<void>;
+    private hasLoaded: () => void = () => undefined;
     private asked = 0;
 
     constructor(
@@ -111,6 +120,10 @@ class PicturePanel implements vscode.Disposable {
         private readonly log: vscode.LogOutputChannel,
         viewColumn: vscode.ViewColumn,
     ) {
+        this.loaded = new Promise((resolve) => {
+            this.hasLoaded = resolve;
+            setTimeout(resolve, LOADING_LIMIT_MS);
+        });
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
         const column = { viewColumn, preserveFocus: true };
         this.panel = vscode.window.createWebviewPanel(`as2fm.${kind}`, titleOf(kind), column, {
@@ -220,6 +233,7 @@ class PicturePanel implements vscode.Disposable {
         switch (message.type) {
             case "ready":
                 this.ready = true;
+                this.hasLoaded();
                 this.post({ type: "words", words: words() });
                 if (this.picture) this.draw();
                 break;

@@ -34,7 +34,7 @@ from roaml.jani.properties import (
 )
 from roaml.json_syntax import JsonArray, JsonObject, JsonValue
 from roaml.model.kinds import FileKind
-from roaml.model.property_file import ASSUMES, GUARANTEES, PropertyFile
+from roaml.model.property_file import PORTS, PropertyFile, PropertySection
 from roaml.model.property_links import LinkedProperty, clock_step
 from roaml.model.system_file import SystemSection
 from roaml.project.analysis import Analysis
@@ -76,7 +76,7 @@ def _file_of(analysis: Analysis, system: str, kind: FileKind) -> str | None:
         if kind is FileKind.PROPERTIES and _array(analysis, listed.path) is not None:
             return listed.path
         file = analysis.property_file(listed.path) if kind is FileKind.XML_PROPERTIES else None
-        if file is not None and file.element.find(ASSUMES) is None and file.element.complete:
+        if file is not None and file.element.find(PropertySection.ASSUMES.value) is None and file.element.complete:
             return listed.path  # assumptions would restrict the property
     return None
 
@@ -180,24 +180,27 @@ def _section(name: str, lines: list[str]) -> list[str]:
 
 def _new_xml(converted: XmlProperty) -> str:
     ports = _port_lines(converted, {})
-    sections = [*(_section("ports", ports) if ports else ()), *_section(GUARANTEES, converted.lines)]
+    sections = [
+        *(_section(PORTS, ports) if ports else ()),
+        *_section(PropertySection.GUARANTEES.value, converted.lines),
+    ]
     return "\n".join(_section("properties", sections)) + "\n"
 
 
 def _added(file: PropertyFile, converted: XmlProperty) -> Iterator[Edit]:
     root, document, lines = file.element, file.document, _port_lines(converted, _known(file))
-    ports, guarantees = root.find("ports"), root.find(GUARANTEES)
+    ports, guarantees = root.find(PORTS), root.find(PropertySection.GUARANTEES.value)
     new: list[str] = []
     if lines and ports is not None:
         yield last_in(document, ports, *lines)
     elif lines and guarantees is not None:
-        yield first_in(document, root, *_section("ports", lines))
+        yield first_in(document, root, *_section(PORTS, lines))
     elif lines:
-        new += _section("ports", lines)
+        new += _section(PORTS, lines)
     if guarantees is not None:
         yield last_in(document, guarantees, *converted.lines)
         return
-    new += _section(GUARANTEES, converted.lines)
+    new += _section(PropertySection.GUARANTEES.value, converted.lines)
     yield after(document, ports, *new) if ports is not None else first_in(document, root, *new)
 
 
@@ -210,7 +213,7 @@ def _to_jani(analysis: Analysis, path: str, system: str, place: Span) -> Iterato
         analysis.linked_properties(path, system),
         analysis.system(system),
     )
-    if file is None or linked is None or model is None or file.element.find(ASSUMES) is not None:
+    if file is None or linked is None or model is None or file.element.find(PropertySection.ASSUMES.value) is not None:
         return  # assumptions restrict the property
     for property_ in linked.properties:
         span = property_.written.element.span

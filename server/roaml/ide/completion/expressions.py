@@ -36,7 +36,7 @@ from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
-from roaml.roles import SymbolKind
+from roaml.roles import SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
@@ -196,12 +196,13 @@ def _variables(request: Request) -> Mapping[str, Type]:
     return typed.variables.get(request.chart.scope, {})
 
 
-def _event_variables(request: Request, part: str) -> Mapping[str, Type]:
+def _event_variables(request: Request, attribute: str) -> Mapping[str, Type]:
     if request.machine is None or request.handler is None:
         return {}
-    part = "cond" if part == "cond" and request.handler.element.open_span.contains(request.offset) else "body"
+    is_condition = attribute == "cond" and request.handler.element.open_span.contains(request.offset)
+    part = ValuePart.COND if is_condition else ValuePart.BODY
     known = bindings(request.handler, part, request.machine, request.environment)
-    if part == "cond" and "_bt" in known:
+    if part is ValuePart.COND and "_bt" in known:
         known |= dict.fromkeys(STATUSES, STATUS)
     return known
 

@@ -27,7 +27,7 @@ def field_names(request: Request, subject: CompletionSubject) -> Iterator[Comple
     given = {field.name.value for field in statement.fields if field.name and field.element is not subject.element}
     declaration = find_handle(request.machine, statement) if request.machine else None
     required = set(_required(request, declaration, statement.type))
-    for path, (type_, owner) in _fields(request, statement).items():
+    for path, (type_, owner) in _sent_fields(request, statement).items():
         if path not in given:
             about = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner)
             rank = Rank.LIKELY if path in required else Rank.LATE
@@ -39,7 +39,7 @@ def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem
     statement = request.ros_send_of(element)
     if statement is None:
         return
-    known = _fields(request, statement)
+    known = _sent_fields(request, statement)
     given = {field.name.value for field in statement.fields if field.name}
     declaration = find_handle(request.machine, statement) if request.machine else None
     missing = [path for path in _required(request, declaration, statement.type) if path not in given]
@@ -91,17 +91,20 @@ def _field(made: Snippet, path: str, type_: Type) -> Snippet:
     return made.text(f'<field name="{path}" expr="').stop([zero_text(type_)]).text('"/>')
 
 
-def _fields(request: Request, statement: RosSend) -> Mapping[str, tuple[Type, str]]:
+def _sent_fields(request: Request, statement: RosSend) -> Mapping[str, tuple[Type, str]]:
     """The dotted paths of all leaf fields, with their types and the message that contains them."""
     declaration = find_handle(request.machine, statement) if request.machine else None
     part = _part(request, declaration, statement.type)
-    types_by_path: dict[str, tuple[Type, str]] = {}
-    for path, type_ in leaves(part) if part else ():
+    return {path: (type_, owner) for path, type_, owner in fields_of(part)}
+
+
+def fields_of(part: Struct | None) -> Iterator[tuple[str, Type, str]]:
+    """The dotted path of each leaf field of a part of an interface, its type, and the message that contains it."""
+    for path, type_ in leaves(part) if part is not None else ():
         owner: Type | None = part
         for name in path[:-1]:
             owner = owner.member(name) if isinstance(owner, Struct) else None
-        types_by_path[".".join(path)] = (type_, owner.name if isinstance(owner, Struct) else "")
-    return types_by_path
+        yield ".".join(path), type_, owner.name if isinstance(owner, Struct) else ""
 
 
 def _interface(request: Request, declaration: Declaration | None) -> InterfaceType | None:

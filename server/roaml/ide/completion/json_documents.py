@@ -17,6 +17,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.tree_paths import label_of
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
+from roaml.scxml.names import flagged_by
 from roaml.text import Span
 
 _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCTS}
@@ -176,7 +177,7 @@ def _names(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
         system = analysis.system(path_of_system) if path_of_system else None
         for name, variable in analysis.globals(system.path).items() if system else ():
             about = Symbol(system.path if system else "", SymbolKind.GLOBAL, name)
-            rank = Rank.LIKELY if name.endswith(".valid") else Rank.USUAL
+            rank = Rank.LIKELY if flagged_by(name) else Rank.USUAL
             node = node_of(system, name) if system else None
             label = label_of(system, node.instance) if system and node and node.instance else ""
             detail = " · ".join(filter(None, (str(variable.type), label)))

@@ -7,15 +7,16 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type, leaves
+from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
 from roaml.expr.zero import zero_text
+from roaml.ide.completion.fields import fields_of
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.in_property_file import SYMBOL_KINDS
 from roaml.ide.property_values import names_of_port
 from roaml.ide.syntax import Typed
 from roaml.language import XML_PROPERTIES, AttributeType, ElementType
-from roaml.model.property_file import Port, PortKind, PortVariableKind
+from roaml.model.property_file import Port, PortKind, PortVariableKind, PropertySection
 from roaml.model.property_ports import EVENTS, LinkedVariable, names_of, part_of
 from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
@@ -55,7 +56,7 @@ def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[Completi
         case "ports":
             for system in request.systems[:1]:
                 yield from _ports(system)
-        case "guarantees" | "assumes":
+        case PropertySection.GUARANTEES.value | PropertySection.ASSUMES.value:
             yield from _properties()
         case "property":
             yield from _intervals(parents[-1].element)
@@ -216,21 +217,16 @@ def _is_named(channel: Channel, port: Port) -> bool:
 
 def fields(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
     """The fields of the message or event to which a port listens."""
-    for path, type_, owner in _fields(request, port_at(request, subject)):
+    for path, type_, owner in _observed_fields(request, port_at(request, subject)):
         symbol = Symbol("", SymbolKind.FIELD, path.rpartition(".")[2], owner) if owner else None
         yield CompletionItem(path, ItemKind.MEMBER, detail=str(type_), about=symbol)
 
 
-def _fields(request: Request, port: Port | None) -> Iterator[tuple[str, Type, str]]:
+def _observed_fields(request: Request, port: Port | None) -> Iterator[tuple[str, Type, str]]:
     if port is not None and port.kind is PortKind.NODE:
         yield "status", BASE_TYPES["int32"], ""
         return
-    part = part_of(port, request.environment.interface) if port is not None else None
-    for path, type_ in leaves(part) if part is not None else ():
-        owner: Type | None = part
-        for name in path[:-1]:
-            owner = owner.member(name) if isinstance(owner, Struct) else None
-        yield ".".join(path), type_, owner.name if isinstance(owner, Struct) else ""
+    yield from fields_of(part_of(port, request.environment.interface) if port is not None else None)
 
 
 def port_types(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
@@ -252,7 +248,7 @@ def variable_type(request: Request, subject: CompletionSubject) -> Type:
         case "accepted":
             return BOOL
     field = subject.element.get("field") if subject.element is not None else None
-    known = {path: type_ for path, type_, _ in _fields(request, port_at(request, subject))}
+    known = {path: type_ for path, type_, _ in _observed_fields(request, port_at(request, subject))}
     if field is not None and field.value.strip() in known:
         return known[field.value.strip()]
     written = subject.element.get("type") if subject.element is not None else None

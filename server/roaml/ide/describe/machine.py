@@ -422,14 +422,14 @@ def machine(analysis: Analysis, symbol: Symbol) -> str:
         code(f"{'plugin' if is_plugin else 'node'} {symbol.name}{ports}"),
         _remark(analysis, symbol.path, model.element),
         lines(
-            *(_talk(outline) if outline else ()),
+            *(_interfaces(outline) if outline else ()),
             _instances(nodes) if is_plugin else f"In JANI automaton {names(a.name for a in nodes)}" if nodes else "",
             file(symbol.path),
         ),
     )
 
 
-_TALK = {
+_VERBS = {
     SymbolKind.PUBLISHER: "Publishes",
     SymbolKind.SUBSCRIBER: "Listens to",
     SymbolKind.SERVICE_SERVER: "Serves",
@@ -439,8 +439,8 @@ _TALK = {
 }
 
 
-def _talk(outline: MachineOutline) -> Iterator[str]:
-    for kind, verb in _TALK.items():
+def _interfaces(outline: MachineOutline) -> Iterator[str]:
+    for kind, verb in _VERBS.items():
         interfaces = [use.name or f"port {use.port}" for use in outline.interfaces if use.kind == kind]
         yield f"{verb} {names(interfaces)}" if interfaces else ""
     sent, received = (

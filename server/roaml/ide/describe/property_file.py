@@ -14,6 +14,7 @@ from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonS
 from roaml.language.json_schema import PROPERTIES, Key
 from roaml.model.globals import GlobalVariable
 from roaml.model.value_types import GOAL_STATUSES
+from roaml.scxml.names import FLAG, flagged_by
 
 _DEPTH = 12
 _LENGTH = 400
@@ -102,7 +103,7 @@ def number(written: JsonNumber, around: Mapping[str, JsonValue]) -> str:
 
 def global_variable(variable: GlobalVariable) -> str:
     """The description of a global variable of the translated system."""
-    if variable.parameter == "valid" and variable.name.endswith(".valid"):
+    if variable.parameter == FLAG and flagged_by(variable.name):
         meaning = f"Whether event {name(variable.event)} has been sent"
     elif variable.name.endswith("_len"):
         meaning = f"The number of elements of {name(variable.name.rpartition('.')[0])}"

@@ -71,7 +71,7 @@ def field(registry: Registry, struct: str, field_name: str) -> str:
         field_name: the name of the field, or its dotted path.
     """
     head, _, rest = field_name.partition(".")
-    owner, section = section_of(registry, struct)
+    owner, section = definition_and_section(registry, struct)
     known = owner.section(section).field(head) if owner else None
     if owner is None or known is None:
         return ""
@@ -84,7 +84,7 @@ def field(registry: Registry, struct: str, field_name: str) -> str:
     return paragraphs(code("\n".join((*comment, _declared(known))), LANGUAGE), f"Field {of}", inside)
 
 
-def section_of(registry: Registry, struct: str) -> tuple[Definition | None, str]:
+def definition_and_section(registry: Registry, struct: str) -> tuple[Definition | None, str]:
     """The definition and section of a struct of `roaml.model.ros`; see `field`."""
     type_name, _, section = struct.partition(" ")
     section = section or "message"

@@ -11,6 +11,7 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.hover.place import Place
 from roaml.model.machine import Handler, Machine
 from roaml.model.value_types import bindings
+from roaml.roles import ValuePart
 from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
@@ -68,7 +69,8 @@ def _known(place: Place) -> dict[str, Type]:
     handler = handler_at(machine, place.offset) if machine else None
     if machine is None or handler is None:
         return {}
-    part = "cond" if handler.cond is not None and handler.cond.span.contains(place.offset) else "body"
+    is_condition = handler.cond is not None and handler.cond.span.contains(place.offset)
+    part = ValuePart.COND if is_condition else ValuePart.BODY
     return bindings(handler, part, machine, place.analysis.environment(place.systems[0]))
 
 

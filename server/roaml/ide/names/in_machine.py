@@ -42,7 +42,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS, Environment, bindings, find_handle, interface_part
-from roaml.roles import ProtocolPart, SymbolKind
+from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES, sanitise
 from roaml.text import Span
 
@@ -159,7 +159,7 @@ class _Machine:
             for handler in state.handlers:
                 yield from self.handler(chart, handler)
         for _, owner, body in bodies(chart):
-            known = bindings(owner, "body", self.machine, self.environment) if owner else {}
+            known = bindings(owner, ValuePart.BODY, self.machine, self.environment) if owner else {}
             for statement in statements(body):
                 yield from self.statement(_Scope(self, chart, owner, known), statement)
 
@@ -208,7 +208,7 @@ class _Machine:
             yield from self.state(chart, target.state)
         yield from self.word(_Scope(self, chart, handler, {}), handler.child)
         if handler.cond is not None:
-            known = bindings(handler, "cond", self.machine, self.environment)
+            known = bindings(handler, ValuePart.COND, self.machine, self.environment)
             yield from _Scope(self, chart, handler, known).names(handler.cond)
 
     def events(self, written: Name) -> Iterator[Occurrence]:

@@ -25,6 +25,7 @@ from roaml.scxml.names import (
     BLACKBOARD_WRITE_PREFIX,
     CANCEL_PREFIX,
     FIELD_PREFIX,
+    FLAG,
     NODE_PREFIX,
     safe_name,
     sanitise,
@@ -156,7 +157,7 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
     """The parts of a global variable's name after the event. `part` is the part of the interface that the event
     carries."""
-    if rest == ".valid":
+    if rest == f".{FLAG}":
         yield _plain(rest)
     elif variable.event in system.events:
         yield from _parameter(rest, variable, system)

@@ -21,7 +21,7 @@ from roaml.model.syntax import Name
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree_paths import nodes_called, parts_above
 from roaml.roles import SymbolKind
-from roaml.scxml.names import sanitise
+from roaml.scxml.names import flag_of, sanitise
 from roaml.text import Span
 
 FindInterface = Callable[[str, str], InterfaceType | None]
@@ -104,7 +104,7 @@ class _PropertyFile:
         if port.kind is PortKind.NODE:
             yield from self.node(name)
         elif port.kind is PortKind.PLAIN:
-            yield from self.pieces(self.table.get(f"{name.value}.valid", ()), name.span)
+            yield from self.pieces(self.table.get(flag_of(name.value), ()), name.span)
         else:
             kind = SYMBOL_KINDS[port.kind]
             is_topic = kind is SymbolKind.TOPIC

@@ -9,6 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.names.occurrences import global_names, trees_of
 from roaml.model.globals import GlobalVariable
 from roaml.project.analysis import Analysis
+from roaml.scxml.names import FLAG
 
 
 def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable, ...]:
@@ -24,7 +25,7 @@ def global_variables(analysis: Analysis, symbol: Symbol) -> tuple[GlobalVariable
             variables = analysis.globals(system)
             names = _by_symbol(analysis, system).get(symbol, ())
             result.update((name, variables[name]) for name in names if name in variables)
-    return tuple(sorted(result.values(), key=lambda variable: variable.parameter != "valid"))
+    return tuple(sorted(result.values(), key=lambda variable: variable.parameter != FLAG))
 
 
 def _by_symbol(analysis: Analysis, system: str) -> Mapping[Symbol, tuple[str, ...]]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.jani.expressions import Binary, Expression, Integer, Real, Unary
+from roaml.jani.nesting import is_nested
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     BinaryFormula,
@@ -20,7 +21,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
 )
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, ScopeKind, Window
-from roaml.smc.nested import ObservedFormula, is_nested, without_nesting, without_nesting_before
+from roaml.smc.nested import ObservedFormula, without_nesting, without_nesting_before
 from roaml.smc.normal_form import (
     TRUE,
     NestingError,

@@ -21,6 +21,7 @@ from roaml.model.property_file import PortVariableKind
 from roaml.model.property_links import LinkedProperty
 from roaml.model.property_ports import LinkedPort, LinkedVariable
 from roaml.observers.properties import LEFT, Pattern, PatternProperty
+from roaml.scxml.names import flag_of
 
 _BINARY = {
     Operator.OR: BinaryOperator.OR,
@@ -142,7 +143,7 @@ class _Conditions:
         """Whether an event of a port was ever sent."""
         result: Expression | None = None
         for event in port.events:
-            name = f"{event.name}.valid"
+            name = flag_of(event.name)
             if event.sender or name not in self.variables:
                 raise NotConvertibleError
             flag = jani.Name(name)
@@ -182,7 +183,7 @@ class _Conditions:
         initial = self.value(written.tree)
         if is_sent or initial in _ZEROS:
             return parameter
-        return jani.Conditional(jani.Name(f"{event.name}.valid"), parameter, initial)
+        return jani.Conditional(jani.Name(flag_of(event.name)), parameter, initial)
 
 
 def _negated(tree: Expr) -> Expr:

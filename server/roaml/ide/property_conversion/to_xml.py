@@ -26,7 +26,7 @@ from roaml.model.property_ports import FindInterface, LinkedPort, PortLinker, pa
 from roaml.model.ros import InterfaceType
 from roaml.model.system import System
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, Window
-from roaml.scxml.names import FIELD_PREFIX
+from roaml.scxml.names import FIELD_PREFIX, flag_of, flagged_by
 from roaml.smc.normal_form import negated
 from roaml.text import Span
 from roaml.xml_syntax import parse
@@ -173,7 +173,7 @@ class EventPorts:
         return NeededVariable(tag, f"{element} expr={quoteattr(initial or zero)}")
 
     def _tag(self, event: str) -> str:
-        if f"{event}.valid" not in self.variables:
+        if flag_of(event) not in self.variables:
             raise NotConvertibleError
         return self.tags.get(event) or f"scxml_event_send event={quoteattr(event)}"
 
@@ -222,7 +222,7 @@ class _Conditions:
         waiting = [condition]
         while waiting:
             part = waiting.pop()
-            if isinstance(part, jani.Name) and part.identifier.endswith(".valid"):
+            if isinstance(part, jani.Name) and flagged_by(part.identifier):
                 return True
             if not isinstance(part, jani.Conditional):
                 waiting += jani.children(part)
@@ -234,7 +234,7 @@ class _Conditions:
             return self.value(condition)
         match condition:
             case jani.Name(identifier):
-                return self.variable(self.ports.event(identifier.removesuffix(".valid")))
+                return self.variable(self.ports.event(flagged_by(identifier)))
             case jani.Unary(operator=JaniUnary.NOT, operand=jani.Unary(operator=JaniUnary.NOT, operand=operand)):
                 return self.first(operand)
             case jani.Unary(operator=JaniUnary.NOT, operand=jani.Binary(operator=operator, left=left, right=right)):
@@ -251,7 +251,7 @@ class _Conditions:
         (flag, *more) = flags
         if more or not isinstance(flag, jani.Name):
             raise NotConvertibleError
-        event = flag.identifier.removesuffix(".valid")
+        event = flagged_by(flag.identifier)
         result: Expr = self.variable(self.ports.event(event))
         for part in parts:
             names = {node.identifier for node in jani.walk(part) if isinstance(node, jani.Name)}
@@ -280,7 +280,7 @@ class _Conditions:
                 return _joined(_BINARY[operator], self.value(left), self.value(right))
             case jani.Conditional(test=jani.Name(flag), then=jani.Name(name), otherwise=initial):
                 variable = self.ports.variables.get(name)
-                if variable is not None and flag == f"{variable.event}.valid":
+                if variable is not None and flag == flag_of(variable.event):
                     return self.variable(self.ports.parameter(name, _constant(initial)))
         raise NotConvertibleError
 

@@ -193,7 +193,7 @@ class NodeProgram:
         return frozenset(part.port for part in walk(self) if isinstance(part, Write))
 
     @functools.cached_property
-    def asks_world(self) -> bool:
+    def reads_world(self) -> bool:
         """Whether the program depends on an event in the world (docs/spec/mocks.md#world)."""
         choices = (part.probability for part in self.tick if isinstance(part, Choose))
         return any(isinstance(probability, ast.Name) and probability.id == "event" for probability in choices)

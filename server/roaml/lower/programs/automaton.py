@@ -35,10 +35,10 @@ from roaml.lower.programs.code import (
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.steps import (
     EXCEPTION,
-    Ask,
     Decide,
     Draw,
     Place,
+    ReadEntries,
     Step,
     Update,
     output_steps,
@@ -151,7 +151,7 @@ _Key: TypeAlias = _Rest | _Ticking | _Halting | _Asking | _Deciding | _Exception
 
 
 @dataclass(slots=True)
-class _Way:
+class _Execution:
     """One execution of the code up to the next state.
 
     Attributes:
@@ -291,38 +291,38 @@ class _Explorer:
         origin = self.code.origin
         return [
             Transition(event, guard, targets, origin)
-            for guard, targets in self.alternatives(_Way(place, fixed, list(body)), cond)
+            for guard, targets in self.alternatives(_Execution(place, fixed, list(body)), cond)
         ]
 
-    def alternatives(self, way: _Way, cond: Expr | None) -> list[tuple[Expr | None, tuple[Target, ...]]]:
+    def alternatives(self, execution: _Execution, cond: Expr | None) -> list[tuple[Expr | None, tuple[Target, ...]]]:
         """The conditions and targets of the transitions that continue an execution. A condition becomes the condition
         of a transition only if no statement precedes it; otherwise it is decided in a separate state."""
-        stop = self.run(way)
+        stop = self.run(execution)
         match stop:
-            case _Decision(test, yes, no) if not way.body:
+            case _Decision(test, yes, no) if not execution.body:
                 return [
-                    *self.alternatives(_Way(yes, dict(way.fixed), []), both(cond, test)),
-                    *self.alternatives(_Way(no, dict(way.fixed), []), both(cond, negated(test))),
+                    *self.alternatives(_Execution(yes, dict(execution.fixed), []), both(cond, test)),
+                    *self.alternatives(_Execution(no, dict(execution.fixed), []), both(cond, negated(test))),
                 ]
             case Draw(probability, yes, no):
                 targets = []
                 for share, place in ((probability, yes), (1 - probability, no)):
                     if share > 0:
-                        branch = _Way(place, dict(way.fixed), list(way.body))
+                        branch = _Execution(place, dict(execution.fixed), list(execution.body))
                         targets.append(self.single(branch, share))
                 return [(cond, tuple(targets))]
-        return [(cond, (self.target(way, stop, 1.0),))]
+        return [(cond, (self.target(execution, stop, 1.0),))]
 
-    def single(self, way: _Way, share: float) -> Target:
-        return self.target(way, self.run(way), share)
+    def single(self, execution: _Execution, share: float) -> Target:
+        return self.target(execution, self.run(execution), share)
 
-    def target(self, way: _Way, stop: _Stop, share: float) -> Target:
+    def target(self, execution: _Execution, stop: _Stop, share: float) -> Target:
         # A condition after statements is decided in a separate state.
-        later = _Deciding(way.place, _frozen(way.fixed))
+        later = _Deciding(execution.place, _frozen(execution.fixed))
         state = stop if isinstance(stop, str) else self.state("deciding", later)
-        return Target(state, share, tuple(way.body), self.code.origin)
+        return Target(state, share, tuple(execution.body), self.code.origin)
 
-    def run(self, way: _Way) -> _Stop:
+    def run(self, execution: _Execution) -> _Stop:
         """Execute instructions until the node must wait for an event, or until a condition or chance decides how it
         continues. `way.place` is then the instruction at which the execution stopped.
 
@@ -330,60 +330,60 @@ class _Explorer:
             The name of the state that is reached, or the decision with the places at which the execution continues.
         """
         while True:
-            segment, index = way.place
-            if way.place == EXCEPTION:
+            segment, index = execution.place
+            if execution.place == EXCEPTION:
                 return self.state("exception", _Exception())
             code = self.segments[segment]
             if index >= len(code):
-                state = self.end(segment, way)
+                state = self.end(segment, execution)
                 if state is not None:
                     return state
                 continue
             instruction = code[index]
-            if isinstance(instruction, (Ask, Update, Decide, Draw)):
-                stop = self.step(instruction, way)
+            if isinstance(instruction, (ReadEntries, Update, Decide, Draw)):
+                stop = self.step(instruction, execution)
             else:
-                stop = self.execute(instruction, (segment, index + 1), way)
+                stop = self.execute(instruction, (segment, index + 1), execution)
             if stop is not None:
                 return stop
 
-    def end(self, segment: str, way: _Way) -> str | None:
+    def end(self, segment: str, execution: _Execution) -> str | None:
         """Continue after the end of a segment. Return the name of the reached state, or `None` if `way.place` is the
         beginning of the next segment."""
         match segment:
             case "before":
-                way.place = ("tick", 0)
+                execution.place = ("tick", 0)
             case "halt":
-                way.fixed["status"] = IDLE
-                if way.fixed.pop(_ENDED, False):
-                    way.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
-                    return self.rest(way.fixed)
-                way.place = ("halted", 0)
+                execution.fixed["status"] = IDLE
+                if execution.fixed.pop(_ENDED, False):
+                    execution.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
+                    return self.rest(execution.fixed)
+                execution.place = ("halted", 0)
             case "halted":
-                if way.fixed.pop(_SKIPS, False):
-                    way.fixed[RESULT] = SKIPPED
-                    way.place = ("after", 0)
+                if execution.fixed.pop(_SKIPS, False):
+                    execution.fixed[RESULT] = SKIPPED
+                    execution.place = ("after", 0)
                     return None
-                way.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
-                return self.rest(way.fixed)
+                execution.body.append(Send(self.event(TreeEventKind.HALT_RESPONSE), (), self.code.origin))
+                return self.rest(execution.fixed)
             case "after":
-                return self.answer(way)
+                return self.answer(execution)
             case _:
                 raise AssertionError(f"{self.code.program.name} does not return")
         return None
 
-    def answer(self, way: _Way) -> str:
-        result = int(way.fixed.pop(RESULT))
+    def answer(self, execution: _Execution) -> str:
+        result = int(execution.fixed.pop(RESULT))
         if result < SKIPPED:
-            way.fixed["status"] = result
-        elif way.fixed["status"] != IDLE:
+            execution.fixed["status"] = result
+        elif execution.fixed["status"] != IDLE:
             result = HELD
         self.answers.add(result)
         status = Param("status", integer(result), self.code.origin)
-        way.body.append(Send(self.event(TreeEventKind.RESPONSE), (status,), self.code.origin))
-        return self.rest(way.fixed)
+        execution.body.append(Send(self.event(TreeEventKind.RESPONSE), (status,), self.code.origin))
+        return self.rest(execution.fixed)
 
-    def execute(self, instruction: Instruction, following: Place, way: _Way) -> _Stop | None:
+    def execute(self, instruction: Instruction, following: Place, execution: _Execution) -> _Stop | None:
         """Execute one instruction. Return the reason to stop, or `None` if the execution continues at `way.place`."""
         segment = following[0]
 
@@ -392,34 +392,34 @@ class _Explorer:
 
         match instruction:
             case assembly.SetVariable():
-                self.assign(instruction, way)
+                self.assign(instruction, execution)
             case assembly.Jump(label):
                 following = at(label)
             case assembly.Test(condition, otherwise):
-                value = self.values.value(condition, way.fixed)
+                value = self.values.value(condition, execution.fixed)
                 if not isinstance(value, (bool, int, float, str)):
                     return _Decision(value, following, at(otherwise))
                 following = following if value else at(otherwise)
             case assembly.Choose(expression, otherwise):
-                probability = float(self.values.number(expression, way.fixed))
+                probability = float(self.values.number(expression, execution.fixed))
                 if 0 < probability < 1:
                     return Draw(probability, following, at(otherwise))
                 following = following if probability >= 1 else at(otherwise)
             case assembly.TickChild(child, target):
-                return self.tick(int(self.values.number(child, way.fixed)), target, following, way)
+                return self.tick(int(self.values.number(child, execution.fixed)), target, following, execution)
             case assembly.Reset(child):
-                state = self.reset(int(self.values.number(child, way.fixed)), following, way)
+                state = self.reset(int(self.values.number(child, execution.fixed)), following, execution)
                 if state is not None:
                     return state
             case assembly.Return(status):
-                way.fixed[RESULT] = int(self.values.number(status, way.fixed))
+                execution.fixed[RESULT] = int(self.values.number(status, execution.fixed))
                 following = ("after", 0)
             case assembly.Read(ports):
                 entries = tuple(self.code.bound[port] for port in ports if port in self.code.bound)
                 if entries:
-                    return self.ask(entries, following, way)
+                    return self.read_entries(entries, following, execution)
             case assembly.Write(port, expression):
-                self.write_port(port, self.values.value(expression, way.fixed), way)
+                self.write_port(port, self.values.value(expression, execution.fixed), execution)
             case assembly.Evaluate(script, label):
                 no = None if label is None else at(label)
                 following = self.evaluate(script, following, no)
@@ -427,64 +427,66 @@ class _Explorer:
                 if self.code.updated is None:
                     following = at(otherwise)
                 else:
-                    following = self.ask_update(self.code.updated, following, at(otherwise))
+                    following = self.read_update(self.code.updated, following, at(otherwise))
             case assembly.WriteOutputs():
                 following = self.write_outputs(following)
             case assembly.HaltSelf():
-                way.fixed[_SKIPS] = True
+                execution.fixed[_SKIPS] = True
                 following = ("halt", 0)
             case assembly.Count(counter):
                 if self.code.counts:
                     self.declare(counter, BASE_TYPES["int32"], integer(0))
                     increased = binary(name(counter), Operator.ADD, integer(1))
-                    way.body.append(Assign(name(counter), increased, self.code.origin))
+                    execution.body.append(Assign(name(counter), increased, self.code.origin))
             case assembly.Throw():
                 following = EXCEPTION
-        way.place = following
+        execution.place = following
         return None
 
-    def assign(self, instruction: assembly.SetVariable, way: _Way) -> None:
-        value = self.values.value(instruction.value, way.fixed)
+    def assign(self, instruction: assembly.SetVariable, execution: _Execution) -> None:
+        value = self.values.value(instruction.value, execution.fixed)
         target = instruction.target
         if instruction.element is not None:
-            target = f"{target}_{self.values.number(instruction.element, way.fixed)}"
+            target = f"{target}_{self.values.number(instruction.element, execution.fixed)}"
         if target in self.declared:
-            way.body.append(Assign(name(target), expr(value), self.code.origin))
+            execution.body.append(Assign(name(target), expr(value), self.code.origin))
         else:
             assert isinstance(value, (bool, int, float, str)), target
-            way.fixed[target] = value
+            execution.fixed[target] = value
 
-    def tick(self, number: int, target: str, following: Place, way: _Way) -> str:
+    def tick(self, number: int, target: str, following: Place, execution: _Execution) -> str:
         child = self.code.children[number]
-        way.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), self.code.origin))
-        return self.state("ticking", _Ticking(following, _frozen(way.fixed), number, target))
+        execution.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), self.code.origin))
+        return self.state("ticking", _Ticking(following, _frozen(execution.fixed), number, target))
 
-    def reset(self, number: int, following: Place, way: _Way) -> str | None:
+    def reset(self, number: int, following: Place, execution: _Execution) -> str | None:
         child = self.code.children[number]
-        touched = int(way.fixed[_TOUCHED])
-        way.fixed[_TOUCHED] = touched & ~(1 << number)
+        touched = int(execution.fixed[_TOUCHED])
+        execution.fixed[_TOUCHED] = touched & ~(1 << number)
         if child.is_stateless or not touched & (1 << number):
             return None
-        way.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), self.code.origin))
-        return self.state("halting", _Halting(following, _frozen(way.fixed), number))
+        execution.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), self.code.origin))
+        return self.state("halting", _Halting(following, _frozen(execution.fixed), number))
 
     # -------------------------------------------------------------- blackboard
 
-    def ask(self, entries: tuple[BoardEntry, ...], following: Place, way: _Way) -> str:
-        way.body.append(Send(REQUEST, (), self.code.origin))
-        return self.state("asking", _Asking(following, _frozen(way.fixed), entries))
+    def read_entries(self, entries: tuple[BoardEntry, ...], following: Place, execution: _Execution) -> str:
+        execution.body.append(Send(REQUEST, (), self.code.origin))
+        return self.state("asking", _Asking(following, _frozen(execution.fixed), entries))
 
-    def write(self, entry: BoardEntry, value: Expr, way: _Way) -> None:
+    def write(self, entry: BoardEntry, value: Expr, execution: _Execution) -> None:
         origin = self.code.origin
-        way.body.append(Send(blackboard_write(entry.variable), (Param("value", entry.written(value), origin),), origin))
+        execution.body.append(
+            Send(blackboard_write(entry.variable), (Param("value", entry.written(value), origin),), origin)
+        )
 
-    def write_port(self, port: str, value: Value, way: _Way) -> None:
+    def write_port(self, port: str, value: Value, execution: _Execution) -> None:
         if port in self.code.bound:
-            self.write(self.code.bound[port], expr(value), way)
+            self.write(self.code.bound[port], expr(value), execution)
         for flag in self.code.flags_at.get(port, ()):
-            self.write(flag, integer(1), way)
+            self.write(flag, integer(1), execution)
 
-    def ask_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
+    def read_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
         return self.added(f"*updated*{following}", lambda key: update_steps(key, flag, following, otherwise))
 
     def write_outputs(self, following: Place) -> Place:
@@ -500,27 +502,27 @@ class _Explorer:
             self.segments[segment] = steps(segment)
         return (segment, 0)
 
-    def step(self, step: Step, way: _Way) -> _Stop | None:
+    def step(self, step: Step, execution: _Execution) -> _Stop | None:
         """Execute one step. Return the reason to stop, or `None` if the execution continues at `way.place`."""
-        segment, index = way.place
+        segment, index = execution.place
         match step:
-            case Ask(entries):
-                return self.ask(entries, (segment, index + 1), way)
+            case ReadEntries(entries):
+                return self.read_entries(entries, (segment, index + 1), execution)
             case Update(assignments, writes):
                 for local, value in assignments:
-                    way.body.append(Assign(name(local), value, self.code.origin))
+                    execution.body.append(Assign(name(local), value, self.code.origin))
                 for entry in writes:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
-                    self.write(entry, name(entry.local), way)
-                way.place = (segment, index + 1)
+                    self.write(entry, name(entry.local), execution)
+                execution.place = (segment, index + 1)
             case Decide(condition, yes, no):
                 if not isinstance(condition, bool):
                     return _Decision(condition, yes, no)
-                way.place = yes if condition else no
+                execution.place = yes if condition else no
             case Draw(probability, yes, no):
                 if probability < 1:
                     return step
-                way.place = yes
+                execution.place = yes
         return None
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
+from roaml.libraries import Port, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.scripts import script_ports
 from roaml.lower.programs.assembly import NodeProgram, programs
@@ -33,7 +34,7 @@ def program_of(node: ExecutedNode) -> NodeProgram | None:
     """
     if node.type == "SubTree" and node.children:
         return programs()["SubTree"]
-    is_library = node.known is not None and bool(node.known.library)
+    is_library = node.known is not None and bool(node.known.behaviour)
     if is_library and node.type in programs():
         _check_children(node)
         return programs()[node.type]
@@ -154,7 +155,7 @@ class _Reader:
             self.set_blackboard(node, board, known, bound)
             return
         given = {port: (entry, text, span) for port, entry, text, span in node.ports()}
-        declared = node.known.ports if node.known else ()
+        declared = _declared_ports(node)
         kinds = {entry.kind for entry in self.switch_entries(program, given, board)}
         for port in declared:
             if port.name in ("if", "code", "entry", "queue", "value" if program.name.startswith("Loop") else ""):
@@ -177,6 +178,7 @@ class _Reader:
                 known[port.name] = _case(text, kinds)
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
+                self.check_divisor(node, port.name, known[port.name], Location(node.origin.path, span))
         missing = [port for port in program.needed_ports if port not in known and port not in bound]
         if missing and not program.name.startswith("Switch"):
             raise _missing(node, missing[0])
@@ -187,6 +189,21 @@ class _Reader:
         for port_name in ("else", "return_on_mismatch", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
             if port_name in bound:
                 raise TreeRefusal(node.origin, f"the port `{port_name}` cannot be translated; it must be a constant")
+
+    def check_divisor(self, node: ExecutedNode, port: str, value: Known, origin: Location) -> None:
+        """Refuse a rate that is not positive, because programs compute its period.
+
+        Raises:
+            TreeRefusal: the value is not in the limits of the port.
+        """
+        known = CPP.nodes.get(node.type) or node_in_libraries(node.type)
+        declared = known.port(port) if known is not None else None
+        limits = declared.limits if declared is not None else None
+        if limits is None or not limits.is_exclusive or limits.minimum is None or isinstance(value, str):
+            return
+        if value <= limits.minimum:
+            reason = f"the port `{port}` must be greater than {limits.minimum:g}, not {value:g}"
+            raise TreeRefusal(origin, reason, is_reported=True)
 
     def switch_entries(
         self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
@@ -240,6 +257,15 @@ class _Reader:
                 read = tuple(read_literal(item)[1] for item in items)
                 return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
         return ()
+
+
+def _declared_ports(node: ExecutedNode) -> tuple[Port, ...]:
+    """The ports of a node of a library, with those that a model of the node does not describe."""
+    if node.known is None or node.known.library:
+        return node.known.ports if node.known else ()
+    library_node = node_in_libraries(node.type)
+    more = library_node.ports if library_node is not None else ()
+    return (*node.known.ports, *(port for port in more if node.known.port(port.name) is None))
 
 
 def flags_at(node: ExecutedNode, board: Board) -> dict[str, tuple[BoardEntry, ...]]:

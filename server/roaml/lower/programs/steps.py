@@ -21,7 +21,7 @@ EXCEPTION: Place = ("exception", 0)
 """The place at which the execution continues after an exception of the library."""
 
 
-class Ask(NamedTuple):
+class ReadEntries(NamedTuple):
     """Reads the entries `entries` at once."""
 
     entries: tuple[BoardEntry, ...]
@@ -50,19 +50,19 @@ class Draw(NamedTuple):
     no: Place
 
 
-Step: TypeAlias = Ask | Update | Decide | Draw
+Step: TypeAlias = ReadEntries | Update | Decide | Draw
 
 
 def update_steps(segment: str, flag: BoardEntry, following: Place, otherwise: Place) -> tuple[Step, ...]:
     """The steps that check whether the observed entry was written. If it was, they reset its flag and continue at
     `following`; otherwise they continue at `otherwise`."""
     return (
-        Ask((flag,)),
+        ReadEntries((flag,)),
         Decide(equal(name(flag.local), integer(1)), (segment, 2), otherwise),
         Update(((flag.local, integer(0)),), (flag,)),
         # The blackboard receives pending writes in any order, and a read waits for all of them. Without a read here,
         # the entry could be written before its flag is reset, and the flag would lose that write.
-        Ask((flag,)),
+        ReadEntries((flag,)),
         Decide(True, following, otherwise),
     )
 
@@ -86,7 +86,7 @@ def output_steps(
 def script_steps(segment: str, script: CompiledScript, following: Place, otherwise: Place | None) -> tuple[Step, ...]:
     """The steps of a script: they read all entries at once, compute, and write all assigned entries. They continue at
     `following`, or at `otherwise` if that is not `None` and the value of the script is false."""
-    steps: list[Step] = [Ask(script.reads)] if script.reads else []
+    steps: list[Step] = [ReadEntries(script.reads)] if script.reads else []
     for condition in script.conditions:
         steps.append(Decide(condition, (segment, len(steps) + 1), EXCEPTION))
     steps.append(Update(script.assignments, script.writes))

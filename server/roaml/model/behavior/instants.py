@@ -163,7 +163,7 @@ class Instants:
         self.own = self.solver.number(self.plugin)
         self.below = {id(automaton) for automaton in _below(self.system, self.plugin)}
 
-    def comes(self, event: ProtocolEvent) -> bool:
+    def can_arrive(self, event: ProtocolEvent) -> bool:
         """Whether an event that the plugin waits for can arrive."""
         return self.solver.solve(self.own, event)
 
@@ -177,7 +177,7 @@ class Instants:
             answer = (ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED)[step.choice]
             if server is not None and answer not in server.use.sends:
                 return False
-        return self.comes(step.event)
+        return self.can_arrive(step.event)
 
     def _holds(self, solver: _Solver, number: int, event: ProtocolEvent) -> bool:
         automaton = self.system.automata[number]
@@ -218,7 +218,7 @@ class Instants:
 
     def delay(self, event: ProtocolEvent) -> EventDelay:
         """The reason why an event cannot arrive without the passing of time."""
-        self.comes(event)
+        self.can_arrive(event)
         return self._delay(self.plugin, event, frozenset())
 
     def _delay(self, automaton: SystemAutomaton, event: ProtocolEvent, seen: frozenset[_Fact]) -> EventDelay:
@@ -302,7 +302,7 @@ def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]
 # ------------------------------------------- while a machine stays in one state
 
 
-def comes_again(
+def can_arrive_again(
     system: System, receiver: SystemAutomaton, chart: int, event: ProtocolEvent, sent: frozenset[ProtocolEvent]
 ) -> bool:
     """Whether `event` may be sent a second time while a chart of `receiver` stays in one state. The chart has received

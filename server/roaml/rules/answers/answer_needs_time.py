@@ -77,7 +77,7 @@ def _awaited(behavior: Behavior, first: BehaviorStep, slow: frozenset[int], inst
         for step in outgoing[here]:
             if not instants.possible(step):
                 nearer = left.get(step.target, len(left)) < left.get(step.source, len(left))
-                if nearer and not step.ignored and step.event is not None and not instants.comes(step.event):
+                if nearer and not step.ignored and step.event is not None and not instants.can_arrive(step.event):
                     return step.event
             elif step.target in slow and step.target not in seen:
                 seen.add(step.target)

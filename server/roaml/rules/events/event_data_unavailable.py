@@ -10,6 +10,7 @@ from roaml.expr.infer import UnknownName
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
 from roaml.model.vocabulary import EVENT_VARIABLES
+from roaml.roles import ValuePart
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, listing, replacements
 from roaml.rules.support.event_data import known_here
 from roaml.text import Span, TextEdit
@@ -40,7 +41,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     known = known_here(value.place)
     name, place = problem.name, value.place
     tag = place_tag(place)
-    if place.part == "data":
+    if place.part is ValuePart.DATA:
         return RULE.at(problem.span, f"an initial value must be constant; it cannot use `{name}`")
     if name in SCXML_VARIABLES:
         return RULE.at(problem.span, f"`{name}` is a variable of SCXML that HL-SCXML does not support")
@@ -50,7 +51,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
         here = f"; `<{tag}>` knows {listing(known)}" if known and not close else ""
         message = f"there is no variable `{name}`{did_you_mean(close)}{here}"
         return RULE.at(problem.span, message, *replacements(problem.span, close))
-    if place.part in ("onentry", "onexit"):
+    if place.part in (ValuePart.ENTRY, ValuePart.EXIT):
         if name == "_event" and context.machine.plain:
             # Machines without any ROS or tree element are not rewritten (docs/spec/machines.md#plain-machines).
             message = (
@@ -82,7 +83,7 @@ def _fixes(context: MachineContext, problem: UnknownName, known: list[str]) -> I
 
 
 def place_tag(place: ValuePlace) -> str:
-    return place.handler.element.name if place.handler else place.part
+    return place.handler.element.name if place.handler else place.part.value
 
 
 RULE = Rule(

@@ -17,7 +17,7 @@ from roaml.model.system import System
 from roaml.model.system_file import SystemSection
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.scxml.names import TIMER_PREFIX
+from roaml.scxml.names import TIMER_PREFIX, flag_of
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
 """Events that ticked and halted plugins in an older version; removed-bt-event reports them."""
@@ -33,7 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     generated = _generated(context, system)
     sent = [event.name for event in system.events.values() if event.senders]
     for event, handler in unsent:
-        unread = system.may(GapAct.SENDS, event.value) or system.may_have_variable(f"{event.value}.valid")
+        unread = system.may(GapAct.SENDS, event.value) or system.may_have_variable(flag_of(event.value))
         if not unread and event.value not in generated:
             close = close_names(event.value, sent)
             message = (

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Expr, Name, walk
-from roaml.model.behavior.instants import comes_again
+from roaml.model.behavior.instants import can_arrive_again
 from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.machine import CallChild, Handler, RosSend, Send, Statement, statements
 from roaml.model.syntax import Expression
@@ -53,7 +53,7 @@ def _may_be_newer(context: MachineContext, place: ValuePlace, at: int) -> bool:
     if context.system is None or not context.automata:
         return True
     chart = context.machine.charts.index(place.chart)
-    return any(comes_again(context.system, automaton, chart, event, sent) for automaton in context.automata)
+    return any(can_arrive_again(context.system, automaton, chart, event, sent) for automaton in context.automata)
 
 
 def _event(context: MachineContext, user: Handler | RosSend) -> ProtocolEvent:

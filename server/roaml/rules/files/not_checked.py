@@ -42,8 +42,23 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
         texts = texts_at.setdefault(span, [])
         texts += [question.text for question in questions if question.text not in texts and question.may_be(facts)]
     for span, texts in texts_at.items():
-        if texts:
+        if texts and _is_unresolved(context, span):
+            reason, advice = "because a listed plugin cannot be read", "fix the errors of that plugin first"
+            yield RULE.at(span, f"not checked, {reason}: {_listing(texts)}; {advice}")
+        elif texts:
             yield RULE.at(span, f"not checked because of this error: {_listing(texts)}; fix the error first")
+
+
+def _is_unresolved(context: MachineContext | TreeContext | SystemContext, span: Span) -> bool:
+    """Whether `span` is the name of a plugin that may be in a file that cannot be read. No rule reports an error there,
+    because the plugin may exist."""
+    if not isinstance(context, TreeContext) or context.system is None or context.system.plugins_known:
+        return False
+    nodes = (node_at(context.file, instance.source) for instance in context.system.instances)
+    node = next((node for node in nodes if node is not None and node.plugin and node.plugin.span == span), None)
+    if node is None or node.plugin is None or node.type is not None:
+        return False
+    return node.plugin.value not in [outline.name for _, outline in context.system.nodes]
 
 
 def _unknown_types(context: MachineContext) -> Iterator[Finding]:

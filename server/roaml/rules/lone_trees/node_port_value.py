@@ -34,7 +34,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 continue
             wrong = list(_reference(setting))
             if not wrong and entry_of(setting) is None:
-                names = names_of(entries_of(forest), tree.id.value if tree.id else "")
+                names = names_of(entries_of(forest), tree.id.value if tree.id else "") | forest.host_entries
                 wrong = list(_without_braces(node, port, setting, names))
             yield from wrong
             if known is not None and port is not None and not wrong and entry_of(setting) is None:

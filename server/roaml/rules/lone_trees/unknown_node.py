@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP, Forest
+from roaml.libraries import Node
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of, probably_meant
@@ -79,6 +81,14 @@ def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) ->
         message = f"there is no node `{name}`; its end tag is `</{end}>`"
         yield RULE.at(node.plugin.span, message, rename_tag(node.element, end), severity=Severity.ERROR)
         return
+    foreign = CPP.foreign.get(name)
+    if foreign is not None and _has_children_of(node, CPP.nodes[foreign]):
+        message = (
+            f"BehaviorTree.CPP has no node `{name}`; the node of this name in other libraries is called `{foreign}`"
+        )
+        # With another name, the node may lack ports, so the user decides.
+        yield RULE.at(node.plugin.span, message, replace(_renaming(node, foreign), preferred=False))
+        return
     near = probably_meant(name, forest.names) or probably_meant(name, trees, most=1)
     if near is not None:
         kind_name = "tree" if near in trees and near not in forest.names else "node"
@@ -93,6 +103,12 @@ def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) ->
             "`tree-models`"
         )
         yield RULE.at(node.plugin.span, message, severity=severity)
+
+
+def _has_children_of(node: TreeNode, known: Node) -> bool:
+    """Whether the number of children of a node is that of `known`."""
+    least, most = known.children
+    return least <= len(node.children) <= most
 
 
 def _renaming(node: TreeNode, name: str) -> Fix:

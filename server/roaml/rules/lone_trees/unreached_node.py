@@ -6,8 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Tag
+from roaml.forest.entries import entry_of
+from roaml.forest.forest import CPP
 from roaml.forest.statuses import PossibleStatuses
-from roaml.model.tree import TreeNode
+from roaml.model.tree import PortSetting, TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 
@@ -16,6 +18,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
+    for _, node in forest.own_nodes:
+        if node.plugin is not None and forest.known_node(node) is CPP.nodes.get(node.plugin.value):
+            yield from _of_switch(node)
     possible = PossibleStatuses(forest)
     for tree in context.file.trees:
         for root in tree.roots:
@@ -23,6 +28,32 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 message = f"this node is never ticked: `{_name(before)}` before it never returns {needed}"
                 related = [Related(before.element.name_span, f"never returns {needed}")]
                 yield RULE.at(node.element.name_span, message, related=related, tags=(Tag.UNNECESSARY,))
+
+
+def _of_switch(node: TreeNode) -> Iterator[Finding]:
+    """Report children of a `Switch` whose case equals an earlier case (docs/spec/nodes.md#control)."""
+    if node.plugin is None or not node.plugin.value.startswith("Switch"):
+        return
+    first: dict[float | str, PortSetting] = {}
+    settings = {setting.attribute.name: setting for setting in node.ports}
+    for number, child in enumerate(node.children[:-1], 1):
+        setting = settings.get(f"case_{number}")
+        if setting is None or entry_of(setting) is not None:
+            continue
+        earlier = first.setdefault(_case(setting.value.value), setting)
+        if earlier is not setting:
+            name = earlier.attribute.name
+            message = f"this node is never ticked: `case_{number}` equals `{name}`, which is compared first"
+            related = [Related(earlier.value.span, "the equal case")]
+            yield RULE.at(child.element.name_span, message, related=related, tags=(Tag.UNNECESSARY,))
+
+
+def _case(text: str) -> float | str:
+    """The value that the library compares: a number if the text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _name(node: TreeNode) -> str:

@@ -12,7 +12,7 @@ from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import EVENT_VARIABLES
-from roaml.roles import SymbolKind
+from roaml.roles import SymbolKind, ValuePart
 from roaml.rules.rule import MachineContext, Rule
 
 CONSTANT = (ValueUse.INITIAL, ValueUse.BOUND)
@@ -66,7 +66,7 @@ def _reason(context: MachineContext, value: TypedValue) -> str:
     names = {
         node.name
         for other in context.typed.values
-        if other.place.handler is handler and other.place.part == "body" and isinstance(other.value, Expression)
+        if other.place.handler is handler and other.place.part is ValuePart.BODY and isinstance(other.value, Expression)
         for node in walk(other.value.tree)
         if isinstance(node, Name)
     }

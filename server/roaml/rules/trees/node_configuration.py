@@ -7,23 +7,21 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.expr.infer import constant
-from roaml.expr.parse import parse
-from roaml.model.expand import PortConstant, Reference
+from roaml.model.expand import Reference
 from roaml.model.tree import PortSetting, TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.instances import instances
-from roaml.text import Decoded
+from roaml.rules.support.settings import constant_settings, integer_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
     """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common)."""
     yield from _set_twice(context)
-    is_library_tree = context.system is not None and context.system.is_library_tree
-    for node, key, text in _settings(context):
-        if is_library_tree and key == "max_failures":
-            continue  # BehaviorTree.CPP accepts any number
-        number = _number(text) if key in _COUNTS else None
+    is_library_tree = context.system is None or context.system.is_library_tree
+    for node, key, text in constant_settings(context):
+        if is_library_tree and key in ("num_cycles", "num_attempts"):
+            continue  # BehaviorTree.CPP accepts any number; `port-range` reports those without use
+        number = integer_of(text) if key in _COUNTS else None
         problem = _problem(node, key, number) if number is not None else None
         if problem is not None:
             yield _finding(node, key, *problem)
@@ -47,7 +45,7 @@ def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) 
     assert node.plugin is not None
     if setting is None:
         return RULE.at(node.plugin.span, reason)
-    fixes = [] if instead is None or _number(setting.value) is None else replacements(setting.span, [str(instead)])
+    fixes = [] if instead is None or integer_of(setting.value) is None else replacements(setting.span, [str(instead)])
     return RULE.at(setting.span, reason, *fixes)
 
 
@@ -65,23 +63,6 @@ def _set_twice(context: TreeContext) -> Iterator[Finding]:
                     yield RULE.at(setting.key.span, message, drop)
 
 
-def _settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
-    """Every constant setting of a node, with its key and value. Constants from subtrees and from defaults of the tree
-    model are included."""
-    executed: set[TreeNode] = set()
-    for node, automaton in instances(context):
-        executed.add(node)
-        for port in automaton.outline.ports:
-            value = automaton.port(port.key)
-            if isinstance(value, PortConstant):
-                yield node, port.key, value.text
-    for tree in context.file.trees:
-        for node in nodes(tree):
-            if node not in executed:
-                for setting in node.ports:
-                    yield node, setting.key.value, setting.value.value
-
-
 def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | None:
     """The error in a setting, and the nearest valid value; `None` if the setting is valid."""
     count = len(node.children)
@@ -95,15 +76,6 @@ def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | 
         case ("ParallelAll", "max_failures") if number > count > 0:
             return f"`max_failures` must be at most the number of children, which is {count}, not {number}", count
     return None
-
-
-def _number(text: str) -> int | None:
-    """The integer value of a constant; `None` if it is not an integer."""
-    tree, findings = parse(Decoded(text.strip(), 0))
-    value = None if findings else constant(tree)
-    if isinstance(value, float):
-        return int(value) if value.is_integer() else None
-    return value
 
 
 RULE = Rule("node-configuration", Severity.ERROR, "A node never returns a status because of its settings.", tree=check)

@@ -22,6 +22,8 @@ declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
 
 const editor = acquireVsCodeApi();
 const ZOOM = 1.25;
+/** How long a node whose look has changed is emphasised, in ms. */
+const EMPHASIS_MS = 500;
 
 class View {
     private readonly svg = element("svg", { class: "picture", tabindex: 0, role: "application" });
@@ -218,12 +220,15 @@ class View {
     /** Show where a run is: active states, statuses of nodes, messages. */
     private showActivity(activity: Activity): void {
         const { picture, scene } = this;
+        const before = this.activity;
         this.activity = activity;
         if (!picture || !scene) return;
         for (const [index, group] of scene.nodes) {
-            const look = activity.nodes[picture.nodes[index]?.id ?? ""];
+            const id = picture.nodes[index]?.id ?? "";
+            const look = activity.nodes[id];
             if (look === undefined) delete group.dataset["look"];
             else group.dataset["look"] = look;
+            if (look !== undefined && look !== "idle" && look !== before.nodes[id]) emphasise(group);
         }
         for (const [index, groups] of scene.edges) {
             const edge = picture.edges[index];
@@ -377,6 +382,14 @@ class View {
         const direction = DIRECTIONS[this.shown];
         if (this.picture && direction) editor.postMessage({ type: "save", format, direction, theme: theme() });
     }
+}
+
+/** Draw the outline of a node thick for a moment, because its look has changed. */
+function emphasise(group: SVGGElement): void {
+    const isReduced =
+        document.body.classList.contains("vscode-reduce-motion") ||
+        window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (!isReduced) group.querySelector(":scope > .card")?.animate([{ strokeWidth: "12px" }, {}], EMPHASIS_MS);
 }
 
 function entry({ tone, text, isLine }: LegendEntry): HTMLElement {

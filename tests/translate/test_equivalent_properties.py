@@ -145,7 +145,7 @@ ANSWERED = "srv_ask_response_client_BT_plugin_1001_ask.valid"
 STATUS = "bt_1001_response__status"
 
 
-def files(system: str, guarantees: str, twins: list[object]) -> dict[str, str]:
+def files(system: str, guarantees: str, written_formulas: list[object]) -> dict[str, str]:
     machines = {"link": LINK, "race": RACE, "ward": WARD}[system]
     ports = {"link": LINK_PORTS, "race": RACE_PORTS, "ward": WARD_PORTS}[system]
     nodes = "".join(f'<input type="node-ascxml" src="{name}.ascxml" />' for name in machines)
@@ -162,7 +162,7 @@ def files(system: str, guarantees: str, twins: list[object]) -> dict[str, str]:
         "ask.ascxml": ASK,
         **{f"{name}.ascxml": text for name, text in machines.items()},
         "properties.xml": f"<properties><ports>{ports}</ports><guarantees>{guarantees}</guarantees></properties>",
-        "twins.jani": json.dumps({"properties": twins}),
+        "twins.jani": json.dumps({"properties": written_formulas}),
     }
 
 
@@ -183,7 +183,7 @@ def equal(variable: str, value: object) -> dict[str, object]:
 
 
 SECOND = "topic_clock_msg__ros_fields__sec"
-TWINS: Mapping[tuple[str, str], tuple[str, object]] = {
+EQUIVALENTS: Mapping[tuple[str, str], tuple[str, object]] = {
     ("link", "existence"): (pattern("existence", "ack &amp;&amp; m == 3"), op("F", equal(M, 3))),
     ("link", "absence"): (pattern("absence", "lost"), op("G", op("¬", LOST))),
     ("link", "universality"): (pattern("universality", "missing &lt; 3"), op("G", op("<", MISSING, 3))),
@@ -281,9 +281,9 @@ CERTAIN = {("race", "caught up"), ("ward", "running only once agreed")}
 """All others have values between 0 and 1."""
 
 
-@pytest.mark.parametrize("key", TWINS, ids=" ".join)
+@pytest.mark.parametrize("key", EQUIVALENTS, ids=" ".join)
 def test_storm_and_the_search_give_the_values_of_the_twin(key: tuple[str, str]) -> None:
-    in_xml, in_jani = TWINS[key]
+    in_xml, in_jani = EQUIVALENTS[key]
     source = loaded(files(key[0], in_xml, [hand_written("twin", in_jani)]))
     model = api.to_jani(source)
     by_hand, observed = exact(model, "twin"), exact(model, "p")

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `port-range`, which port_range.md describes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Finding, Severity
+from roaml.forest.cpp_types import mismatch
+from roaml.forest.forest import CPP
+from roaml.libraries import Node, Port, PortLimits, node_in_libraries
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import forest_of
+from roaml.rules.support.settings import constant_settings, integer_of, place_of
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """Report numbers outside of the limits of ports in the libraries (docs/spec/lone-trees.md#limits)."""
+    settings: dict[TreeNode, dict[str, str]] = {}
+    for node, port, text in constant_settings(context):
+        settings.setdefault(node, {})[port] = text
+    for node, texts in settings.items():
+        known = _library_node(context, node)
+        if known is not None and any(port.limits for port in known.ports):
+            yield from _check(context, node, known, texts)
+
+
+def _library_node(context: TreeContext, node: TreeNode) -> Node | None:
+    """The node of a library that `node` is; `None` if it is not from a library."""
+    name = node.plugin.value if node.plugin is not None and not node.is_subtree else ""
+    if context.system is not None:
+        is_plugin = context.system.plugin(name)[0] != ""
+        return None if is_plugin else CPP.nodes.get(name) or node_in_libraries(name)
+    forest = forest_of(context)
+    declaration = forest.known_node(node) if forest is not None else None
+    if declaration is None or not declaration.behaviour:
+        return None
+    return declaration if declaration.library else node_in_libraries(name)
+
+
+def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str, str]) -> Iterator[Finding]:
+    is_library_tree = context.system is None or context.system.is_library_tree
+    for port in known.ports:
+        number = _number(port, texts[port.name]) if port.name in texts else None
+        if port.limits is None or number is None:
+            continue
+        if number < -1 and not is_library_tree and port.limits.special:
+            continue  # the node never returns a status, which `node-configuration` reports
+        reason = _reason(port.limits, number, len(node.children))
+        effect = f"; {port.limits.effect}" if port.limits.effect and not _upper(port.limits) else ""
+        # The translation computes the period of a rate, so it refuses rates that are not positive.
+        severity = Severity.ERROR if reason and port.limits.is_exclusive else None
+        if not reason:
+            reason, effect = _order(known, port.limits, number, texts), f"; {port.limits.effect}"
+        if reason:
+            message = f"`{port.name}` of `{known.name}` must be {reason}, not {texts[port.name].strip()}{effect}"
+            yield RULE.at(place_of(node, port.name), message, severity=severity)
+
+
+def _reason(limits: PortLimits, number: float, children: int) -> str:
+    """The numbers that are useful, if `number` is not one of them; otherwise ""."""
+    if limits.counts_children:
+        # `node-configuration` reports numbers that are too large.
+        is_useful = number >= 1 or -max(children, 1) <= number <= -1
+        return "" if is_useful else "at least 1, or from -1 (all children) downwards"
+    if limits.minimum is None or number in limits.special:
+        return ""
+    if number < limits.minimum or (limits.is_exclusive and number == limits.minimum):
+        special = "".join(f", or {other:g} for no limit" for other in sorted(limits.special))
+        return f"{'greater than' if limits.is_exclusive else 'at least'} {limits.minimum:g}{special}"
+    return ""
+
+
+def _upper(limits: PortLimits) -> str:
+    """The name of the port whose number is the upper bound; "" if there is none."""
+    return limits.at_most or limits.less_than
+
+
+def _order(known: Node, limits: PortLimits, number: float, texts: Mapping[str, str]) -> str:
+    """The useful numbers, if `number` is greater than the number of the port that is its upper bound; otherwise ""."""
+    other = known.port(_upper(limits))
+    text = texts.get(other.name, other.default) if other is not None else None
+    bound = _number(other, text) if other is not None and text is not None else None
+    if other is None or bound is None or number < bound or (limits.at_most and number == bound):
+        return ""
+    return f"{'at most' if limits.at_most else 'less than'} `{other.name}`, which is {bound:g}"
+
+
+def _number(port: Port, text: str) -> float | None:
+    """The number in a text; `None` if the text is not a number, which other rules report."""
+    text = text.strip()
+    if port.limits is not None and (integer := integer_of(text)) is not None:
+        return integer
+    if not text or mismatch(port.type, text) is not None:
+        return None
+    try:
+        number = float(text)
+    except ValueError:  # a blackboard entry, or an expression
+        return None
+    return None if math.isnan(number) else number
+
+
+RULE = Rule("port-range", Severity.WARNING, "A number is not useful for a port.", tree=check)
