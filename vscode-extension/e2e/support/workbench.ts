@@ -120,7 +120,7 @@ export class Workbench {
 
     private async removeStored(page: Page): Promise<void> {
         const session = await this.browser.newCDPSession(page);
-        const storageTypes = "cookies,indexeddb,local_storage";
+        const storageTypes = "cookies,indexeddb,local_storage,service_workers,cache_storage"; // not the code
         await session.send("Storage.clearDataForOrigin", { origin: this.address, storageTypes });
         await session.detach();
     }
