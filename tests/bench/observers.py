@@ -40,6 +40,7 @@ SYSTEMS = (
     "bt_test_models/main_test_ifthenelse_then.xml",
     "bt_test_models/main_test_parallel_success.xml",
     "bt_test_models/main_test_parallel_failure.xml",
+    "bt_test_models/main_test_reactive_sequence.xml",
 )
 """The conformance systems with at most 2,000,000 states whose translation Storm reads: it reads no reals."""
 

@@ -20,16 +20,35 @@ from translated_trees import Observed, observe, with_mocks
 from examples import TIMES, examples
 
 TICKS = 12
-NEWER = ("TryCatch", "SkipUnlessUpdated", "WaitValueUpdate", *(f"Switch{count}" for count in range(2, 7)), "LoopInt")
-"""Nodes that 4.8 does not have, or that have another meaning there. A switch compares texts, and the entries are
-numbers."""
+NOT_RANDOM = (
+    *("TryCatch", "SkipUnlessUpdated", "WaitValueUpdate", "LoopInt"),
+    *(f"Switch{count}" for count in range(2, 7)),
+)
+"""Nodes that 4.8 does not have, or that have another meaning there, and nodes that are compared in trees
+of their own: the library refuses switches on the integer entries of random trees, because `variable` is a text."""
+
+
+def switch(variable: str, cases: tuple[str, ...], *children: Drawn) -> Drawn:
+    ports = (("variable", variable), *((f"case_{number}", case) for number, case in enumerate(cases, 1)))
+    return Drawn(f"Switch{len(cases)}", ports, children)
+
+
+CHECK, ACT = Drawn("Check"), Drawn("Act2")
+NEXT = Drawn("Script", (("code", "x += 1; s := x; t := y + 1"),))
+SWITCHES = {
+    "two cases": switch("{s}", ("1", "2"), CHECK, ACT, CHECK),
+    "a case in an entry": switch("{s}", ("1", "{t}", "7"), ACT, CHECK, CHECK, ACT),
+    "a child is skipped": switch("{s}", ("1", "2"), Drawn("Check", (("_skipIf", "y == 1"),)), ACT, CHECK),
+    "equal cases": switch("{s}", ("1", "2", "2"), CHECK, ACT, CHECK, CHECK),
+    "six cases": switch("{s}", ("1", "2", "3", "4", "5", "6"), CHECK, ACT, CHECK, CHECK, ACT, CHECK, ACT),
+}
 
 
 def without(table: Table, names: tuple[str, ...]) -> Table:
     return {name: ports for name, ports in table.items() if name not in names}
 
 
-TREES = trees(Kinds(without(CONTROLS, NEWER), without(DECORATORS, NEWER), LEAVES))
+TREES = trees(Kinds(without(CONTROLS, NOT_RANDOM), without(DECORATORS, NOT_RANDOM), LEAVES))
 
 
 class Host:
@@ -120,3 +139,24 @@ else:
 
         skipped = Drawn("AlwaysSuccess", (("_while", "x == 1"),))
         compare(behaviortreepy, Drawn("KeepRunningUntilFailure", (), (Drawn(control, (), (skipped, skipped)),)), 1)
+
+    @pytest.mark.parametrize("parent", ["Sequence", "ReactiveSequence"])
+    @pytest.mark.parametrize("case", SWITCHES)
+    def test_switches(case: str, parent: str) -> None:
+        """Below a `ReactiveSequence`, another case applies while a child is RUNNING."""
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        tree = Drawn("KeepRunningUntilFailure", (), (Drawn(parent, (), (NEXT, SWITCHES[case])),))
+        compare(behaviortreepy, tree, 1)
+
+    @pytest.mark.parametrize("if_empty", ["SUCCESS", "FAILURE", "SKIPPED"])
+    def test_loops(if_empty: str) -> None:
+        """A loop whose elements are skipped, succeed and fail, which starts again, and which is halted."""
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        ports = (("queue", "1;2;3"), ("if_empty", if_empty), ("value", "{x}"))
+        body = Drawn("Fallback", (("_skipIf", "x == 2"),), (CHECK, ACT))
+        loop = Drawn("ReactiveFallback", (), (Drawn("Check"), Drawn("LoopInt", ports, (body,))))
+        for seed in (1, 2):
+            compare(behaviortreepy, Drawn("KeepRunningUntilFailure", (), (loop,)), seed)
+            compare(behaviortreepy, Drawn("Repeat", (("num_cycles", "3"),), (loop,)), seed)

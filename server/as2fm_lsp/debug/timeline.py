@@ -12,6 +12,7 @@ from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
 from roaml.debugging.activity import active_edges, active_nodes
 from roaml.debugging.debugger import Debugger
+from roaml.exhaustive import Vocabulary
 from roaml.figures.svg import svg_scene
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
@@ -34,6 +35,17 @@ MAX_WIDTH = 20_000
 NAMES_WIDTH = 180.0
 
 T = TypeVar("T")
+
+
+class TimelineFormat(Vocabulary):
+    """A format in which a timeline is exported."""
+
+    SVG = "svg"
+    CSV = "csv"
+    MERMAID = "mermaid"
+
+
+_FORMATS = {format_.value: format_ for format_ in TimelineFormat}
 
 
 class TimelineRequests:
@@ -81,25 +93,26 @@ class TimelineRequests:
         timeline = self._followed(debugger)
         view = _view(arguments, timeline)
         first, last = (step_at(timeline, view.axis, position) for position in (view.start, view.end))
-        format_ = arguments.text("format", None)
-        if format_ == "svg":
+        word = arguments.text("format", None)
+        format_ = _FORMATS.get(word)
+        if format_ is TimelineFormat.SVG:
             from as2fm_lsp.verification.run_files import stretch_svg  # noqa: PLC0415 - only here
 
             theme = arguments.text("theme")
             title = Path(debugger.sources.target.path).name
             return {"text": stretch_svg(timeline, view, title, theme if theme in THEMES else "light")}
-        if format_ == "csv":
+        if format_ is TimelineFormat.CSV:
             from as2fm_lsp.verification.run_files import csv_lines  # noqa: PLC0415
 
             return {"text": _at(debugger, last, lambda session: "".join(csv_lines(session, first)))}
-        if format_ == "mermaid":
+        if format_ is TimelineFormat.MERMAID:
 
             def place_of(origin: Origin) -> str:
                 place = debugger.sources.place(origin)
                 return f"{Path(place.path).name}:{place.line}" if place else ""
 
             return {"text": _at(debugger, last, lambda session: as_mermaid(session.story(), place_of, first))}
-        raise RequestError(f"`format` is `{format_}`; it must be `svg`, `csv` or `mermaid`")
+        raise RequestError(f"`format` is `{word}`; it must be `svg`, `csv` or `mermaid`")
 
     def _pictures(self, arguments: Arguments) -> Body:
         debugger = self._session.stopped

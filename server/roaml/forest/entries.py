@@ -33,13 +33,13 @@ Key: TypeAlias = tuple[str, str]
 """The name of a tree, and the name of an entry in it."""
 
 _NAMING_PORTS = {
-    ("SetBlackboard", "output_key"): "write",
-    ("UnsetBlackboard", "key"): "other",
-    ("WasEntryUpdated", "entry"): "other",
-    ("SkipUnlessUpdated", "entry"): "other",
-    ("WaitValueUpdate", "entry"): "other",
+    ("SetBlackboard", "output_key"): True,
+    ("UnsetBlackboard", "key"): False,
+    ("WasEntryUpdated", "entry"): False,
+    ("SkipUnlessUpdated", "entry"): False,
+    ("WaitValueUpdate", "entry"): False,
 }
-"""The ports whose value is the name of an entry even without braces."""
+"""The ports whose value is the name of an entry even without braces, and whether the node writes the entry."""
 _CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool", "Double", "String"))
 """The ports that take elements from an entry and never add one."""
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
@@ -173,11 +173,11 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
         port = known.port(setting.attribute.name) if known else None
         span, text = setting.value.span, setting.value.value.strip()
         name = entry_of(setting)
-        role = _NAMING_PORTS.get((known.name if known else "", setting.attribute.name))
-        if role is not None:
+        writes_named = _NAMING_PORTS.get((known.name if known else "", setting.attribute.name))
+        if writes_named is not None:
             name = name or (text if _NAME.match(text) else None)
             if name is not None:
-                reads, writes = (False, True) if role == "write" else (None, None)
+                reads, writes = (False, True) if writes_named else (None, None)
                 yield Use(path, own, name, reads, writes, True, ANY, False, False, node, span)
         elif name is not None and port is not None:
             if port.type == SCRIPT:

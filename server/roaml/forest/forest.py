@@ -121,7 +121,7 @@ class Forest:
         models: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
-                if model.id is not None and model.kind != "SubTree":
+                if model.id is not None and not model.is_subtree:
                     models.setdefault(model.id.value, node_of(model))
         return models
 
@@ -139,7 +139,7 @@ class Forest:
         models: dict[str, Node] = {}
         for _, file in self.files:
             for model in file.models:
-                if model.id is not None and model.kind == "SubTree":
+                if model.id is not None and model.is_subtree:
                     models.setdefault(model.id.value, node_of(model))
         return models
 

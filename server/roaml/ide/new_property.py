@@ -185,7 +185,10 @@ def new_property(
     if file is None or path is None:
         path = new_file.free_path(analysis, folder_of(system), FILE_NAME)
         text = "\n".join(
-            _section("properties", [*_section(PORTS, ports), *_section(PropertySection.GUARANTEES.value, lines)])
+            lines_of_element(
+                "properties",
+                [*lines_of_element(PORTS, ports), *lines_of_element(PropertySection.GUARANTEES.value, lines)],
+            )
         )
         listing = add_input(analysis, system, SystemSection.PROPERTIES, "xml", path)
         return NewProperty(name, path, WorkspaceEdit({system: listing}, created={path: f"{text}\n"}))
@@ -206,18 +209,19 @@ def _added(file: PropertyFile, ports: Sequence[str], lines: Sequence[str]) -> It
     if ports and written is not None:
         yield last_in(document, written, *ports)
     elif ports and (guarantees is not None or root.find(PropertySection.ASSUMES.value) is not None):
-        yield first_in(document, root, *_section(PORTS, ports))
+        yield first_in(document, root, *lines_of_element(PORTS, ports))
     elif ports:
-        new = _section(PORTS, ports)
+        new = lines_of_element(PORTS, ports)
     if guarantees is not None:
         yield last_in(document, guarantees, *lines)
     else:
-        new += _section(PropertySection.GUARANTEES.value, lines)
+        new += lines_of_element(PropertySection.GUARANTEES.value, lines)
         others = root.elements
         yield after(document, others[-1], *new) if others else first_in(document, root, *new)
 
 
-def _section(name: str, lines: Sequence[str]) -> list[str]:
+def lines_of_element(name: str, lines: Sequence[str]) -> list[str]:
+    """The lines of an element whose content is `lines`, indented."""
     return [f"<{name}>", *(f"    {line}" for line in lines), f"</{name}>"]
 
 
@@ -247,7 +251,7 @@ def _property(name: str, pattern: Pattern, scope: ScopeKind, conditions: Mapping
         if side in conditions
     )
     lines = [
-        *(_section("events", events) if pattern.is_binary else events),
+        *(lines_of_element("events", events) if pattern.is_binary else events),
         f'<scope type="{scope.value}"{scope_attributes} />',
     ]
     if within:

@@ -174,7 +174,7 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
         tuple(
             (model.id.value, port.name.value) for model in file.models for port in model.ports if model.id and port.name
         ),
-        conditions=frozenset(model.id.value for model in file.models if model.id and model.kind == "Condition"),
+        conditions=frozenset(model.id.value for model in file.models if model.id and model.is_condition),
     )
 
 

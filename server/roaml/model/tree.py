@@ -96,6 +96,14 @@ class NodeModel:
     ports: tuple[PortModel, ...]
     text: str = ""
 
+    @property
+    def is_subtree(self) -> bool:
+        return self.kind == "SubTree"
+
+    @property
+    def is_condition(self) -> bool:
+        return self.kind == "Condition"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Include:

@@ -23,7 +23,7 @@ def missing_leaves(analysis: Analysis, system: System) -> tuple[SystemLeaf, ...]
     for path in system.tree_paths:
         file = analysis.tree(path)
         for model in file.models if file else ():
-            if model.id is not None and model.kind != "SubTree":
+            if model.id is not None and not model.is_subtree:
                 models.setdefault(model.id.value, node_of(model))
     return leaves_without_plugins(system, models.get)
 

@@ -16,6 +16,7 @@ from roaml.expr.tree import Name, walk
 from roaml.ide.code_actions import new_file
 from roaml.ide.code_actions.action import REWRITE, CodeAction, WorkspaceEdit
 from roaml.ide.code_actions.inputs import add_input
+from roaml.ide.new_property import lines_of_element
 from roaml.ide.property_conversion.forms import pattern_of
 from roaml.ide.property_conversion.to_jani import jani_property
 from roaml.ide.property_conversion.to_xml import EventPorts, NeededVariable, XmlProperty, xml_property
@@ -174,17 +175,13 @@ def _port_lines(converted: XmlProperty, known: dict[NeededVariable, str]) -> lis
     return lines
 
 
-def _section(name: str, lines: list[str]) -> list[str]:
-    return [f"<{name}>", *(f"    {line}" for line in lines), f"</{name}>"]
-
-
 def _new_xml(converted: XmlProperty) -> str:
     ports = _port_lines(converted, {})
     sections = [
-        *(_section(PORTS, ports) if ports else ()),
-        *_section(PropertySection.GUARANTEES.value, converted.lines),
+        *(lines_of_element(PORTS, ports) if ports else ()),
+        *lines_of_element(PropertySection.GUARANTEES.value, converted.lines),
     ]
-    return "\n".join(_section("properties", sections)) + "\n"
+    return "\n".join(lines_of_element("properties", sections)) + "\n"
 
 
 def _added(file: PropertyFile, converted: XmlProperty) -> Iterator[Edit]:
@@ -194,13 +191,13 @@ def _added(file: PropertyFile, converted: XmlProperty) -> Iterator[Edit]:
     if lines and ports is not None:
         yield last_in(document, ports, *lines)
     elif lines and guarantees is not None:
-        yield first_in(document, root, *_section(PORTS, lines))
+        yield first_in(document, root, *lines_of_element(PORTS, lines))
     elif lines:
-        new += _section(PORTS, lines)
+        new += lines_of_element(PORTS, lines)
     if guarantees is not None:
         yield last_in(document, guarantees, *converted.lines)
         return
-    new += _section(PropertySection.GUARANTEES.value, converted.lines)
+    new += lines_of_element(PropertySection.GUARANTEES.value, converted.lines)
     yield after(document, ports, *new) if ports is not None else first_in(document, root, *new)
 
 

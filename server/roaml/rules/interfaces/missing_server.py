@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.system import System
-from roaml.model.value_types import find_handle
+from roaml.model.value_types import CHANNEL_KINDS, find_handle
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
 from roaml.rules.support.interfaces import Naming, named_here, other_kind
@@ -20,28 +20,25 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
-    for kind, kind_name in ((SymbolKind.SERVICE_CLIENT, "service"), (SymbolKind.ACTION_CLIENT, "action")):
+    for kind in (SymbolKind.SERVICE_CLIENT, SymbolKind.ACTION_CLIENT):
         for naming in named_here(context, kind):
             if not naming.channel.sources and not system.may(InterfaceAct(other_kind(kind)), naming.channel.name):
-                yield _finding(context, system, naming, kind_name)
+                yield _finding(context, system, naming, CHANNEL_KINDS[kind])
 
 
-def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, kind_name: str) -> Finding:
-    channels = system.services if kind_name == "service" else system.actions
-    served = [c for c in channels.values() if c.sources]
+def _finding(context: MachineContext | TreeContext, system: System, naming: Naming, kind: SymbolKind) -> Finding:
+    served = [c for c in system.channels(kind).values() if c.sources]
     span, channel = naming.span, naming.channel
     for other in served:
         if other.name.lstrip("/") == channel.name.lstrip("/"):
             message = (
                 f"no machine serves `{channel.name}`, only `{other.name}`: the leading `/` makes a difference "
-                f"for {kind_name}s"
+                f"for {kind}s"
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
     close = close_names(channel.name, [c.name for c in served])
-    message = (
-        f"no machine serves the {kind_name} `{channel.name}`, so its clients never get a response{did_you_mean(close)}"
-    )
+    message = f"no machine serves the {kind} `{channel.name}`, so its clients never get a response{did_you_mean(close)}"
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 

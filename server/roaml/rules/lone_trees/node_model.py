@@ -21,7 +21,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     for model in context.file.models:
-        if model.kind == "SubTree":
+        if model.is_subtree:
             yield from _subtree(forest, model)
         declaration = CPP.nodes.get(model.id.value) if model.id is not None else None
         for port in model.ports:

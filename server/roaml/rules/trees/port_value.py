@@ -47,7 +47,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for model in context.file.models:
         path, plugin = context.system.plugin(model.id.value) if model.id else ("", None)
         for port in model.ports:
-            if plugin is not None and model.kind != "SubTree":
+            if plugin is not None and not model.is_subtree:
                 yield from _default(port, plugin, path)
     yield from _given_by_subtrees(context)
     yield from _of_any_type(context)

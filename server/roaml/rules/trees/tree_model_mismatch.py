@@ -18,7 +18,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if context.system is None:
         return
     for model in context.file.models:
-        if model.id is None or model.kind == "SubTree":
+        if model.id is None or model.is_subtree:
             continue
         path, plugin = context.system.plugin(model.id.value)
         if plugin is not None:
