@@ -1,8 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Checks the VS Code extension: lint, types, unit tests, the package, and end-to-end tests in a real workbench.
-# Arguments select end-to-end tests by name.
+# Arguments select end-to-end tests by name. `--static` does only what needs no Python: all but the package and the
+# end-to-end tests; `--end-to-end` does the rest.
 set -eu
+part=${1:-}
+case "$part" in --static | --end-to-end) shift ;; esac
 cd "$(dirname "$0")/../vscode-extension"
 . ../tests/environment.sh
 
@@ -22,13 +25,17 @@ quietly() {
     rm -f "$log"
 }
 
-wanted="$(cat package.json package-lock.json | cksum) $(node --version)"
-if [ "$(cat node_modules/.prepared 2>/dev/null)" != "$wanted" ]; then
-    quietly npm ci
-    echo "$wanted" >node_modules/.prepared
+if [ "$part" != --end-to-end ]; then
+    wanted="$(cat package.json package-lock.json | cksum) $(node --version)"
+    if [ "$(cat node_modules/.prepared 2>/dev/null)" != "$wanted" ]; then
+        quietly npm ci
+        echo "$wanted" >node_modules/.prepared
+    fi
+    quietly npm run lint
+    quietly npm run unit
+    sh e2e/workbench/setup.sh
 fi
-quietly npm run package
-quietly npm run lint
-quietly npm run unit
-sh e2e/workbench/setup.sh
-npm run --silent e2e -- "$@" || fail "failed: npm run e2e"
+if [ "$part" != --static ]; then
+    quietly npm run package
+    npm run --silent e2e -- "$@" || fail "failed: npm run e2e"
+fi

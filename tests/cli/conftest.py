@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 from pathlib import Path
 
@@ -15,9 +16,14 @@ from as2fm_lsp.cli.main import run
 
 @pytest.fixture
 def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
-    """Calls the command line in the folder of the test; `stdin` is its standard input."""
+    """Calls the command line in the folder of the test; `stdin` is its standard input.
+
+    It sees one processor: on a busy machine, starting processes takes longer than the answers. With `--jobs`, it starts
+    them.
+    """
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0}, raising=False)
 
     def call(*arguments: object, stdin: bytes = b"") -> Done:
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stdin), encoding="utf-8"))

@@ -99,7 +99,7 @@ def tree(tmp_path: Path, tools: Path) -> Path:
     for name in ("run", "failed.py"):
         shutil.copy(ROOT / "tests" / name, folder / "tests")
     (folder / "tests/environment.sh").write_text("prepare() { :; }\n")
-    (folder / "tests/vscode.sh").write_text("echo '  ✔ it draws'\n")
+    (folder / "tests/vscode.sh").write_text("[ \"$1\" = --static ] || echo '  ✔ it draws'\n")
     for name in ("ruff", "mypy"):
         script(folder / ".venv/bin" / name, ":")
     script(folder / ".venv/bin/python", f'case "$*" in *pytest*) echo "$*";; *) exec {sys.executable} "$@";; esac')
@@ -125,7 +125,7 @@ def test_all_passes(tree: Path, tools: Path) -> None:
 def test_the_time_of_each_part_is_reported(tree: Path, tools: Path) -> None:
     done = run(tree / "tests/run", environment=os.environ)
     _, _, end = done.stdout.partition("== times:\n")
-    parts = ["ruff check", "ruff format", "mypy", "tests", "VS Code extension, meanwhile"]
+    parts = ["preparation", "ruff check", "ruff format", "mypy", "tests", "VS Code extension, meanwhile"]
     assert re.fullmatch("".join(rf"  {part}: \d+ s\n" for part in parts) + "== all passed\n", end)
     done = run(tree / "tests/run", "tests/cli", environment=os.environ)
     assert re.search(r"== times:\n(  [\w ]+: \d+ s\n)+== all passed\n", done.stdout)
@@ -136,7 +136,7 @@ def test_all_that_failed_is_named_at_the_end(tree: Path) -> None:
     fails = f"for last; do :; done; printf '%s' '{REPORT}' >\"${{last#--junitxml=}}\"; exit 1"
     script(tree / ".venv/bin/python", f'case "$*" in *pytest*) {fails};; *) exec {sys.executable} "$@";; esac')
     (tree / "tests/vscode.sh").write_text(
-        "echo '✔ a'; echo '  ✖ it draws (3 ms)'; echo 'failed: npm run e2e'; exit 1\n"
+        "echo '✔ a'; [ \"$1\" = --static ] && exit; echo '  ✖ it draws (3 ms)'; echo 'failed: npm run e2e'; exit 1\n"
     )
     done = run(tree / "tests/run", environment=os.environ)
     assert done.returncode == 1
@@ -145,6 +145,14 @@ def test_all_that_failed_is_named_at_the_end(tree: Path) -> None:
         "  VS Code extension:\n    failed: npm run e2e\n    ✖ it draws (3 ms)\n"
     )
     assert "  ✖ it draws (3 ms)\n" in done.stdout, "it was shown while it ran, too"
+
+
+def test_without_a_sound_extension_its_end_to_end_tests_do_not_run(tree: Path) -> None:
+    (tree / "tests/vscode.sh").write_text("echo \"part $1\"; echo 'failed: npm run lint'; exit 1\n")
+    done = run(tree / "tests/run", environment=os.environ)
+    assert (done.returncode, done.stderr) == (1, "== failed:\n  VS Code extension:\n    failed: npm run lint\n")
+    assert "part --static\n" in done.stdout
+    assert "--end-to-end" not in done.stdout
 
 
 def test_pytest_that_does_not_even_begin(tree: Path) -> None:

@@ -10,13 +10,11 @@ export function serverLifeCycle(stage: Stage): void {
     stage.test("a killed server is restarted and reported", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
-        const [before] = servers(stage.workbench.home);
-        assert.ok(before !== undefined);
+        const before = await onlyServer(window, stage.workbench.home);
         process.kill(before, "SIGKILL");
         await window.notification("ended unexpectedly and was restarted").waitFor();
         await window.screenshot("restarted");
-        const [after] = servers(stage.workbench.home);
-        assert.ok(after !== undefined && after !== before);
+        assert.notEqual(await onlyServer(window, stage.workbench.home), before);
         // The new server has the open documents.
         await mend(window);
     });
@@ -24,6 +22,7 @@ export function serverLifeCycle(stage: Stage): void {
     stage.test("a server that crashes repeatedly is not restarted", sample, async (window) => {
         await window.openFile("battery.ascxml");
         await window.running();
+        await onlyServer(window, stage.workbench.home);
         const killed = new Set<number>();
         while (killed.size < 4) {
             const next = () => servers(stage.workbench.home).find((pid) => !killed.has(pid));
@@ -42,7 +41,7 @@ export function serverLifeCycle(stage: Stage): void {
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
         await window.notification("as2fm-lsp 0.1.0").waitFor();
-        const [before] = servers(stage.workbench.home);
+        const before = await onlyServer(window, stage.workbench.home);
         await window.run("AS2FM: Restart Language Server");
         await window.until(() => servers(stage.workbench.home).some((pid) => pid !== before));
         await mend(window);
@@ -55,6 +54,14 @@ async function mend(window: Window): Promise<void> {
     await window.press("Backspace", "Backspace");
     await window.type("el");
     await window.squiggles.first().waitFor({ state: "detached" });
+}
+
+/** The process id of the language server of a window, when that of the window before has ended. */
+function onlyServer(window: Window, home: string): Promise<number> {
+    return window.until(() => {
+        const [server, ...others] = servers(home);
+        return others.length === 0 ? server : undefined;
+    });
 }
 
 /** The process ids of the language servers of this workbench's private environment. */

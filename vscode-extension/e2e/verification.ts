@@ -27,7 +27,7 @@ export function verification(stage: Stage): void {
             await lens(window, "Verify").first().waitFor();
             await window.until(() => fs.readFileSync(path.join(window.folder, "main.xml"), "utf8").includes('"xml"'));
             await lens(window, "Verify").last().click();
-            await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor({ timeout: TIMEOUT_MS });
+            await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor();
         },
     );
 
@@ -38,7 +38,7 @@ export function verification(stage: Stage): void {
             await window.openFile("properties.jani");
             await window.running();
             await lens(window, "Verify").nth(1).click();
-            await hint(window, "never_empty", "=\\s1\\s\\[.*no\\sexpectation\\sset").waitFor({ timeout: TIMEOUT_MS });
+            await hint(window, "never_empty", "=\\s1\\s\\[.*no\\sexpectation\\sset").waitFor();
             await window.screenshot("verified");
         },
     );
@@ -51,11 +51,11 @@ export function verification(stage: Stage): void {
         await delivered.hover();
         await delivered.getByRole("button", { name: "Run Test" }).click();
         // Nothing is expected of the property, so the test is neither green nor red.
-        await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
+        await icon(delivered, "skipped").waitFor();
         await delivered.filter({ hasText: /1 \[0\.9\d+, 1\], no expectation set/ }).waitFor();
         await icon(empty, "unset").waitFor();
         await window.run("Test: Run All Tests");
-        await icon(empty, "failed").waitFor({ timeout: TIMEOUT_MS });
+        await icon(empty, "failed").waitFor();
         await empty.filter({ hasText: /0 \[0, 0\.0\d*\]/ }).waitFor();
         await icon(row(window, "main.xml"), "failed").waitFor();
         // The message contains the expectation, and a link to a trace that contradicts it.
@@ -76,7 +76,7 @@ export function verification(stage: Stage): void {
         const tree = await window.picture();
         await window.openFile("properties.jani");
         await lens(window, "Verify").nth(1).click();
-        await lens(window, "Show counterexample").click({ timeout: TIMEOUT_MS });
+        await lens(window, "Show counterexample").click();
         // It opens at its end, with what has changed there; the turns lead to it.
         await window.page.locator(".panel .message", { hasText: /; \d+ turns matter/ }).waitFor();
         await selected(window).last().waitFor();
@@ -130,7 +130,7 @@ export function verification(stage: Stage): void {
             row(window, "all_delivered"),
             "=\\s1\\s\\[0\\.9\\d+,\\s1\\],\\sno\\sexpectation\\sset",
         ];
-        await hint(window, "all_delivered", told).waitFor({ timeout: TIMEOUT_MS });
+        await hint(window, "all_delivered", told).waitFor();
         await icon(delivered, "skipped").waitFor();
         await window.openFile("tree.xml");
         await window.goBehind("tree.xml", 'level="');
@@ -149,7 +149,7 @@ export function verification(stage: Stage): void {
         await window.openFile("properties.jani");
         await window.running();
         await lens(window, "Verify").nth(1).click();
-        await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor({ timeout: TIMEOUT_MS });
+        await hint(window, "never_empty", "✗\\s0\\s\\[0,.*not\\s≥\\s0\\.9").waitFor();
         await lens(window, "Show counterexample").waitFor();
         // At this time the test has failed. VS Code would have written its message behind the line.
         await window.page.locator(".testing-run-glyph.codicon-testing-failed-icon").first().waitFor();
@@ -167,8 +167,8 @@ export function verification(stage: Stage): void {
         await window.openFile("tree.xml");
         await window.running();
         await window.run("AS2FM: Verify");
-        await icon(row(window, "never_empty"), "failed").waitFor({ timeout: TIMEOUT_MS });
-        await icon(row(window, "all_delivered"), "skipped").waitFor({ timeout: TIMEOUT_MS });
+        await icon(row(window, "never_empty"), "failed").waitFor();
+        await icon(row(window, "all_delivered"), "skipped").waitFor();
     });
 
     stage.test("an expectation is set from a result and judges it at once", late, async (window) => {
@@ -177,7 +177,7 @@ export function verification(stage: Stage): void {
         await explore(window);
         await lens(window, "Verify").first().click();
         const delivered = row(window, "all_delivered");
-        await icon(delivered, "skipped").waitFor({ timeout: TIMEOUT_MS });
+        await icon(delivered, "skipped").waitFor();
         await lens(window, "Set expectation").click();
         // Under some scheduler the property does not hold, so no expectation is suggested.
         await window.page.locator(".quick-input-title", { hasText: "all_delivered" }).waitFor();
@@ -193,9 +193,6 @@ export function verification(stage: Stage): void {
         await window.page.locator(".panel .message", { hasText: "all_delivered passed in trace" }).waitFor();
     });
 }
-
-/** The time limit for a verification, in ms; it is slow without a compiled kernel. */
-const TIMEOUT_MS = 120_000;
 
 /** A robot that charges too late, after its battery is empty. */
 function late(): string {

@@ -47,8 +47,7 @@ async function install(
         await window.openFile("battery.ascxml");
         await window.notification("is not installed yet").getByRole("button", { name: "Install" }).click();
         await check(async (text, name) => {
-            // Creating an environment takes minutes on a machine that runs the other tests at the same time.
-            await window.notification(text).waitFor({ timeout: 300_000 });
+            await window.notification(text).waitFor();
             await window.screenshot(name);
         });
     } finally {

@@ -2,19 +2,29 @@
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { after, afterEach, before, test } from "node:test";
-import { Window } from "./window";
+import { isDeepStrictEqual } from "node:util";
+import type { Window } from "./window";
 import { EXTENSION } from "./paths";
 import { temporaryFolder, Workbench, type Options } from "./workbench";
 
 /** A workbench that the groups of tests share, with the server's environment that the first group has created. */
 export class Stage {
     private running: Workbench | undefined;
-    private current: Window | undefined;
+    private options: Options = {};
     home: string | undefined;
 
-    /** Starts the workbench for a group of tests; different options need a different workbench. */
+    constructor() {
+        after(async () => {
+            await this.running?.stop();
+        });
+    }
+
+    /** Prepares the workbench for a group of tests. It is started again only if the group needs different options. */
     use(options: Options = {}): void {
         before(async () => {
+            if (this.running && isDeepStrictEqual(options, this.options)) return;
+            await this.running?.stop();
+            this.options = options;
             this.running = await Workbench.start({
                 ...(this.home === undefined ? {} : { home: this.home }),
                 ...options,
@@ -22,11 +32,7 @@ export class Stage {
             this.home = this.running.home;
         });
         afterEach(async () => {
-            await this.current?.close();
-            this.current = undefined;
-        });
-        after(async () => {
-            await this.running?.stop();
+            await this.running?.leave();
         });
     }
 
@@ -35,14 +41,9 @@ export class Stage {
         return this.running;
     }
 
-    async open(folder: string): Promise<Window> {
-        this.current = await this.workbench.open(folder);
-        return this.current;
-    }
-
     /**
      * A test with a window, whose final picture is saved. On a busy machine, a workbench may lose a key. So a test that
-     * fails is repeated once, in a new window.
+     * fails is repeated once, in a new page.
      */
     test(name: string, folder: () => string, run: (window: Window) => Promise<void>): void {
         test(name, async () => {
@@ -55,11 +56,12 @@ export class Stage {
     }
 
     private async attempt(name: string, folder: () => string, run: (window: Window) => Promise<void>): Promise<void> {
-        const window = await this.open(folder());
+        const window = await this.workbench.open(folder());
         try {
             await run(window);
         } catch (error) {
             await window.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);
+            await this.workbench.forget();
             throw error;
         }
     }

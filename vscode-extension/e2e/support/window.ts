@@ -95,7 +95,7 @@ export class Window {
 
     /** Waits until the language server runs. */
     async running(): Promise<void> {
-        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout: 300_000 });
+        await this.statusItem("AS2FM: 0.1.0").waitFor();
     }
 
     /** Waits for a condition that is not visible on the page; resolves to its value. */
@@ -138,7 +138,7 @@ export class Window {
 
     /** The document of a diagram, inside the frames of its webview; if there are several, the one with content. */
     async picture(shown = "svg.picture"): Promise<Frame> {
-        const end = Date.now() + PICTURE_TIMEOUT_MS;
+        const end = Date.now() + TIMEOUT_MS;
         while (Date.now() < end) {
             for (const frame of this.page.frames()) {
                 if (
@@ -160,10 +160,6 @@ export class Window {
         fs.mkdirSync(OUTPUT, { recursive: true });
         await this.page.screenshot({ path: path.join(OUTPUT, `${name}.png`), ...(clip ? { clip } : {}) });
     }
-
-    async close(): Promise<void> {
-        await this.page.context().close();
-    }
 }
 
 export interface Clip {
@@ -173,9 +169,8 @@ export interface Clip {
     readonly height: number;
 }
 
-/** The time limit for all waits, in ms. */
-export const TIMEOUT_MS = 180_000;
-const PICTURE_TIMEOUT_MS = 60_000;
+/** The time limit for all waits, in ms. It only prevents an endless wait; creating an environment may take minutes. */
+export const TIMEOUT_MS = 300_000;
 
 /** A text with the spaces that the editor draws. */
 function plain(text: string): string {

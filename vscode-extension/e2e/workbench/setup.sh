@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Makes ready what the end-to-end tests run in: a VS Code server in .cache/workbench, from the npm registry alone, and
-# Debian's Chromium and ripgrep. Takes about two minutes the first time and nothing later.
+# Debian's Chromium and ripgrep. Takes about two minutes the first time and nothing later. The checkouts of a user share
+# the server: .cache/workbench is a link into the user's folder of caches.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-cache=$(cd "$here/../../.." && pwd)/.cache/workbench
+link=$(cd "$here/../../.." && pwd)/.cache/workbench
 
 fail() {
     echo "The end-to-end tests cannot run: $1" >&2
@@ -27,14 +28,24 @@ need npm npm
 need chromium "chromium fonts-dejavu-core"
 need rg ripgrep
 
-wanted="$(cat "$here/package-lock.json" "$here/setup.sh" | cksum) $(node --version)"
-[ "$(cat "$cache/ready" 2>/dev/null)" = "$wanted" ] && exit
+version=$(cat "$here/package-lock.json" "$here/setup.sh" | cksum | cut -d " " -f 1)-node-$(node --version)
+shared=${XDG_CACHE_HOME:-$HOME/.cache}/as2fm-lsp/workbench-$version
+use_shared() {
+    mkdir -p "$(dirname "$link")"
+    [ -L "$link" ] || rm -rf "$link"
+    ln -sfn "$shared" "$link"
+}
+if [ -d "$shared" ]; then
+    use_shared
+    exit
+fi
 
 need make make
 need c++ g++
 need python3 python3
 
-rm -rf "$cache"
+cache=$shared.$$ # renamed when it is complete
+trap 'rm -rf "$cache"' EXIT
 mkdir -p "$cache"
 cp "$here/package.json" "$here/package-lock.json" "$here/.npmrc" "$cache"
 log=$cache/setup.log
@@ -60,4 +71,5 @@ done
 mkdir -p "$vscode/node_modules/@vscode/ripgrep/bin"
 ln -sf "$(command -v rg)" "$vscode/node_modules/@vscode/ripgrep/bin/rg"
 ln -sfn node_modules "$vscode/node_modules.asar"
-echo "$wanted" >"$cache/ready"
+mv -T "$cache" "$shared" 2>/dev/null || [ -d "$shared" ] # another checkout may have been faster
+use_shared
