@@ -32,11 +32,8 @@ def problems(snapshot: Snapshot, path: str) -> Iterator[str]:
         system = api.loaded(snapshot, path)
     except (api.ModelError, api.PathError):
         return
-    unknown = [placed.gap for _, placed in system.analysis.gaps(path)]
-    linked = system.analysis.system(path)
-    unknown += [gap for automaton in linked.automata for gap in automaton.outline.gaps] if linked else []
-    if unknown:
-        yield f"a part of the system is unknown, but there is no error: {unknown}"
+    for file, placed in system.analysis.gaps(path):
+        yield f"a part of the system is unknown, but there is no error: {placed.gap} in {file}"
     restart()
     model = api.to_jani(system)
     restart()

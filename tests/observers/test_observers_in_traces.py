@@ -261,10 +261,10 @@ def letters(rows, written: dict[str, str]) -> Iterator[naive.Letter]:  # type: i
 
 def check(property_: Property, written: dict[str, str], xml: str, time: int) -> None:
     checker, _ = target(xml, time)
-    (property_,) = (candidate for candidate in checker.compiled_properties if candidate.question.name == "asked")  # type: ignore[attr-defined]
+    (compiled,) = (candidate for candidate in checker.compiled_properties if candidate.question.name == "asked")  # type: ignore[attr-defined]
     from roaml.smc.record import Recorder  # noqa: PLC0415
 
-    recorder = Recorder(checker, property_, 5, 100_000)  # type: ignore[arg-type]
+    recorder = Recorder(checker, compiled, 5, 100_000)  # type: ignore[arg-type]
     for trace in range(12):
         recording = Recording(trace)
         recorder.rush(recording)

@@ -36,7 +36,14 @@ def _fields(context: MachineContext, statement: RosSend) -> Iterator[Finding]:
         return
     paths = [".".join(path) for path, _ in leaves(part)]
     for field in statement.fields:
-        if field.name is not None and field.name.value not in paths and not inside_unknown(part, field.name.value):
+        if field.name is None:
+            continue
+        untyped = field_of_unknown_type(part, field.name.value)
+        if untyped:
+            message = f"the type of the field `{untyped}` cannot be found, so its value cannot be translated"
+            advice = f"check the definition of `{part}`, and add the folders of its packages with `ros-path`"
+            yield RULE.at(field.name.span, f"{message}; {advice}")
+        elif field.name.value not in paths:
             yield _unknown(context, field, part, paths)
 
 
@@ -61,10 +68,10 @@ def _instead(close: tuple[str, ...], fields: list[str]) -> str:
     return alternatives(close, fields, "field") or f"; its first fields are {listing(fields[:MAX_LISTED])}"
 
 
-def inside_unknown(part: Struct, name: str) -> bool:
-    """Whether a field is inside a field of unknown type, so that it cannot be checked."""
+def field_of_unknown_type(part: Struct, name: str) -> str:
+    """The field of unknown type that `name` is, or that contains it; empty if there is none."""
     unknown = (".".join(path) for path, type_ in leaves(part) if isinstance(unwrap(type_)[0], Unknown))
-    return any(name.startswith(f"{path}.") for path in unknown)
+    return next((path for path in unknown if name == path or name.startswith(f"{path}.")), "")
 
 
 RULE = Rule("unknown-field", Severity.ERROR, "A ROS type does not have a field that is used.", machine=check)
