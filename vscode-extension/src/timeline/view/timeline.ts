@@ -182,7 +182,9 @@ class TimelineView {
     private switchAxis(axis: Axis): void {
         if (axis === this.axis || this.tile?.hasTime === false) return;
         this.axis = axis;
+        // Positions in the old drawing have another unit.
         this.tile = undefined;
+        this.drawing.replaceChildren();
         this.selection = undefined;
         this.pending = false;
         this.hasChanged = true;
@@ -228,7 +230,7 @@ class TimelineView {
         this.rows.addEventListener("pointerup", (event) => {
             const { drag } = this;
             this.drag = undefined;
-            if (!drag || drag.moved) return;
+            if (!drag || drag.moved || !this.tile) return;
             const below = document.elementFromPoint(event.clientX, event.clientY);
             const step = below?.closest<SVGElement>(".event[data-step]")?.dataset["step"];
             if (step === undefined) editor.postMessage({ type: "goTo", axis: this.axis, position: drag.at });
