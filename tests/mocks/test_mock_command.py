@@ -141,6 +141,14 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert part in text
 
 
+def test_a_trace_of_a_tree_that_always_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Without chance, the statuses of all leaves that fail are shown."""
+    path = tree(tmp_path, "<Sequence><IsReady/><Drive/></Sequence>")
+    run(["verify", path, "--mock", "IsReady: 1", "--mock", "Drive: 0 in 1 s"])
+    _, _, trace = capsys.readouterr().out.partition("the shortest trace without success (trace 0):")
+    assert trace.splitlines()[1].split()[2:4] == ["Drive", "FAILURE"]
+
+
 def system(tmp_path: Path, content: str) -> str:
     tree(tmp_path, content)
     path = tmp_path / "main.xml"

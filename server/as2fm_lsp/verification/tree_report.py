@@ -64,7 +64,10 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
         mean = _interval(tally.mean, bounds) if bounds.half_width else f"{tally.mean:g} in all traces"
         yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
     if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
-        yield "  the influence of the leaves is unknown: all traces had the same outcome; make more with --max-traces"
+        yield (
+            "  the influence of the leaves cannot be estimated, because all traces had the same outcome; if the other "
+            "one is possible, more traces (--max-traces) may show it"
+        )
     if outcome.influences:
         rare = min(outcome.success.count, outcome.traces - outcome.success.count)
         note = (
@@ -90,9 +93,9 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
 
 
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
-    """The status that each leaf returned where chance decided it, in the order of the trace."""
-    leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves}
-    leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _is_chosen(turn)]
+    """The statuses of the leaves that do not always succeed, in the order of the trace."""
+    leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves if leaf.probability < 1}
+    leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _has_ended(turn)]
     ticks = [
         step.number
         for step in story.steps
@@ -114,9 +117,10 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     return "".join(f"{line}\n" for line in (head, *lines))
 
 
-def _is_chosen(turn: Turn) -> bool:
-    by_chance = any(len(part.edge.destinations) > 1 for part in turn.parts)
-    return by_chance and turn.status in ("SUCCESS", "FAILURE")
+def _has_ended(turn: Turn) -> bool:
+    """Whether a leaf returned a new status in a turn, not that of an earlier tick again."""
+    ended = ("SUCCESS", "FAILURE")
+    return turn.status in ended and not turn.parts[0].source.upper().startswith(ended)
 
 
 def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
