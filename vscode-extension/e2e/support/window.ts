@@ -15,12 +15,18 @@ export class Window {
     /** Opens a file by its name, as with Ctrl+P. */
     async openFile(name: string): Promise<void> {
         const { page } = this;
-        await page.keyboard.press("Control+P");
-        await page.locator(".quick-input-widget input").fill(name);
-        await page
-            .locator(`.quick-input-list .focused[aria-label*="${path.basename(name)}"]`)
-            .first()
-            .waitFor();
+        const file = page.locator(`.quick-input-list .focused[aria-label*="${path.basename(name)}"]`).first();
+        const none = page.locator(".quick-input-list .monaco-list-row", { hasText: "No matching results" });
+        // The list shows the files of the moment at which it opens. A file that was written just now may be missing.
+        for (let attempts = 1; ; attempts++) {
+            await page.keyboard.press("Control+P");
+            await page.locator(".quick-input-widget input").fill(name);
+            await file.or(none).first().waitFor();
+            if (await file.isVisible()) break;
+            if (attempts === 100) throw new Error(`there is no file ${name}`);
+            await page.keyboard.press("Escape");
+            await page.locator(".quick-input-widget").waitFor({ state: "hidden" });
+        }
         await page.keyboard.press("Enter");
         await page
             .locator(`.tab.active[data-resource-name="${path.basename(name)}"]`)
