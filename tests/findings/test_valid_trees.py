@@ -60,7 +60,7 @@ VALID = {
     <Switch3 variable="b" case_1="a" case_2="2" case_3="3.5"><Sleep msec="0"/><Sleep msec="1"/><Sleep msec="2"/>
       <AlwaysSuccess/></Switch3>
     <Parallel success_count="-1" failure_count="-2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
-    <ParallelAll max_failures="0"><AlwaysSuccess/></ParallelAll>
+    <ParallelAll max_failures="1"><AlwaysSuccess/></ParallelAll>
     <RetryUntilSuccessful num_attempts="-1"><AlwaysSuccess/></RetryUntilSuccessful>
 </Sequence></BehaviorTree></root>""",
     "nodes of the program that no model describes": """
