@@ -46,9 +46,11 @@ def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str) -> str
     Returns:
         A clause such as ``; the states are `a` and `b` ``; "" if there are no names, or more than `MAX_LISTED`.
     """
-    names = tuple(dict.fromkeys(known))
-    if close or not 0 < len(names) <= MAX_LISTED:
+    if close:
         return did_you_mean(close)
+    names = tuple(dict.fromkeys(known))
+    if not 0 < len(names) <= MAX_LISTED:
+        return ""
     return f"; the only {noun} is `{names[0]}`" if len(names) == 1 else f"; the {noun}s are {listing(names)}"
 
 

@@ -16,18 +16,27 @@ def check(context: MachineContext) -> Iterator[Finding]:
         reached = _reached(chart)
         if reached is None:
             continue
+        sources = _sources(chart)
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
                 message = f"no transition leads to the state `{state.id.value}`, so it is never entered"
-                yield RULE.at(state.id.span, message, *_remove(context, chart, state), tags=(Tag.UNNECESSARY,))
+                fixes = _remove(context, state, sources.get(state.id.value, []))
+                yield RULE.at(state.id.span, message, *fixes, tags=(Tag.UNNECESSARY,))
 
 
-def _remove(context: MachineContext, chart: Chart, state: State) -> Iterator[Fix]:
+def _remove(context: MachineContext, state: State, sources: list[State]) -> Iterator[Fix]:
     """A fix that removes a state. There is none if a transition of another unreachable state leads to the state."""
-    others = [handler for other in chart.states if other is not state for handler in other.handlers]
-    targets = [target.state.value for handler in others for target in handler.targets if target.state]
-    if state.id is not None and state.id.value not in targets:
+    if state.id is not None and all(source is state for source in sources):
         yield remove(context.document, state.element, f"Remove the state `{state.id.value}`")
+
+
+def _sources(chart: Chart) -> dict[str, list[State]]:
+    """Name of a state -> the states with a transition to it."""
+    sources: dict[str, list[State]] = {}
+    for state in chart.states:
+        for name in dict.fromkeys(t.state.value for handler in state.handlers for t in handler.targets if t.state):
+            sources.setdefault(name, []).append(state)
+    return sources
 
 
 def _reached(chart: Chart) -> set[str] | None:
