@@ -256,7 +256,7 @@ class _Inference:
             case Name():
                 return self.name(expr)
             case Number():
-                return REAL if expr.is_real and not (self.reprinted and expr.value == int(expr.value)) else INT
+                return REAL if expr.is_real and not (self.reprinted and expr.is_whole) else INT
             case Member():
                 return self.member(expr)
             case Index():

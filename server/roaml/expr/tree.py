@@ -14,6 +14,9 @@ from typing import TypeAlias
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.text import Decoded, Span
 
+MAX_INTEGER = (1 << 63) - 1
+"""The greatest integer of a translated model."""
+
 
 @dataclass(frozen=True, slots=True)
 class Number:
@@ -23,6 +26,11 @@ class Number:
     span: Span
     value: int | float
     is_real: bool
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the value is an integer that a translated model can have."""
+        return self.value == int(self.value) and abs(self.value) <= MAX_INTEGER
 
 
 @dataclass(frozen=True, slots=True)

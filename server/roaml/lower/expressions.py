@@ -82,7 +82,7 @@ def lower_expr(expr: Expr, scope: LoweringScope) -> Expr:
     """The plain expression for a value that is not a struct."""
     match expr:
         case Number():
-            return integer(int(expr.value), expr.span) if expr.is_real and expr.value == int(expr.value) else expr
+            return integer(int(expr.value), expr.span) if expr.is_real and expr.is_whole else expr
         case Name() if expr.name in scope.constants:
             return integer(scope.constants[expr.name], expr.span)
         case Name() | Member() | Index():

@@ -286,7 +286,7 @@ class JaniScope:
     def scalar(self, expr: Expr) -> Expression:
         match expr:
             case Number():
-                return Real(float(expr.value)) if expr.is_real else Integer(int(expr.value))
+                return Integer(int(expr.value)) if expr.is_whole and not expr.is_real else Real(float(expr.value))
             case Boolean():
                 return jani.Boolean(expr.value)
             case Name() | Index():

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
-from roaml.expr.tree import ArrayLiteral, Conditional, Expr, ObjectLiteral
-from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, unwrap
+from roaml.expr.tree import ArrayLiteral, Conditional, Expr, Number, ObjectLiteral, walk
+from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
 from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type, wide_enough
@@ -17,7 +17,17 @@ from roaml.text import Span
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if isinstance(value.value, Expression) and value.required is not None:
+        if not isinstance(value.value, Expression):
+            continue
+        tree = value.value.tree
+        integers = [n for n in walk(tree) if isinstance(n, Number) and not n.is_real]
+        if value.required is not None and is_kind(value.required, ScalarKind.REAL):
+            integers = [n for n in integers if n is not tree]  # it is converted to a real number
+        too_large = [n for n in integers if not n.is_whole]
+        for literal in too_large:
+            message = "this number does not fit into 64 bits, the size of an integer in a model"
+            yield RULE.at(literal.span, f"{message}; write a real number with a point", severity=Severity.ERROR)
+        if not too_large and value.required is not None:
             for span, number, type_ in outside(value.value.tree, value.required):
                 low, high = INTEGER_RANGES[type_]
                 wider = wide_enough(number, type_)
