@@ -26,6 +26,7 @@ def mocked_texts(options: argparse.Namespace, settings: Settings) -> Mapping[str
         complain(f"the mock `{mock.pattern}` fits no node of the tree")
     leaves = len(mocked.planned)
     parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
-    parts += [f"{mocked.events} nodes that ask about the world"] if mocked.events else []
+    if mocked.events:
+        parts.append(f"{mocked.events} {'node' if mocked.events == 1 else 'nodes'} that depend on random events")
     complain(f"with mocks for {' and '.join(parts)}")
     return mocked.texts

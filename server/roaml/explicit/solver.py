@@ -826,8 +826,8 @@ class Solver:
         return process
 
     def _add_choices(self, process: Any, state: int, group: int, own: int) -> None:
-        """Add the choices of a state to a process; with uniform choices, one choice for all. Choices that stay in a
-        merged state or lead to an infinite value are omitted."""
+        """Add the choices of `state` to `process`. With the uniform scheduler (`MEAN`), they become one choice, their
+        mean. Otherwise, choices that stay in the merged state `group` or lead to an infinite value are omitted."""
         share = 1.0
         if self.mode == MEAN:
             share = 1.0 / self._weight(state)

@@ -15,7 +15,7 @@ libraries ignore it (docs/spec/mocks.md#world)."""
 WORLD_NODES = frozenset(
     ("DistanceController", "GoalUpdatedController", "SpeedController", "PathLongerOnApproach", "PauseResumeController")
 )
-"""The nodes that ask about the world."""
+"""The nodes that depend on events of the world (docs/spec/mocks.md#world)."""
 
 
 @dataclass(frozen=True, slots=True)

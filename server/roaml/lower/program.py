@@ -46,8 +46,8 @@ class TranslatableSystem:
         return self.node(automaton.instance.number if automaton.instance else 0)
 
     def address(self, number: int) -> str:
-        """The address of a tree node in names of events. It is the number of the node, unless the node has
-        conditions."""
+        """The part of event names that identifies a tree node: its number, followed by `_inner` if an automaton for
+        its conditions has the number (docs/spec/nodes.md#library)."""
         return str(number) if self.library is None else self.library.address(number)
 
     def node(self, number: int) -> Location:

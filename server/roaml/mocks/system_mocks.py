@@ -85,7 +85,7 @@ _DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
 
 
 def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
-    """The edits that give nodes which ask about the world the probabilities of their mocks, by file."""
+    """The edits that give nodes that depend on events of the world the probabilities of their mocks, by file."""
     exact = [mock for mock in mocks if mock.pattern != ALL]
     edits: dict[str, dict[int, TextEdit]] = {}
     for instance in system.instances:

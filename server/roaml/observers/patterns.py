@@ -296,7 +296,7 @@ class _Existence:
 
 
 class _Response:
-    """The pattern that requires an answer to each request, at a distance from the request that is in the window.
+    """The pattern that requires an answer to each request. The time from the request to the answer is in the window.
 
     Only the oldest open request matters: its answer also answers all others whose window has begun, and its
     deadline is the first one.

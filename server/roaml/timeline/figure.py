@@ -334,7 +334,7 @@ def _fitting(text: str, width: float, *, bold: bool = False) -> str:
 
 
 def _round_distance(distance: float) -> float:
-    """The next larger one of 1, 2, 5, 10, 20, ..."""
+    """The smallest of …, 0.5, 1, 2, 5, 10, 20, … that is at least `distance`."""
     power = 10.0 ** math.floor(math.log10(max(distance, 1e-9)))
     return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= distance * (1 - 1e-9))
 

@@ -43,7 +43,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     parent = parents[-1]
     if parent.type is None:
         if request.forest is not None and any(typed.element.name == "BehaviorTree" for typed in parents):
-            # A library or a model declares the type of the parent, not the schema.
+            # The type of the parent is declared by a library or a model, not by the schema.
             yield from _tree_nodes(request, parents, bare=bare)
         return
     if bare and "field" in parent.type.children:

@@ -144,7 +144,8 @@ def _of_any_type(context: TreeContext) -> Iterator[Finding]:
         variables = [(port, value) for port, value in values if isinstance(value, Reference)]
         if any_type != "string" and any_type not in INTEGER_RANGES:
             port, reference = variables[0]
-            yield RULE.at(_place(node, port), f"{_COMPARED}; `{reference.variable}` is `{any_type}`")
+            message = f"a `Switch` compares only strings or integers, but `{reference.variable}` is `{any_type}`"
+            yield RULE.at(_place(node, port), f"{message}; use a variable of one of these types")
             continue
         if values and not variables:
             yield from _literal_choice(node)
@@ -173,10 +174,9 @@ def _literal_choice(node: TreeNode) -> Iterator[Finding]:
         tree, findings = parse(Decoded(setting.value.strip(), 0))
         given, problems = infer(tree, lambda _: None)
         if not findings and not problems and given in (BOOL, REAL):
-            yield RULE.at(setting.span, f"{_COMPARED}; `{setting.value}` is `{given}`")
-
-
-_COMPARED = "a `Switch` compares strings or integers"
+            kind = "a boolean" if given == BOOL else "a number"
+            message = f"the `Switch` compares `{setting.value}` as a string, not as {kind}"
+            yield RULE.at(setting.span, f"{message}; use a variable of type integer or string")
 
 
 def _place(node: TreeNode, port: PortOutline) -> Span:
