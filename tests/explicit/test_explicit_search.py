@@ -12,13 +12,13 @@ from hypothesis import given, settings
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks
 
+from explorer import Explorer, StateFaultError
 from roaml import explicit
 from roaml.explicit import codes, solver
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search, plain_solver
 from roaml.explicit.space import LimitError, Space, StateLimits, explore
 from roaml.explicit.values import NoValueError, values_of
-from roaml.smc.explore import Explorer, StateFaultError
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.record import SHORTEST, Recording

@@ -9,9 +9,9 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from both_kernels import plain_kernel
+from explorer import Explorer
 from roaml.smc import kernel
 from roaml.smc.choices import Choices, ExtremeMethod
-from roaml.smc.explore import Explorer
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool

@@ -18,10 +18,10 @@ from smc_models import Json, answers, at, automaton, document, edge, model, op, 
 from smc_random import networks
 
 from examples import examples
+from explorer import Explorer, StateFaultError
 from roaml import api
 from roaml.jani.model import Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
-from roaml.smc.explore import Explorer, StateFaultError
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
 

@@ -17,10 +17,10 @@ from storm import exact as storm_exact
 from test_translate_storm import COINS, JUDGE, LISTENER, reaches, system
 from translating import loaded
 
+from explorer import Explorer, TooManyStatesError
 from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
-from roaml.smc.explore import Explorer, TooManyStatesError
 from roaml.smc.lss import Search, Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool

@@ -13,9 +13,9 @@ from smc_models import Json, answers, automaton, document, edge, model, op, prob
 
 from both_kernels import difference
 from examples import examples
+from explorer import Explorer, TooManyChoicesError
 from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
-from roaml.smc.explore import Explorer, TooManyChoicesError
 from roaml.smc.model import ModelChecker
 from roaml.smc.statistics import clopper_pearson
 from roaml.verification.small import values_if_small

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All states of a model, if there are few, in plain data: tests compare the engines with it."""
+"""All states of a model, if there are few, in plain data. Tests compare the engines with it."""
 
 from __future__ import annotations
 
