@@ -5,14 +5,11 @@ from __future__ import annotations
 
 from roaml.expr.types import BASE_TYPES
 from roaml.expr.zero import zero
-from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
-from roaml.lower.build import event_data, name
+from roaml.lower.blackboard_automaton import blackboard_automaton
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.programs.blackboard import board_automaton
 from roaml.model.expand import ROOT_NUMBER
-from roaml.scxml.events import Role
-from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Target, Transition
-from roaml.scxml.names import BLACKBOARD
+from roaml.scxml.model import Automaton, Data
 from roaml.text import Location
 
 
@@ -26,22 +23,8 @@ def blackboard(program: TranslatableSystem) -> Automaton | None:
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
     if not variables:
         return None
-    places = {variable: _place(program, variable) for variable in variables}
-    data = tuple(Data(v, type_, zero(type_), places[v]) for v, type_ in variables.items())
-    origin = next(iter(places.values()))
-    writes = tuple(
-        Transition(
-            blackboard_write(v),
-            None,
-            (Target("idle", 1.0, (Assign(name(v), event_data("value"), places[v]),), places[v]),),
-            places[v],
-        )
-        for v in variables
-    )
-    answer = Send(ANSWER, tuple(Param(v, name(v), places[v]) for v in variables), origin)
-    asked = Transition(REQUEST, None, (Target("idle", 1.0, (answer,), origin),), origin)
-    idle = State("idle", (), (), (*writes, asked) if system.reads_blackboard else writes, origin)
-    return Automaton(BLACKBOARD, Role.BLACKBOARD, "idle", data, (idle,), origin)
+    data = [Data(v, type_, zero(type_), _place(program, v)) for v, type_ in variables.items()]
+    return blackboard_automaton(data, {}, data[0].origin, is_read=system.reads_blackboard)
 
 
 def _place(program: TranslatableSystem, variable: str) -> Location:

@@ -26,11 +26,15 @@ def event_data(parameter: str, span: Span = NO_SPAN) -> Expr:
 
 
 def random_number(span: Span = NO_SPAN) -> Expr:
-    return Call(span, Member(span, Name(span, "Math"), "random", span), ())
+    return Call(span, Member(span, name("Math", span), "random", span), ())
+
+
+def math_call(function: str, *arguments: Expr) -> Expr:
+    return Call(NO_SPAN, Member(NO_SPAN, name("Math"), function, NO_SPAN), arguments)
 
 
 def floor(value: Expr) -> Expr:
-    return Call(NO_SPAN, Member(NO_SPAN, name("Math"), "floor", NO_SPAN), (value,))
+    return math_call("floor", value)
 
 
 def length(array: Expr, span: Span = NO_SPAN) -> Expr:

@@ -13,8 +13,8 @@ from fractions import Fraction
 from typing import Any
 
 from roaml.expr.operators import Operator, UnaryOperator
-from roaml.expr.tree import Boolean, Call, Conditional, Expr, Member, Number, String, Unary
-from roaml.lower.build import binary, equal, floor, integer, name
+from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
+from roaml.lower.build import binary, equal, floor, integer, math_call, name
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
 from roaml.text import NO_SPAN
 
@@ -97,11 +97,11 @@ class ProgramValues:
                     return ticks_of(Fraction(str(duration)), self.code.rate)
                 assert not isinstance(duration, str)
                 scaled = binary(duration, Operator.MULTIPLY, expr(float(self.code.rate)))
-                return _math("ceil", binary(scaled, Operator.DIVIDE, integer(1000)))
+                return math_call("ceil", binary(scaled, Operator.DIVIDE, integer(1000)))
             case "maximum", [first, second]:
                 if isinstance(first, (int, float)) and isinstance(second, (int, float)):
                     return max(first, second)
-                return _math("max", expr(first), expr(second))
+                return math_call("max", expr(first), expr(second))
             case "matches", [int() as case]:
                 return self.matches(case)
             case "element", [position]:
@@ -178,7 +178,3 @@ def expr(value: Value) -> Expr:
 
 def negated(condition: Expr) -> Expr:
     return Unary(NO_SPAN, UnaryOperator.NOT, condition)
-
-
-def _math(function: str, *arguments: Expr) -> Expr:
-    return Call(NO_SPAN, Member(NO_SPAN, name("Math"), function, NO_SPAN), arguments)
