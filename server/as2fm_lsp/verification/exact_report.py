@@ -8,12 +8,10 @@ from typing import Any
 
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import Exact, Proof, Result
+from roaml.verification.results import EXACT_WIDTH, Exact, Proof, Result
 
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
-WIDTH = 1e-6
-"""The greatest width of the bounds of an exact value, relative for expected rewards."""
 _PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
 """What all states prove, in JSON."""
 
@@ -83,7 +81,7 @@ def estimate_row(result: Result) -> dict[str, Any]:
         "complete": True,
         "interval": EXACT,
         "confidence": 1,
-        "epsilon": WIDTH,
+        "epsilon": EXACT_WIDTH,
         "method": EXACT,
     }
 
@@ -92,7 +90,7 @@ def _number(bounds: Bounds) -> str:
     """A value, or its bounds if they are far apart."""
     if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
         return "∞" if bounds.lower > 0 else "-∞"
-    if bounds.upper - bounds.lower > WIDTH * max(1.0, abs(bounds.lower)):
+    if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
     middle = (bounds.lower + bounds.upper) / 2
     return f"{next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle):.7g}"

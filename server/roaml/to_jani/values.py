@@ -33,7 +33,7 @@ from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.jani.types import REAL
 from roaml.to_jani.shapes import SCALAR_INT, ArrayShape, length_name, zero
 
-_BINARY = {
+BINARY_OPERATORS = {
     Operator.OR: BinaryOperator.OR,
     Operator.AND: BinaryOperator.AND,
     Operator.EQUAL: BinaryOperator.EQUAL,
@@ -335,7 +335,7 @@ class JaniScope:
             if left is not None and right is not None:
                 same = equal_arrays(left, right)
                 return same if expr.operator is Operator.EQUAL else negated(same)
-        return jani.Binary(_BINARY[expr.operator], self.scalar(expr.left), self.scalar(expr.right))
+        return jani.Binary(BINARY_OPERATORS[expr.operator], self.scalar(expr.left), self.scalar(expr.right))
 
     def call(self, expr: Call) -> Expression:
         assert isinstance(expr.function, Member)

@@ -93,13 +93,9 @@ def check_exactly(
         width: the difference that `=` allows.
     """
     threshold = expectation.threshold
-    bounds, value = exact.minimum, exact.least
-    missed_by = f"by the least value, which is {value:.6g}"
-    if only_uniform:
-        bounds, value, missed_by = exact.uniform, exact.average, ""
-    elif not is_minimised(question):
-        bounds, value = exact.maximum, exact.greatest
-        missed_by = f"by the greatest value, which is {value:.6g}"
+    bounds, value = exact.asked_value(question, only_uniform=only_uniform)
+    extreme = "least" if is_minimised(question) else "greatest"
+    missed_by = "" if only_uniform else f"by the {extreme} value, which is {value:.6g}"
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
 
     def is_met(number: float) -> bool:

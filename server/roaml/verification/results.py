@@ -12,7 +12,7 @@ from roaml.explicit.path import Path, PathRecorder
 from roaml.explicit.space import Space
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import CompiledProperty
+from roaml.smc.goal import CompiledProperty, Question
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
@@ -53,8 +53,8 @@ class ShortestTrace:
         return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
 
 
-_SAME = 1e-6
-"""The relative distance up to which values are equal."""
+EXACT_WIDTH = 1e-6
+"""The maximum width of bounds that are one value; for values above 1, it is relative."""
 
 
 class Proof(Enum):
@@ -106,6 +106,13 @@ class Exact:
         """Whether all schedulers have the same value."""
         return is_same(self.minimum, self.maximum) and is_same(self.minimum, self.uniform)
 
+    def asked_value(self, question: Question, *, only_uniform: bool) -> tuple[Bounds, float]:
+        """The value that a property asks for, with its bounds: its minimum or its maximum; with `only_uniform`, its
+        value under uniform choices."""
+        if only_uniform:
+            return self.uniform, self.average
+        return (self.minimum, self.least) if is_minimised(question) else (self.maximum, self.greatest)
+
     def shortest(self, verdict: int) -> ShortestTrace | None:
         """The shortest trace with a verdict; `None` if there is none."""
         return next((trace for trace in self.traces if trace.verdict == verdict), None)
@@ -116,7 +123,7 @@ def is_same(a: Bounds, b: Bounds) -> bool:
     if a == b:
         return True
     lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)
-    return upper - lower <= _SAME * max(1.0, abs(lower))
+    return upper - lower <= EXACT_WIDTH * max(1.0, abs(lower))
 
 
 def _value(bounds: Bounds) -> float:
@@ -226,16 +233,11 @@ class Result:
         return self.answer is not None and self.choices is None and not self.includes_stuck
 
     def asked_value(self) -> tuple[Bounds, float] | None:
-        """The exact value that the property asks for, with its bounds: its minimum, its maximum, or its value under
-        uniform choices. `None` if there are no exact values beside the answer of traces."""
-        exact, answer = self.exact, self.answer
-        if exact is None or answer is None:
+        """The exact value that the property asks for, with its bounds (`Exact.asked_value`); `None` if there are no
+        exact values beside the answer of traces."""
+        if self.exact is None or self.answer is None:
             return None
-        if self.is_uniform:
-            return exact.uniform, exact.average
-        if is_minimised(answer.question):
-            return exact.minimum, exact.least
-        return exact.maximum, exact.greatest
+        return self.exact.asked_value(self.answer.question, only_uniform=self.is_uniform)
 
     @property
     def epsilon(self) -> float:

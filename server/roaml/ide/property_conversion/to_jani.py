@@ -22,21 +22,10 @@ from roaml.model.property_links import LinkedProperty
 from roaml.model.property_ports import LinkedPort, LinkedVariable
 from roaml.observers.properties import LEFT, Pattern, PatternProperty
 from roaml.scxml.names import flag_of
+from roaml.to_jani.values import BINARY_OPERATORS
 
-_BINARY = {
-    Operator.OR: BinaryOperator.OR,
-    Operator.AND: BinaryOperator.AND,
-    Operator.EQUAL: BinaryOperator.EQUAL,
-    Operator.NOT_EQUAL: BinaryOperator.NOT_EQUAL,
-    Operator.LESS: BinaryOperator.LESS,
-    Operator.LESS_EQUAL: BinaryOperator.LESS_EQUAL,
-    Operator.GREATER: BinaryOperator.GREATER,
-    Operator.GREATER_EQUAL: BinaryOperator.GREATER_EQUAL,
-    Operator.ADD: BinaryOperator.ADD,
-    Operator.SUBTRACT: BinaryOperator.SUBTRACT,
-    Operator.MULTIPLY: BinaryOperator.MULTIPLY,
-    Operator.REMAINDER: BinaryOperator.REMAINDER,
-}
+_CONVERTIBLE = BINARY_OPERATORS.keys() - {Operator.DIVIDE}
+"""The operators of conditions that both languages evaluate alike."""
 _RELATIONS = {">=": "≥", "<=": "≤", ">": ">", "<": "<", "==": "="}
 _ZEROS = (jani.Boolean(False), jani.Integer(0), jani.Real(0.0))
 """The initial values of the global variables of the translation."""
@@ -166,9 +155,9 @@ class _Conditions:
             case Unary(operator=UnaryOperator.NEGATE, operand=operand):
                 operand_value = self.value(operand, is_sent=is_sent)
                 return jani.Binary(BinaryOperator.SUBTRACT, jani.Integer(0), operand_value)
-            case Binary(operator=operator, left=left, right=right) if operator in _BINARY:
+            case Binary(operator=operator, left=left, right=right) if operator in _CONVERTIBLE:
                 values = (self.value(operand, is_sent=is_sent) for operand in (left, right))
-                return jani.Binary(_BINARY[operator], *values)
+                return jani.Binary(BINARY_OPERATORS[operator], *values)
         raise NotConvertibleError
 
     def read(self, port: LinkedPort, variable: LinkedVariable, *, is_sent: bool) -> Expression:

@@ -28,9 +28,6 @@ from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
 
-_TOO_LARGE = 1 << 63
-"""The smallest positive integer that does not fit into 64 bits."""
-
 
 def check(context: TreeContext) -> Iterator[Finding]:
     """Check ports of trees in systems; BehaviorTree.CPP itself accepts any text."""
@@ -227,7 +224,8 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
     low, high = INTEGER_RANGES.get(port.type, (None, None))
     if value is not None and low is not None and high is not None and not low <= value <= high:
         message = f"{text} does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
-        return ConstantProblem(message, Severity.WARNING if -_TOO_LARGE <= value < _TOO_LARGE else Severity.ERROR)
+        low, high = INTEGER_RANGES["int64"]
+        return ConstantProblem(message, Severity.WARNING if low <= value <= high else Severity.ERROR)
     return None
 
 
