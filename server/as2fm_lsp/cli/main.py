@@ -28,7 +28,7 @@ COMMANDS = {
     "format": "lay out files",
     "migrate": "move systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
-    "verify": "estimate the probabilities of properties",
+    "verify": "compute or estimate the probabilities of properties",
     "draw": "draw a state machine, a tree or a ROS graph",
     "simulate": "run a system step by step",
     "debug": "serve a debugger: the debug adapter",

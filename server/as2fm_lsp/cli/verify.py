@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: estimate whether its properties hold, and explain failures."""
+"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: compute or estimate whether its properties hold, and explain failures."""
 
 from __future__ import annotations
 
 import argparse
 import importlib
-import math
 import os
 import sys
 import time
@@ -15,31 +14,35 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
-from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.mock_options import names_tree
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
-    add_model_arguments,
     check_model_arguments,
     error_report,
     read_target,
     report_of,
     settings_of,
 )
-from as2fm_lsp.cli.numbers import natural, positive, size
 from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
+from as2fm_lsp.cli.verify_arguments import (
+    STANDARD_OUTPUT,
+    Scheduler,
+    asks_for_traces,
+    expectations_in,
+    limits_in,
+    parser,
+)
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.exhaustive import Vocabulary
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
 from roaml.smc.fault import FaultError
@@ -47,15 +50,14 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options, Tally
+from roaml.smc.run import EstimationMethod, Options, Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
-from roaml.verification.expectations import Expectation, RangeError, parse
+from roaml.verification.expectations import Expectation, RangeError
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
 from roaml.verification.small import EXAMPLE_TRACES
-from roaml.verification.stuck import StuckLevel
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
@@ -67,54 +69,11 @@ if TYPE_CHECKING:
     from roaml.smc.story import Story
     from roaml.verification.tree_outcome import TreeOutcome
 
-EXAMPLES = """\
-examples:
-  as2fm-lsp verify main.xml                              all properties: exact values if the model has few states,
-                                                         otherwise to 0.01 with 95 percent confidence
-  as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
-  as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
-  as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
-  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
-  as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
-  as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
-  as2fm-lsp verify main.xml --exhaustive                 all states: exact minimum, maximum and uniform value
-
-In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
-combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
-where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result lists how
-many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands
-still; a warning with an example reports this.
-
-exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
-stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
-"""
 INTERRUPTED = 130
-TRACE_OPTIONS = (
-    "confidence",
-    "epsilon",
-    "method",
-    "max_traces",
-    "max_steps",
-    "seed",
-    "separate",
-    "resume",
-    "traces",
-    "dask",
-    "exhaustive",
-)
-"""The options with which `verify` does not decide by the size of the model whether values are exact."""
-STANDARD_OUTPUT = "-"
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
 """Up to this number, traces of a tree take less time than the start of further processes."""
-
-
-class Scheduler(Vocabulary):
-    """How nondeterminism is resolved."""
-
-    UNIFORM = "uniform"
-    LSS = "lss"
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -132,8 +91,8 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    expectations = _expectations(options.expect)
-    limits = _limits(options)
+    expectations = expectations_in(options.expect)
+    limits = limits_in(options)
     check_model_arguments(options)
     settings = settings_of(options.main)
     if names_tree(options.main):
@@ -151,7 +110,7 @@ def _run(options: argparse.Namespace) -> int:
                 limits,
                 expectations,
                 only_uniform=only_uniform,
-                exact_if_small=not _asks_for_traces(options),
+                exact_if_small=not asks_for_traces(options),
                 example_traces=EXAMPLE_TRACES,
             )
     except (api.ModelError, api.JaniError) as error:
@@ -161,12 +120,6 @@ def _run(options: argparse.Namespace) -> int:
     if not verifier.names:
         raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
     return _Verification(options, verifier).run()
-
-
-def _asks_for_traces(options: argparse.Namespace) -> bool:
-    """Whether an option is given that has an effect only on traces."""
-    values = [getattr(options, name) for name in TRACE_OPTIONS]
-    return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS
 
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
@@ -533,120 +486,6 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
         raise UsageError(f"there is no Dask scheduler at {address}: {error}") from None
     with client:
         yield client.get_executor(), max(1, sum(client.nthreads().values()))
-
-
-def parser() -> ArgumentParser:
-    result = ArgumentParser(
-        prog="as2fm-lsp verify",
-        description="Estimate the probabilities of the properties of a system or JANI model by random traces.",
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    result.add_argument(
-        "main", metavar="MAIN.xml|MODEL.jani|TREE.xml", help="the system file, a JANI model, or a tree without a system"
-    )
-    add = result.add_argument
-    add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
-    add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
-        "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
-    add(
-        "--confidence",
-        type=_share,
-        metavar="C",
-        help="the probability with which the interval contains the true value (0.95)",
-    )
-    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
-        "an expected reward relative to its value")  # fmt: skip
-    add("--method", action=WordAction, words=EstimationMethod,
-        help="generate traces, also if the model is small: until the interval is narrow "
-        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
-        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
-    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; they stay "
-        "undecided (1000000)")  # fmt: skip
-    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
-    add(
-        "--jobs",
-        type=positive,
-        default=_processors(),
-        metavar="N",
-        help="number of processes (all processors); does not change the results",
-    )
-    add("--scheduler", action=WordAction, words=Scheduler,
-        help="how nondeterminism is resolved: uniformly at random, or by "
-        "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
-        "warning or note states if other schedulers may give another value")  # fmt: skip
-    add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
-        "uniform value of each property, and the shortest trace")  # fmt: skip
-    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states; the result is then "
-        "undecided")  # fmt: skip
-    add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
-        "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
-    add_model_arguments(result)
-    add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
-        help="report traces that get stuck as a "
-        "warning (default), or as an error with exit status 1")  # fmt: skip
-    add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
-        "traces, with the same results")  # fmt: skip
-    add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
-    add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
-    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
-    add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
-        help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
-        "repeated")  # fmt: skip
-    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
-    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
-        help="format of the results")  # fmt: skip
-    return result
-
-
-def _processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
-
-
-def _share(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value < 1:
-        raise argparse.ArgumentTypeError("expected a number between 0 and 1")
-    return value
-
-
-def _width(text: str) -> float:
-    value = _share(text)
-    if value < MIN_EPSILON:
-        raise argparse.ArgumentTypeError(
-            f"expected a number of at least {MIN_EPSILON:g}: no run can generate more traces"
-        )
-    return value
-
-
-def _story_file(text: str) -> str:
-    if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
-        raise argparse.ArgumentTypeError(
-            f"'{text}' does not end in .txt, .mmd or .html; name MAIN.xml before --explain"
-        )
-    return text
-
-
-def _expectations(texts: Sequence[str]) -> list[Expectation]:
-    try:
-        return [parse(text) for text in texts]
-    except ValueError as error:
-        raise UsageError(str(error)) from None
-
-
-def _limits(options: argparse.Namespace) -> Options:
-    names = ("confidence", "epsilon", "max_traces", "max_steps", "seed", "method")
-    given = {name: value for name in names if (value := getattr(options, name)) is not None}
-    try:
-        return Options(**given)
-    except ValueError as error:
-        raise UsageError(str(error)) from None
 
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:

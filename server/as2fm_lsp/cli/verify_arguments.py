@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The arguments of `as2fm-lsp verify`."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from collections.abc import Sequence
+
+from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
+from as2fm_lsp.cli.formats import Format
+from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
+from as2fm_lsp.cli.numbers import natural, positive, size
+from roaml.exhaustive import Vocabulary
+from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options
+from roaml.verification.expectations import Expectation, parse
+from roaml.verification.stuck import StuckLevel
+
+EXAMPLES = """\
+examples:
+  as2fm-lsp verify main.xml                              all properties: exact values if the model has few states,
+                                                         otherwise to 0.01 with 95 percent confidence
+  as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
+  as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
+  as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
+  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
+  as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
+  as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
+  as2fm-lsp verify main.xml --exhaustive                 all states: exact minimum, maximum and uniform value
+
+In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
+combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
+where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result lists how
+many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands
+still; a warning with an example reports this.
+
+exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
+stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
+"""
+TRACE_OPTIONS = (
+    "confidence",
+    "epsilon",
+    "method",
+    "max_traces",
+    "max_steps",
+    "seed",
+    "separate",
+    "resume",
+    "traces",
+    "dask",
+    "exhaustive",
+)
+"""The options with which `verify` does not decide by the size of the model whether values are exact."""
+STANDARD_OUTPUT = "-"
+
+
+class Scheduler(Vocabulary):
+    """How nondeterminism is resolved."""
+
+    UNIFORM = "uniform"
+    LSS = "lss"
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
+        prog="as2fm-lsp verify",
+        description="Compute the probabilities of the properties of a system or JANI model: exactly if the model has "
+        "few states, otherwise as estimates from random traces.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    result.add_argument(
+        "main", metavar="MAIN.xml|MODEL.jani|TREE.xml", help="the system file, a JANI model, or a tree without a system"
+    )
+    add = result.add_argument
+    add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
+    add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
+        "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
+    add(
+        "--confidence",
+        type=_share,
+        metavar="C",
+        help="the probability with which the interval contains the true value (0.95)",
+    )
+    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
+        "an expected reward relative to its value")  # fmt: skip
+    add("--method", action=WordAction, words=EstimationMethod,
+        help="generate traces, also if the model is small: until the interval is narrow "
+        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
+        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
+    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; they stay "
+        "undecided (1000000)")  # fmt: skip
+    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
+    add(
+        "--jobs",
+        type=positive,
+        default=_processors(),
+        metavar="N",
+        help="number of processes (all processors); does not change the results",
+    )
+    add("--scheduler", action=WordAction, words=Scheduler,
+        help="how nondeterminism is resolved: uniformly at random, or by "
+        "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
+        "warning or note states if other schedulers may give another value")  # fmt: skip
+    add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
+        "uniform value of each property, and the shortest trace")  # fmt: skip
+    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states; the result is then "
+        "undecided")  # fmt: skip
+    add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
+        "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
+    add_model_arguments(result)
+    add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
+        help="report traces that get stuck as a "
+        "warning (default), or as an error with exit status 1")  # fmt: skip
+    add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
+        "traces, with the same results")  # fmt: skip
+    add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
+    add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
+    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
+    add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
+        help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
+        "repeated")  # fmt: skip
+    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
+    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
+        help="format of the results")  # fmt: skip
+    return result
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+def _share(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError("expected a number between 0 and 1")
+    return value
+
+
+def _width(text: str) -> float:
+    value = _share(text)
+    if value < MIN_EPSILON:
+        raise argparse.ArgumentTypeError(
+            f"expected a number of at least {MIN_EPSILON:g}: no run can generate more traces"
+        )
+    return value
+
+
+def _story_file(text: str) -> str:
+    if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
+        raise argparse.ArgumentTypeError(
+            f"'{text}' does not end in .txt, .mmd or .html; name MAIN.xml before --explain"
+        )
+    return text
+
+
+def expectations_in(texts: Sequence[str]) -> list[Expectation]:
+    """The values of `--expect`.
+
+    Raises:
+        UsageError: a text is not an expectation.
+    """
+    try:
+        return [parse(text) for text in texts]
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def limits_in(options: argparse.Namespace) -> Options:
+    """The options of the traces.
+
+    Raises:
+        UsageError: an option has an impossible value.
+    """
+    names = ("confidence", "epsilon", "max_traces", "max_steps", "seed", "method")
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
+    try:
+        return Options(**given)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
+def asks_for_traces(options: argparse.Namespace) -> bool:
+    """Whether an option is given that has an effect only on traces."""
+    values = [getattr(options, name) for name in TRACE_OPTIONS]
+    return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS
