@@ -702,3 +702,14 @@ def test_from_python(robot: Path) -> None:
     (robot / "bad.jani").write_text("{")
     with pytest.raises(api.JaniError):
         api.read_jani("bad.jani")
+
+
+@pytest.mark.parametrize("options", [(), ("--exhaustive", "--max-states", "500"), ("--max-traces", "20")])
+def test_a_property_in_xml_is_shown_as_a_sentence(command: Command, robot: Path, options: tuple[str, ...]) -> None:
+    """The sentence is the line below the value, also if there is none, and the comment in JSON."""
+    name = ("--property", "never_delivers_when_empty")
+    first, second, *_ = command("verify", "main.xml", *name, *options).out.splitlines()
+    assert first.startswith("never_delivers_when_empty: ")
+    assert second == "  `hands_over && battery <= 10` never holds."
+    (row,) = json.loads(command("verify", "main.xml", *name, *options, "--format", "json").out)["results"]
+    assert row["comment"] == second.strip()

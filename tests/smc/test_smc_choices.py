@@ -124,13 +124,13 @@ def test_rewards_are_not_sampled() -> None:
 
 
 def test_described() -> None:
-    names = ["one", "two"]
+    names = ["`one`", "`two`"]
     assert described(7, names) == "sampled scheduler 7, which decides by the state alone"
     assert described(MEMORY | 3, names) == "sampled scheduler 3, which decides by the state and the last step"
     assert described(STARVE | (1 << 32) | 2, names) == (
-        "sampled scheduler 2, which lets `two` act only where nothing else can act"
+        "sampled scheduler 2, which lets `two` proceed only where nothing else can proceed"
     )
-    assert described(FAVOUR | 1, names) == "sampled scheduler 1, which lets `one` act wherever it can"
+    assert described(FAVOUR | 1, names) == "sampled scheduler 1, which lets `one` proceed wherever possible"
     some = candidates(2, per_automaton=1, memoryless=2, memory=2)
     assert len(set(some)) == len(some) == 2 + 4 + 2
 

@@ -102,6 +102,8 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         lines.append(f"{text}; {doubt}" if doubt else text)
     if is_alone and result.has_no_expectation:
         lines.append(f"  {NO_EXPECTATION}")
+    if not is_alone and result.comment and lines:
+        lines.insert(1, f"  {' '.join(result.comment.split())}")
     return "\n".join(lines)
 
 

@@ -186,14 +186,23 @@ def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent
     """
     if not is_interface_event(event):
         return None
-    name, _, client = event.partition("_client_")
-    if client not in clients:
-        name = event
+    client = client_of(event, clients)
+    name = event.removesuffix(f"{_CLIENT}{client}") if client else event
     for kind, form in _INTERFACE_EVENTS:
         match = form.fullmatch(name)
         if match:
             return InterfaceEvent(kind, match[1])
     return None
+
+
+def client_of(event: str, clients: Collection[str]) -> str:
+    """The automaton of `clients` whose name the name of a service's or action's event ends with; "" if there is none.
+    The client sends or receives this event."""
+    _, _, client = event.partition(_CLIENT)
+    return client if client in clients else ""
+
+
+_CLIENT = "_client_"
 
 
 def is_reserved_name(name: str) -> bool:

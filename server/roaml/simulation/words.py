@@ -18,7 +18,7 @@ from roaml.scxml.names import (
     received_by,
 )
 from roaml.smc.record import Plain
-from roaml.views.turns import name_of
+from roaml.views.actors import name_of
 
 STATUS_NAMES = {number: name for name, number in STATUSES.items()}
 """The number that a node returns -> the name of the status."""

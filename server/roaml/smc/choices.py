@@ -92,7 +92,7 @@ def check_choices(
     program: Program,
     payload: Payload,
     answer: Answer,
-    automata: Sequence[str],
+    actors: Sequence[str],
     pool: Pool,
     pulse: Pulse | None = None,
 ) -> Choices:
@@ -100,7 +100,7 @@ def check_choices(
 
     Args:
         answer: the answer under uniform choices.
-        automata: the names of the elements of the system.
+        actors: a noun phrase for each element of the system.
 
     Raises:
         TraceFaultError: a trace under some scheduler failed.
@@ -114,13 +114,13 @@ def check_choices(
     most = _MAX_STEPS * _MAX_CHEAP_REGISTERS // (_MAX_CHEAP_REGISTERS + size)
     budget = max(_MIN_STEPS, min(most, tally.steps // _RESULT_STEPS_PER_PROBE_STEP))
     length = tally.steps / tally.traces
-    some = candidates(len(automata), per_automaton=1, memoryless=16, memory=16)
+    some = candidates(len(actors), per_automaton=1, memoryless=16, memory=16)
     extremes = probe(payload, question, answer.options, pool, some, budget, length, pulse)
     own_least, own_greatest = _of_answer(answer)
     if extremes is None:
         return Choices("", own_least, own_greatest)
     sampled = [
-        Extreme(extreme.value, extreme.bounds, ExtremeMethod.SAMPLING, described(by, automata), extreme.tally.traces)
+        Extreme(extreme.value, extreme.bounds, ExtremeMethod.SAMPLING, described(by, actors), extreme.tally.traces)
         for extreme, by in ((extremes.least, extremes.least_by), (extremes.greatest, extremes.greatest_by))
     ]
     least = sampled[0] if sampled[0].bounds.upper < own_least.bounds.lower else own_least

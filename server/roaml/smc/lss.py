@@ -64,17 +64,17 @@ class Extremes:
     tried: int = 0
 
 
-def described(scheduler: int, automata: Sequence[str]) -> str:
+def described(scheduler: int, actors: Sequence[str]) -> str:
     """A description of a scheduler.
 
     Args:
-        automata: the names of the elements of the system.
+        actors: a noun phrase for each element of the system.
     """
     kind, number = scheduler & _KIND_MASK, scheduler & _INDEX_MASK
-    name = automata[(scheduler & ~_KIND_MASK) >> _AUTOMATON_SHIFT]
+    actor = actors[(scheduler & ~_KIND_MASK) >> _AUTOMATON_SHIFT]
     does = {
-        STARVE: f"lets `{name}` act only where nothing else can act",
-        FAVOUR: f"lets `{name}` act wherever it can",
+        STARVE: f"lets {actor} proceed only where nothing else can proceed",
+        FAVOUR: f"lets {actor} proceed wherever possible",
         MEMORY: "decides by the state and the last step",
     }
     return f"sampled scheduler {number}, which {does.get(kind, 'decides by the state alone')}"

@@ -46,6 +46,7 @@ class ModelChecker:
         marks: why a trace that stays in a location ends; see `roaml.smc.end`.
         outputs: property -> the outputs of its observer, if it has one.
         assumptions: property -> the property that its assumptions hold, if it has any; both are in `model`.
+        actors: automaton -> a noun phrase for it, for users; without one, it is the name in backquotes.
         includes_stuck: whether `stuck` is the last question.
 
     Attributes:
@@ -66,10 +67,12 @@ class ModelChecker:
         includes_stuck: bool = False,
         outputs: Mapping[str, ObserverOutputs] = MappingProxyType({}),
         assumptions: Mapping[str, Property] = MappingProxyType({}),
+        actors: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.model = model
         self.outputs = outputs
         self._marks = marks
+        self._actors = actors
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
         depth = sys.getrecursionlimit()
@@ -130,6 +133,7 @@ class ModelChecker:
             self._marks,
             includes_stuck=property_.question.is_stuck,
             outputs=self._outputs(property_),
+            actors=self._actors,
         )
 
     def _read(self, property_: CompiledProperty) -> tuple[Formula, ...]:
@@ -240,7 +244,7 @@ class ModelChecker:
             FaultError: a trace under some scheduler failed.
         """
         try:
-            return check_choices(self.model, self.program, self.payload(property_), answer, self.automata, pool, pulse)
+            return check_choices(self.model, self.program, self.payload(property_), answer, self.actors, pool, pulse)
         except TraceFaultError as error:
             raise self.fault(error.problem) from None
 
@@ -253,6 +257,11 @@ class ModelChecker:
     def automata(self) -> tuple[str, ...]:
         """The names of the elements of the system."""
         return tuple(element.automaton for element in self.model.system.elements)
+
+    @property
+    def actors(self) -> tuple[str, ...]:
+        """A noun phrase for each element of the system."""
+        return tuple(self._actors.get(name, f"`{name}`") for name in self.automata)
 
     def fault(self, problem: TraceProblem) -> FaultError:
         """A description of the undefined operation in a trace."""

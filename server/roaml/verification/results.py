@@ -196,6 +196,7 @@ class Result:
         refusal: the reason why there is no answer; `fault` is its cause.
         undecided: the reason why the exploration of all states could not decide the property.
         traces: the traces of `answer`, which can be simulated again.
+        comment: a description of what the property requires; "" if the model contains none.
     """
 
     name: str
@@ -212,11 +213,7 @@ class Result:
     undecided: str = ""
     fault: FaultError | None = field(default=None, repr=False, compare=False)
     traces: Traces | None = field(default=None, repr=False, compare=False)
-
-    @property
-    def comment(self) -> str:
-        """A description of what the property requires, if the model contains one."""
-        return (self.traces.compiled_property.property.comment or "") if self.traces is not None else ""
+    comment: str = ""
 
     @property
     def includes_stuck(self) -> bool:

@@ -27,6 +27,7 @@ from roaml.verification.schedulers import is_minimised, under_all_schedulers
 from roaml.verification.small import choices_of, values_if_small
 from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
+from roaml.views.actors import actors
 from roaml.views.ends import marks, observer_outputs
 
 
@@ -65,6 +66,7 @@ def _checker(target: VerificationTarget, chosen: tuple[Property, ...], *, includ
         includes_stuck=includes_stuck,
         outputs=observer_outputs(model),
         assumptions={name: assumed for name, assumed in target.assumptions.items() if name in names},
+        actors=actors(model),
     )
 
 
@@ -128,6 +130,10 @@ def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
         return result
     expectations = [e for e in expectations_of(traces.compiled_property, given) if is_possible(e, answer.question)]
     return replace(result, verdicts=_verdicts(expectations, answer, result.choices, result.exact))
+
+
+def _comment(property_: CompiledProperty) -> str:
+    return property_.property.comment or ""
 
 
 def _verdicts(
@@ -373,7 +379,7 @@ class Verifier:
         for side, (scheduler, tally) in search.selected.items():
             if tally.traces:
                 answer = summary(property_.question, sampling_options(self.options), tally)
-                words = described(scheduler, self.checker.automata)
+                words = described(scheduler, self.checker.actors)
                 got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer, scheduler)
                 sampled.append(SampledResult(side, answer, scheduler, words, got_stuck))
         required_side = Side.LEAST if is_minimised(property_.question) else Side.GREATEST
@@ -395,6 +401,7 @@ class Verifier:
             tuple(sampled),
             search.tried,
             stuck.shortest(result.stuck for result in sampled),
+            comment=_comment(property_),
         )
 
     def exhaustive(
@@ -414,9 +421,13 @@ class Verifier:
             exact = exact_values(self.checker, property_, limits, watch)
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
-            return Result(property_.question.name, None, open_, time.monotonic() - began, undecided=str(error))
+            seconds = time.monotonic() - began
+            return Result(
+                property_.question.name, None, open_, seconds, undecided=str(error), comment=_comment(property_)
+            )
         verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
-        return Result(property_.question.name, None, verdicts, time.monotonic() - began, exact=exact)
+        seconds = time.monotonic() - began
+        return Result(property_.question.name, None, verdicts, seconds, exact=exact, comment=_comment(property_))
 
     def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
@@ -439,4 +450,5 @@ class Verifier:
             exact=exact,
             choices=choices,
             traces=Traces(self.target, self.checker, property_, self.options),
+            comment=_comment(property_),
         )

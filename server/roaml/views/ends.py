@@ -40,8 +40,12 @@ def marks(model: Model) -> Mapping[tuple[str, str], End]:
     """(automaton, location) -> why a trace that stays in the location ends; empty for a model that is not a
     translation."""
     marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
-    is_translated = any(a.name == CLOCK or is_event(a) for a in model.automata)
-    return marks if is_translated else {}
+    return marks if is_translation(model) else {}
+
+
+def is_translation(model: Model) -> bool:
+    """Whether a model is the translation of a system."""
+    return any(automaton.name == CLOCK or is_event(automaton) for automaton in model.automata)
 
 
 def is_event(automaton: Automaton) -> bool:

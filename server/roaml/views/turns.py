@@ -27,6 +27,7 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
+from roaml.views.actors import name_of
 from roaml.views.events import EventReader
 
 _ENDS = ("SUCCESS", "FAILURE")
@@ -136,12 +137,6 @@ class Message:
     name: str
     values: Mapping[str, Plain]
     sender: Turn | None = None
-
-
-def name_of(automaton: str) -> str:
-    """The name of an automaton for users. A node of a tree has its name and its number."""
-    node = NODE_AUTOMATON.fullmatch(automaton)
-    return f"{node[2]} (bt_{node[1]})" if node else automaton
 
 
 def turns(story: Story) -> list[Turn]:

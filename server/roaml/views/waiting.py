@@ -14,7 +14,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from roaml.exhaustive import assert_never
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
 from roaml.scxml.events import Role
@@ -36,9 +35,10 @@ from roaml.scxml.names import (
     sent_by,
 )
 from roaml.smc.standstill import Standstill
+from roaml.views.actors import actor
 from roaml.views.ends import is_event
 from roaml.views.event_words import event_phrase
-from roaml.views.turns import is_inner, name_of
+from roaml.views.turns import is_inner
 
 
 class Wait(NamedTuple):
@@ -268,22 +268,7 @@ class _Chain:
         return not is_inner(automaton)
 
     def who(self, number: int) -> str:
-        name, role = self.automata[number].name, self.role(number)
-        match role:
-            case Role.MACHINE:
-                return name_of(name)
-            case Role.TREE_ROOT:
-                return "the tree"
-            case Role.CLOCK:
-                return "the clock"
-            case Role.BLACKBOARD:
-                return "the blackboard"
-            case Role.HANDLER:
-                is_service = name.startswith(SERVICE_HANDLER_PREFIX)
-                what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
-                return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
-            case _:
-                return assert_never(role)
+        return actor(self.automata[number].name)
 
     def role(self, number: int) -> Role:
         return automaton_role(self.automata[number].name)

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The automata of a translated system, named in the terms of ROS and BehaviorTree.CPP."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+
+from roaml.exhaustive import assert_never
+from roaml.jani.model import Model
+from roaml.scxml.events import Role
+from roaml.scxml.names import (
+    ACTION_HANDLER_PREFIX,
+    CONDITIONS_PREFIX,
+    NODE_AUTOMATON,
+    OBSERVER_SUFFIX,
+    SERVICE_HANDLER_PREFIX,
+    TIMER_PREFIX,
+    TREE_ROOT_PREFIX,
+    TreeEventKind,
+    automaton_role,
+    client_of,
+    is_timer,
+    read_tree_event,
+    safe_name,
+)
+from roaml.views.ends import is_event, is_translation
+from roaml.views.event_words import event_phrase
+
+_CONDITIONS = re.compile(CONDITIONS_PREFIX + r"(\d+)(?:_inner\d*)?_(.+)")
+_TREE_EVENTS = {
+    TreeEventKind.TICK: "the tick of",
+    TreeEventKind.HALT: "the halt of",
+    TreeEventKind.RESPONSE: "the status of",
+    TreeEventKind.HALT_RESPONSE: "the end of the halt of",
+}
+
+
+def name_of(automaton: str) -> str:
+    """The name of an automaton for users. A node of a tree has its name and its number."""
+    node = NODE_AUTOMATON.fullmatch(automaton)
+    return f"{node[2]} (bt_{node[1]})" if node else automaton
+
+
+def actor(automaton: str) -> str:
+    """A phrase for an automaton that is not the buffer of an event, without backquotes around its name."""
+    role = automaton_role(automaton)
+    match role:
+        case Role.MACHINE:
+            return name_of(automaton)
+        case Role.TREE_ROOT:
+            return "the tree"
+        case Role.CLOCK:
+            return "the clock"
+        case Role.BLACKBOARD:
+            return "the blackboard"
+        case Role.HANDLER:
+            is_service = automaton.startswith(SERVICE_HANDLER_PREFIX)
+            what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
+            return f"the {what} `/{automaton.removeprefix(prefix).replace('__', '/')}`"
+        case _:
+            return assert_never(role)
+
+
+def actors(model: Model) -> Mapping[str, str]:
+    """Automaton -> a noun phrase for its part in the system, in the terms of users. Automata of a model that is not a
+    translation are left out, except observers."""
+    if not is_translation(model):
+        return dict(_observers(model))
+    return {**dict(_parts(model)), **dict(_observers(model))}
+
+
+def _observers(model: Model) -> Iterator[tuple[str, str]]:
+    """The observers of properties. The observer of an assumption, to which no property belongs, has its name."""
+    properties = {property_.origin: property_.name for property_ in reversed(model.properties)}
+    for automaton in model.automata:
+        if automaton.name.endswith(OBSERVER_SUFFIX) and (automaton.origin in properties or is_translation(model)):
+            own = automaton.name.removesuffix(OBSERVER_SUFFIX)
+            observed = own if automaton.origin is None else properties.get(automaton.origin, own)
+            yield automaton.name, f"what the property `{observed}` observes"
+
+
+def _parts(model: Model) -> Iterator[tuple[str, str]]:
+    names = [automaton.name for automaton in model.automata]
+    nodes = {node[1]: name_of(name) for name in names if (node := NODE_AUTOMATON.fullmatch(name))}
+    for automaton in model.automata:
+        name = automaton.name
+        if name.endswith(OBSERVER_SUFFIX):
+            continue
+        if is_event(automaton):
+            yield name, _event(name, names, nodes)
+        elif conditions := _CONDITIONS.fullmatch(name):
+            yield name, f"the conditions of {conditions[2]} (bt_{conditions[1]})"
+        elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
+            yield name, f"`{name}`"
+        else:
+            yield name, actor(name)
+
+
+def _event(event: str, names: Collection[str], nodes: Mapping[str, str]) -> str:
+    tree = read_tree_event(event)
+    if tree is not None:
+        return f"{_TREE_EVENTS[tree.kind]} {nodes.get(str(tree.number), f'bt_{tree.number}')}"
+    if not is_timer(event):
+        client = client_of(event, names)
+        return event_phrase(event, names) + (f" at {name_of(client)}" if client else "")
+    timer = event.removeprefix(TIMER_PREFIX)
+    for user in names:
+        if timer.endswith(f"__{safe_name(user)}"):
+            if user.startswith(TREE_ROOT_PREFIX):
+                return "the next tick of the tree"
+            return f"the timer `{timer.removesuffix(f'__{safe_name(user)}')}` of {name_of(user)}"
+    return f"the timer `{timer}`"
