@@ -48,7 +48,7 @@ class FileContext:
         findings: the findings of the parsers.
         document: the XML tree; `None` if the file is not XML.
         grammar: the grammar of a supported kind of XML file, otherwise `None`.
-        violations: where the file violates `grammar`.
+        violations: the violations of `grammar` in the file.
         older: whether the file is checked in the older dialect.
     """
 
@@ -172,8 +172,8 @@ class PropertiesContext:
 
     Attributes:
         value: the content of the file.
-        system: `None` if the file belongs to no system, as `variables`.
-        variables: the global variables of the translated system, by name.
+        system: the system of the file; `None` if the file belongs to no system.
+        variables: the global variables of the translated system, by name; `None` if the file belongs to no system.
         taken: the names of properties in the files that the system lists before this file, with these files.
     """
 

@@ -19,8 +19,8 @@ from roaml.rules.support.asynchronous import rewritten
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report ticks and halts that are not answered in the instant in which they arrive: the clock of the model stops
-    (docs/spec/semantics.md#time)."""
+    """Report ticks and halts that are not answered in the instant in which they arrive: the clock of the model cannot
+    advance before the answer (docs/spec/semantics.md#time)."""
     system = context.system
     if system is None:
         return
@@ -45,10 +45,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _beginning(behavior: Behavior, step: BehaviorStep, duty: Duty) -> Iterable[Handler]:
-    """The handlers where the wait begins.
+    """The handlers in which the wait begins.
 
-    This is the handler of the step. If the step is a decision on a goal, which has no content, these are the handlers
-    of the ticks that lead there.
+    This is the handler of `step`. If `step` receives the decision on a goal, whose handler has no content, these are
+    the handlers that lead to `step` and in which the tick or halt arrives.
     """
     if step.event is None or step.event.part is not ProtocolPart.GOAL_RESPONSE:
         return (step.handler,)

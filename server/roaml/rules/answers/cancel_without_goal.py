@@ -103,6 +103,6 @@ def _sent_in(behavior: Behavior, step: BehaviorStep) -> Iterator[RosSend]:
 RULE = Rule(
     "cancel-without-goal",
     Severity.WARNING,
-    "A client sends a cancel request where it has no accepted goal.",
+    "A client sends a cancel request while it has no accepted goal.",
     machine=check,
 )

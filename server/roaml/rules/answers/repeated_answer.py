@@ -71,7 +71,8 @@ def _twice(step: BehaviorStep, fault: Fault) -> bool:
 
 
 def _answers(fault: Fault) -> set[ProtocolEvent]:
-    """The events that answer the duty of a fault."""
+    """The events that are answers to the duty of a fault: for a tick or halt, a status and a confirmation; for a goal,
+    both decisions."""
     if fault.duty.kind is DutyKind.GOAL:
         parts = {ProtocolPart.GOAL_ACCEPTED, ProtocolPart.GOAL_REJECTED}
     elif fault.duty.kind.is_of_tree:
@@ -144,8 +145,8 @@ def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorSte
 
 
 def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statement | None) -> list[Statement]:
-    """The statements that a step may execute before `last`, in order; if `last` is `None`, all statements that it may
-    execute."""
+    """The statements that a step may execute before `statement`, in order; all statements that it may execute if
+    `statement` is `None`."""
     states = {state.id.value: state for state in behavior.chart.states if state.id}
     left = states.get(behavior.configurations[step.source].state)
     target = step.handler.targets[step.choice]
@@ -161,7 +162,7 @@ def _executed_before(behavior: Behavior, step: BehaviorStep, statement: Statemen
 
 def _append(executed: list[Statement], body: tuple[Statement, ...], last: Statement | None) -> bool:
     """Append the statements that a body executes before `last`, without those in other branches; return whether the
-    body ends first."""
+    body does not contain `last`."""
     for child in body:
         if child is last:
             return False

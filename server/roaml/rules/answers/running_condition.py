@@ -13,7 +13,7 @@ from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report conditions that return RUNNING: in BehaviorTree.CPP, only action and control nodes may."""
+    """Report conditions that return RUNNING, which BehaviorTree.CPP does not allow."""
     used = next((a for a in plugins(context) if a.instance is not None and a.instance.condition), None)
     if used is None:
         return
@@ -22,10 +22,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if "RUNNING" in answers:
                 message = (
                     "the tree uses this plugin as a `<Condition>`, and BehaviorTree.CPP throws an exception if a "
-                    "condition returns "
-                    "RUNNING; return SUCCESS or FAILURE at once, or make it an `<Action>`"
+                    "condition returns RUNNING; return SUCCESS or FAILURE at once, or use the plugin as an `<Action>`"
                 )
-                related = [Related(statement.element.name_span, "it returns RUNNING here")]
+                related = [Related(statement.element.name_span, "the plugin returns RUNNING here")]
                 yield RULE.at(_handler(context, statement), message, *_fixes(statement), related=related)
 
 

@@ -97,8 +97,8 @@ def _cancels(machine: Machine, bodies: Iterable[tuple[Statement, ...]], declarat
 
 
 def _fixes(context: MachineContext, chart: Chart, handler: Handler, declaration: Declaration) -> Iterator[Fix]:
-    """A fix that ends the goal as canceled. There is none unless exactly one variable of the chart holds ids of its
-    goals."""
+    """A fix that ends the goal as canceled. No fix is offered unless exactly one variable of the chart holds ids of
+    goals of the action."""
     ids = {
         statement.goal_id.tree.name
         for statement in chart.statements

@@ -37,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     root, name = context.machine.element, context.machine.name
     if not plugin.halted:
         if not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
-            message = f"the plugin does not handle halts, but `{parent}` halts it: it has no `<bt_halt>`"
+            message = f"the plugin has no `<bt_halt>`, but `{parent}` halts it; add a `<bt_halt>` to its states"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
         return
     if not is_spelled(context, HALT):
@@ -77,7 +77,7 @@ def _message(step: BehaviorStep, certain: bool) -> str:
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
-    """Report the states in which the plugin waits and that have no `<bt_halt>`."""
+    """Report the states without `<bt_halt>` in which the plugin waits."""
     for waiting in unhandled_states(context, behavior, automata, HALT):
         if waiting.needs_time:
             message = (

@@ -75,13 +75,13 @@ def _message(step: BehaviorStep, certain: bool) -> str:
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
-    """Report the states in which the plugin waits and that have no `<bt_tick>`."""
+    """Report the states without `<bt_tick>` in which the plugin waits."""
     for waiting in unhandled_states(context, behavior, automata, TICK):
         if waiting.needs_time:
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
             )
-            message += "clock waits until it returns; add a `<bt_tick>` that returns RUNNING"
+            message += "clock waits until a status is returned; add a `<bt_tick>` that returns RUNNING"
         else:
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "

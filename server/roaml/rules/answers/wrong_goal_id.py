@@ -38,8 +38,8 @@ specific."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report answers whose goal id differs from the id with which the goal arrived. They reach another client, or
-    none."""
+    """Report answers whose goal id differs from the id with which the goal arrived. These answers reach another client,
+    or no client."""
     for behavior in behaviors(context):
         reported: set[tuple[str, FaultKind]] = set()
         for step, fault in _faults(behavior).values():

@@ -24,7 +24,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     children = "no children" if most == 0 else f"{most} {'child' if most == 1 else 'children'}"
                     message = (
                         f"there is no child {name.value}: in the tree the node has {children}, and children are "
-                        "counted from 0"
+                        "numbered from 0"
                     )
                     yield RULE.at(name.span, message)
             else:
@@ -48,10 +48,10 @@ def _variable(context: MachineContext, chart: Chart, name: Name) -> Iterator[Fin
         if misspelled.declaration(context.machine, "data", name.value):
             return
         close = close_names(name.value, variables)
-        hint = did_you_mean(close) or "; write a whole number from 0 on or the name of an integer variable"
+        hint = did_you_mean(close) or "; write a whole number of at least 0 or the name of an integer variable"
         yield RULE.at(name.span, f"`{name.value}` is not the index of a child{hint}", *replacements(name.span, close))
     elif not (isinstance(type_, Unknown) or is_kind(type_, ScalarKind.INT)):
         yield RULE.at(name.span, f"the index of a child must be an integer, not `{type_}`")
 
 
-RULE = Rule("invalid-child", Severity.ERROR, "The index of a child does not exist.", machine=check)
+RULE = Rule("invalid-child", Severity.ERROR, "The index of a child is not valid.", machine=check)

@@ -36,7 +36,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def is_missing(element: Element, value: Value | None) -> bool:
-    """Whether an element has no value, and no part of it that could be an incomplete or misspelled value."""
+    """Whether an element has no value, and no attribute that may be an incomplete or misspelled value."""
     if value is not None or element.get("expr") is not None:
         return False
     return not misspelled.attribute(element, "expr", HL_SCXML.elements[element.name].attributes)

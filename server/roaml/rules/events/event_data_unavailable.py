@@ -17,7 +17,7 @@ from roaml.text import Span, TextEdit
 
 SCXML_VARIABLES = ("_name", "_sessionid", "_ioprocessors", "_x")
 DATA = {"_event": "_event.data", "_wrapped_result": "_wrapped_result.result"}
-"""Event variables whose fields are one level deeper."""
+"""The event variables whose fields are in a member, with the path of this member."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -48,7 +48,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     if name not in EVENT_VARIABLES:
         variables = context.typed.variables.get(place.chart.scope, {})
         close = close_names(name, [*known, *variables])
-        here = f"; `<{tag}>` knows {listing(known)}" if known and not close else ""
+        here = f"; `<{tag}>` provides {listing(known)}" if known and not close else ""
         message = f"there is no variable `{name}`{did_you_mean(close)}{here}"
         return RULE.at(problem.span, message, *replacements(problem.span, close))
     if place.part in (ValuePart.ENTRY, ValuePart.EXIT):

@@ -20,7 +20,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, re
 from roaml.scxml.names import TIMER_PREFIX, flag_of
 
 OF_THE_TREE = ("bt_tick", "bt_halt")
-"""Events that ticked and halted plugins in an older version; removed-bt-event reports them."""
+"""Events that ticked and halted plugins in an older version of the language; removed-bt-event reports them."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

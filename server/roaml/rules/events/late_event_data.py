@@ -87,7 +87,7 @@ def _names(tree: Expr) -> Iterator[Name]:
 
 def _message(value: TypedValue, name: str) -> str:
     newer = f"when `{name}` may already hold the data of a newer event"
-    advice = f"store what you need of `{name}` in a variable at the beginning of the body"
+    advice = f"store the needed data of `{name}` in variables at the beginning of the body"
     match value.use:
         case ValueUse.BRANCH:
             return f"this condition is evaluated in a later step, {newer}; {advice}"

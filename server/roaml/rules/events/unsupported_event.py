@@ -33,7 +33,9 @@ def _check(element: Element, attribute: Attribute, event: Name | None, text: str
         names = listing(event.value.split())
         # The copy for a wildcard is still reported, so the fix is not preferred then.
         split = Fix("Write one transition for each event", (_copies(element, event, text),), preferred="*" not in names)
-        yield RULE.at(event.span, f"a transition waits for exactly one event; write one for each of {names}", split)
+        yield RULE.at(
+            event.span, f"a transition waits for exactly one event; write one transition for each of {names}", split
+        )
     elif "*" in event.value:
         yield RULE.at(event.span, "wildcards are not supported; write one transition for each event")
 

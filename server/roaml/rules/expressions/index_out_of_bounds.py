@@ -86,7 +86,7 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
 
 
 def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """Report a `v.length` that is set to more than the array can hold."""
+    """Report an assignment to `v.length` of a negative number, or of more elements than the array can hold."""
     if not isinstance(tree, Member) or tree.name != "length":
         return
     array = _type_of(context, value.place, tree.object)
@@ -151,7 +151,7 @@ def _trigger(handler: Handler) -> tuple[object, ...]:
 
 
 def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds: bool) -> bool:
-    """Whether `expr` keeps the length of the array below `bound` if it is true (or false, if not `holds`)."""
+    """Whether the length of the array is below `bound` if the value of `expr` is `holds`."""
     match expr:
         case Unary(operator=UnaryOperator.NOT):
             return _limits(context, expr.operand, array, bound, not holds)

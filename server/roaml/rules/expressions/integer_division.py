@@ -26,9 +26,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         rounded = {span for call in _whole(value.value.tree) for span in _divisions(call)} if problems else set()
         for problem in problems:
             if problem.span not in rounded:
-                message = "`/` of integers is a real number (`7 / 2` is 3.5)"
+                message = "the quotient of integers is a real number (`7 / 2` is 3.5)"
                 yield RULE.at(
-                    problem.span, f"{message}; for an integer write `Math.floor(a / b)`", *_fixes(value.value, problem)
+                    problem.span, f"{message}; for an integer, write `Math.floor(a / b)`", *_fixes(value.value, problem)
                 )
 
 
@@ -51,4 +51,4 @@ def _fixes(expression: Expression, problem: IntegerDivision) -> Iterator[Fix]:
             yield Fix("Round down with `Math.floor`", edits, preferred=False)
 
 
-RULE = Rule("integer-division", Severity.INFORMATION, "The division of two integers is a real number.", machine=check)
+RULE = Rule("integer-division", Severity.INFORMATION, "The quotient of two integers is a real number.", machine=check)

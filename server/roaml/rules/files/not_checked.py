@@ -24,7 +24,7 @@ from roaml.scxml.names import topic_message
 from roaml.text import Span
 
 _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
-"""What a file may contain that cannot be read and is listed as a plugin: a plugin with any name."""
+"""The facts that an unreadable file may contain if a system lists it as a plugin: a plugin with any name."""
 _ANY_FACT: set[Fact] = {(GapAct.ANYTHING, None)}
 _MAX_NAMED_QUESTIONS = 3
 """The maximum number of questions that a message names."""
@@ -80,11 +80,11 @@ def _unknown_types(context: MachineContext) -> Iterator[Finding]:
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """A question about the system whose answer is not in its readable part.
+    """A question about a system that its readable parts do not answer.
 
     Attributes:
         act: what an automaton would have to do; `None` if the question is whether a variable of the translation exists.
-        name: of the plugin, topic, service, action, event or variable in question.
+        name: the name of the plugin, topic, service, action, event or variable in question.
         text: the question as a clause.
     """
 
@@ -165,7 +165,7 @@ def _questions(system: System, interface: Callable[[str, str], InterfaceType | N
     for variable, ports in system.blackboard.items():
         is_read = any(bound.port.read for bound in ports)
         if not any(bound.port.written for bound in ports):
-            does = "writes" if is_read else "writes and which reads"
+            does = "writes" if is_read else "writes and which node reads"
             yield _Question(GapAct.VARIABLE, variable, f"which node {does} the blackboard variable `{variable}`")
         elif not is_read:
             yield _Question(GapAct.VARIABLE, variable, f"which node reads the blackboard variable `{variable}`")

@@ -45,7 +45,7 @@ def _other_machine(context: SystemContext, listed: ListedFile, src: Name) -> Ite
     plugins = list(same) if ticked else []
     reason = ""
     if plugins:  # otherwise tree-element-in-node reports it
-        reason = "a plugin of the behavior tree and listed as one, so it cannot be a node; name the file of the node"
+        reason = "also listed as a plugin of the behavior tree, so it cannot be a node; name the file of the node"
     elif section is SystemSection.BEHAVIOR_TREE and listed.path in system.idle_plugins:
         reason = "not a plugin of the behavior tree: it has no `<bt_tick>`; name the file of the plugin"
     if reason:
@@ -68,4 +68,4 @@ def _other_type(listed: ListedFile, files: Iterable[ListedFile]) -> Iterator[Fix
         yield Fix(f"Change the type to `{type_}`", edits, preferred=not second_tree)
 
 
-RULE = Rule("wrong-file-kind", Severity.ERROR, "A system lists a file as a kind of file that it is not.", system=check)
+RULE = Rule("wrong-file-kind", Severity.ERROR, "A system lists a file with the wrong kind.", system=check)

@@ -60,8 +60,8 @@ def _conflict(context: MachineContext, system: System, declaration: Declaration,
 
 
 def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tuple[str, tuple[Related, ...], bool]]:
-    """The types of the other declarations: first those on the other side, which take precedence, then those on the same
-    side. Each has its related places, and whether it is on the same side."""
+    """The types in all declarations of `channel`, each with its related places, and whether it is on the side of
+    `kind`, for example a publisher. Types on the other side come first, because they take precedence."""
     other = [endpoint for endpoint in channel.endpoints if endpoint.use.kind is other_kind(kind)]
     is_clock = kind is SymbolKind.SUBSCRIBER and channel.name == CLOCK_TOPIC and system.has_timer
     if is_clock:
@@ -85,7 +85,7 @@ def _clash(context: MachineContext, mine: str, other: str) -> str:
 
 
 def _known(context: MachineContext, kind: SymbolKind, *types: str) -> bool:
-    """Whether all these types exist; unknown-ros-type reports those that do not."""
+    """Whether all of `types` exist; unknown-ros-type reports those that do not."""
     return not any(isinstance(context.interface(INTERFACE_KINDS[kind], type_), NotFound) for type_ in types)
 
 

@@ -46,4 +46,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(statement.element.name_span, message, related=related)
 
 
-RULE = Rule("unhandled-cancel", Severity.WARNING, "A client cancels a goal, but the server rejects it.", machine=check)
+RULE = Rule(
+    "unhandled-cancel", Severity.WARNING, "A client cancels a goal, but the server rejects the request.", machine=check
+)

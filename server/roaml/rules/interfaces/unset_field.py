@@ -22,8 +22,8 @@ PREFIXES = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapp
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report fields that are read and never set. The reference translator omits some fields, which therefore need not
-    be set and are empty."""
+    """Report fields that are read and never set. Only fields that need not be set are checked: the reference translator
+    omits these fields, so they are empty."""
     if context.system is None:
         return
     for value in context.typed.values:
@@ -70,4 +70,4 @@ def _sent(channel: Channel, part: ProtocolPart) -> Iterator[set[str]]:
         yield {field.name for field in dict(endpoint.use.fields).get(part, ())}
 
 
-RULE = Rule("unset-field", Severity.WARNING, "A field is read that no machine sets.", machine=check)
+RULE = Rule("unset-field", Severity.WARNING, "No machine sets a field that is read.", machine=check)

@@ -29,8 +29,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
 def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
     """The uses with a type other than that of the entry, each with the use that determines the type of the entry.
 
-    The first port determines it, unless most of the others agree on another type. An entry created as a string accepts
-    other types, but only values of one type.
+    The first port determines the type of the entry, unless most ports agree on another type. If the first port is a
+    string, ports of other types may use the entry, but values of only one type may be written to it.
     """
     first = _first(typed)
     for use in typed:

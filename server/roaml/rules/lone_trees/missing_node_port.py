@@ -18,7 +18,7 @@ from roaml.rules.support.forest import forest_of
 from roaml.text import Span, TextEdit
 
 _OPTIONAL = re.compile(r"\boptional|\bif (?:it is |this is )?(?:not|un)|\bdefault|\bempty\b", re.I)
-"""Texts of ports that need not be set, although a model gives them no default."""
+"""Matches descriptions of ports that need not be set, although the model gives them no default."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

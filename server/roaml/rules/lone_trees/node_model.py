@@ -40,7 +40,8 @@ def _subtree(forest: Forest, model: NodeModel) -> Iterator[Finding]:
 
 
 def _type(port: PortModel) -> Iterator[Finding]:
-    """Report a misspelled type. Programs have types of their own, which have longer names or several parts."""
+    """Report a misspelled type. Types that a program defines are not reported: their names are longer or have several
+    parts."""
     attribute = port.element.get("type")
     written = port.type.strip()
     if attribute is None or not written.isascii() or not written.isalpha() or not written.islower():

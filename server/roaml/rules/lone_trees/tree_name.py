@@ -77,7 +77,9 @@ def _instances(tree: Tree) -> Iterator[Finding]:
 def _models(context: TreeContext) -> Iterator[Finding]:
     lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
     for extra in lists[1:]:
-        message = "only one `<TreeNodesModel>` is allowed; BehaviorTree.CPP reads only the first; move the models there"
+        message = (
+            "BehaviorTree.CPP reads only the first `<TreeNodesModel>` of a file; move these models to the first one"
+        )
         related = [Related(lists[0].name_span, "the first `<TreeNodesModel>`")]
         yield RULE.at(extra.name_span, message, related=related, severity=Severity.WARNING)
     first: dict[str, Name] = {}
@@ -88,7 +90,7 @@ def _models(context: TreeContext) -> Iterator[Finding]:
         earlier = first.setdefault(model.id.value, model.id)
         if earlier is not model.id:
             drop = remove(context.document, model.element)
-            message = f"`{model.id.value}` is described twice; remove one of the descriptions"
+            message = f"`{model.id.value}` is described twice; remove a description"
             related = [Related(earlier.span, "the first description")]
             yield RULE.at(model.id.span, message, drop, related=related, severity=Severity.WARNING)
         ports: dict[str, Name] = {}
@@ -96,7 +98,7 @@ def _models(context: TreeContext) -> Iterator[Finding]:
             if port.name is None:
                 continue
             if ports.setdefault(port.name.value, port.name) is not port.name:
-                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove one of them"
+                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove a description"
                 related = [Related(ports[port.name.value].span, "the first description")]
                 yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
             yield from _port(port.name)
@@ -113,4 +115,4 @@ def _port(name: Name) -> Iterator[Finding]:
         yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a port")
 
 
-RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP rejects a name, or the name is not unique.", tree=check)
+RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP refuses a name, or the name is not unique.", tree=check)

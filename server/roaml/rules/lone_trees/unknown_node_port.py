@@ -63,7 +63,7 @@ def _identifier(node: TreeNode) -> Iterator[Finding]:
     if node.plugin is None:
         for attribute in node.element.attributes:
             if attribute.name != "ID" and are_similar(attribute.name, "ID"):
-                message = f"`<{node.element.name}>` needs the attribute `ID`; did you mean it by `{attribute.name}`?"
+                message = f"`<{node.element.name}>` has no attribute `{attribute.name}`; did you mean `ID`?"
                 yield RULE.at(attribute.name_span, message, *replacements(attribute.name_span, ("ID",)))
 
 

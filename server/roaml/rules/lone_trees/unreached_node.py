@@ -49,7 +49,7 @@ def _of_switch(node: TreeNode) -> Iterator[Finding]:
 
 
 def _case(text: str) -> float | str:
-    """The value that the library compares: a number if the text is one."""
+    """The value that the library compares: a number if the text is a number, otherwise the text."""
     try:
         return float(text)
     except ValueError:

@@ -10,5 +10,5 @@ from roaml.rules.support.property_problems import problem_rule
 RULE = problem_rule(
     ProblemKind.FALSE_AT_START,
     Severity.WARNING,
-    "A `universality` requires an event at all times.",
+    "A property of the pattern `universality` requires an event at all times.",
 )

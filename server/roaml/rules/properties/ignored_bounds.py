@@ -12,7 +12,9 @@ from roaml.model.property_links import clock_step
 from roaml.rules.rule import PropertiesContext, Rule
 from roaml.smc.forms import BOUNDS, faults_in
 
-TIME = "`verify` cannot decide this: the model counts only steps; for times, compare the clock's `sec` in the formula"
+TIME = (
+    "`verify` cannot decide this: the model counts only steps; to limit the time, use the clock's `sec` in the formula"
+)
 REWARD = "`verify` cannot decide this: the model has no rewards"
 
 

@@ -50,7 +50,7 @@ def in_xml(file: LinkedFile) -> Iterator[Finding]:
 
 
 def _reported(places: Sequence[Span], message: str) -> Iterator[Finding]:
-    """One finding for all places of a file."""
+    """One finding for all places in a file, reported at the first place."""
     if places:
         more = len(places) - 1
         also = f" (also at {more} more {'property' if more == 1 else 'properties'} of this file)" if more else ""

@@ -47,7 +47,7 @@ def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Fin
     elif targets:
         beside = next((child for child in children if child.name in HL_SCXML.groups["Executable"]), None)
         if beside is not None:
-            message = "only `<target>` is allowed beside `<target>`; move this into each `<target>` that needs it"
+            message = f"`<{beside.name}>` is not allowed beside `<target>`; move it into each `<target>` that needs it"
             yield RULE.at(beside.name_span, message)
 
 

@@ -69,4 +69,6 @@ def _plain_references(document: Document, root: Element) -> Iterator[Name]:
                 yield Name(word[0], source.span(*word.span()))
 
 
-RULE = Rule("undefined-state", Severity.ERROR, "A state that is referred to does not exist.", machine=check, plain=True)
+RULE = Rule(
+    "undefined-state", Severity.ERROR, "A name refers to a state that does not exist.", machine=check, plain=True
+)

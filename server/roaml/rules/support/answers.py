@@ -33,7 +33,8 @@ SENT = {
     DutyKind.REQUEST: ProtocolPart.RESPONSE,
     DutyKind.RESULT: ProtocolPart.RESULT,
 }
-"""The kind of duty -> the event that answers it. The decision on a goal is missing: it has two events."""
+"""The kind of duty -> the event that answers it. The decision on a goal is not included, because two events can answer
+it."""
 _HANDLED_BY = {DutyKind.TICK: (ProtocolPart.BT_TICK, "bt_tick"), DutyKind.HALT: (ProtocolPart.BT_HALT, "bt_halt")}
 ELEMENTS = {
     ProtocolPart.BT_STATUS: ("bt_return_status",),
@@ -66,7 +67,7 @@ def plugins(context: MachineContext) -> list[SystemAutomaton]:
 
 
 def is_spelled(context: MachineContext, duty: Duty) -> bool:
-    """Whether no unknown element of the machine is probably a misspelled answer to a duty."""
+    """Whether the answers to a duty are probably spelled correctly: no unknown element of the machine resembles one."""
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     elements = list(context.machine.element.walk())
     return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
@@ -163,7 +164,7 @@ _ASKS_ONCE = _SWITCHES | {
     *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
     *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
 }
-"""Nodes that do not tick a child that has ended again until they have ended themselves (docs/spec/nodes.md)."""
+"""Nodes that do not tick an ended child again until they have ended themselves (docs/spec/nodes.md)."""
 _PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
 """Nodes that halt their child only when they are halted."""
 _INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}

@@ -98,7 +98,8 @@ def named_by_ports(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutom
 
 
 def port_span(node: TreeNode, key: str) -> Span:
-    """The value of the port of a node; the name of the node if the value is written elsewhere, as a default is."""
+    """The value of the port of a node; the name of the node if the value is written elsewhere, for example as a
+    default."""
     setting = next((setting for setting in node.ports if setting.key.value == key), None)
     if setting is not None:
         return setting.value.span
@@ -106,7 +107,8 @@ def port_span(node: TreeNode, key: str) -> Span:
 
 
 def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceUse | None:
-    """The outline of a declaration in an automaton; `None` if there is none, as for a declaration without a handle."""
+    """The outline of a declaration in an automaton; `None` if there is none, for example because the declaration has no
+    handle."""
     return automaton.outline.use(declaration.kind, declaration.handle.value if declaration.handle else "")
 
 

@@ -14,8 +14,8 @@ from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report variables that are written but not read. A variable that a property observes is read.
-    blackboard-never-written reports variables that are not written either."""
+    """Report variables that are written but not read. Variables that a property observes are not reported.
+    blackboard-never-written reports variables that are neither read nor written."""
     system = context.system
     if system is None:
         return

@@ -19,7 +19,7 @@ CONSTANT = (ValueUse.INITIAL, ValueUse.BOUND)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report places in which a port must hold a constant, while the tree binds it to the blackboard
+    """Report places in which a port must hold a constant, but the tree binds the port to the blackboard
     (docs/spec/plugins.md#get-input)."""
     bound = _bound(context)
     if not bound:
@@ -58,11 +58,11 @@ def _what(declaration: Declaration) -> str:
 def _reason(context: MachineContext, value: TypedValue) -> str:
     handler = value.place.handler
     if value.use in CONSTANT:
-        return "an initial value must be constant"
+        return "initial values and bounds must be constant"
     if handler is None:
         return f"the blackboard cannot be read in `<{value.place.part}>`; read it in the body of a transition"
     if handler.is_probabilistic:
-        return "the blackboard cannot be read in a transition with several targets; read it in the transition before"
+        return "the blackboard cannot be read in a transition with several targets; read it in an earlier transition"
     names = {
         node.name
         for other in context.typed.values
@@ -76,4 +76,9 @@ def _reason(context: MachineContext, value: TypedValue) -> str:
     return ""
 
 
-RULE = Rule("blackboard-read", Severity.ERROR, "The blackboard is read where it cannot be read.", machine=check)
+RULE = Rule(
+    "blackboard-read",
+    Severity.ERROR,
+    "The blackboard is read in a place where reading it is not possible.",
+    machine=check,
+)

@@ -64,7 +64,8 @@ def _reason(limits: PortLimits, number: float, children: int) -> str:
     if limits.counts_children:
         # `node-configuration` reports numbers that are too large.
         is_useful = number >= 1 or -max(children, 1) <= number <= -1
-        return "" if is_useful else "at least 1, or from -1 (all children) downwards"
+        lowest = f"from -{children} to " if children > 1 else ""
+        return "" if is_useful else f"at least 1, or {lowest}-1 (all children)"
     if limits.minimum is None or number in limits.special:
         return ""
     if number < limits.minimum or (limits.is_exclusive and number == limits.minimum):
@@ -102,4 +103,4 @@ def _number(port: Port, text: str) -> float | None:
     return None if math.isnan(number) else number
 
 
-RULE = Rule("port-range", Severity.WARNING, "A number is not useful for a port.", tree=check)
+RULE = Rule("port-range", Severity.WARNING, "A port is set to a number that has no useful effect.", tree=check)

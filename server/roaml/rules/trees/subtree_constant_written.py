@@ -33,5 +33,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 RULE = Rule(
-    "subtree-constant-written", Severity.ERROR, "A subtree writes a variable that is a constant in it.", tree=check
+    "subtree-constant-written",
+    Severity.ERROR,
+    "A subtree writes a variable for which a constant is passed.",
+    tree=check,
 )

@@ -221,7 +221,8 @@ def _main(context: TreeContext) -> Iterator[Finding]:
 
 
 def _main_of_forest(context: TreeContext, forest: Forest, main: Name) -> Iterator[Finding]:
-    """Report a tree to execute that does not exist. Unlike in a system, BehaviorTree.CPP never executes another one."""
+    """Report a tree to execute that does not exist. Unlike in a system, BehaviorTree.CPP never executes another tree
+    instead."""
     if main.value in forest.trees or any(tree.id and tree.id.value in REFUSED_NAMES for tree in context.file.trees):
         return  # the tree may be one whose name is refused, which is reported
     trees = context.file.trees

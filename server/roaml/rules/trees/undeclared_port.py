@@ -69,4 +69,4 @@ def _is_misspelled_declaration(machine: Machine, key: str) -> bool:
     return any(misspelled.declaration(machine, tag, key) for tag in tags)
 
 
-RULE = Rule("undeclared-port", Severity.ERROR, "A port is used that is not declared.", machine=check)
+RULE = Rule("undeclared-port", Severity.ERROR, "A port is used but not declared.", machine=check)

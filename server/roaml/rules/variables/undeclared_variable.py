@@ -148,4 +148,4 @@ def declaration(context: MachineContext, chart: Chart, name: str, type_: str, va
     return Fix(f"Declare `{name}` as {type_}", (edit,), preferred=False)
 
 
-RULE = Rule("undeclared-variable", Severity.ERROR, "A variable is used that is not declared.", machine=check)
+RULE = Rule("undeclared-variable", Severity.ERROR, "A variable is used but not declared.", machine=check)
