@@ -624,7 +624,7 @@ def test_constants_without_value_and_other_kinds_of_models(command: Command, tmp
     done = command("verify", write(tmp_path, written))
     assert (done.status, "the constant `N` has no value" in done.err) == (1, True)
     done = command("verify", write(tmp_path, coin(type_="ctmc")))
-    assert (done.status, "models of type ctmc are not supported" in done.err) == (1, True)
+    assert (done.status, "models of type `ctmc` are not supported" in done.err) == (1, True)
     written = coin()
     del written["variables"][0]["initial-value"]
     done = command("verify", write(tmp_path, written))
@@ -673,7 +673,7 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--confidence", "0"), "between 0 and 1"),
         (("--max-traces", "0"), "of at least 1"),
         (("--seed", "-1"), "from 0"),
-        (("--method", "sprt"), "not compared with a number"),
+        (("--method", "sprt"), "a sequential test needs a number to compare with; set an expectation for `heads`"),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),
     ],

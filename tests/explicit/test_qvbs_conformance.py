@@ -29,16 +29,16 @@ STORM = 2e-6
 it ended at 0.3828113."""
 REFUSED = {
     "bluetooth": "no initial value",
-    "brp-pta": "type pta",
-    "cluster": "type ctmc",
-    "embedded": "type ctmc",
-    "ftwc": "type ma",
+    "brp-pta": "type `pta`",
+    "cluster": "type `ctmc`",
+    "embedded": "type `ctmc`",
+    "ftwc": "type `ma`",
     "herman": "no initial value",
     "herman#2": "no initial value",
-    "jobs": "type ma",
-    "polling": "type ctmc",
-    "repudiation_malicious": "type pta",
-    "stream": "type ma",
+    "jobs": "type `ma`",
+    "polling": "type `ctmc`",
+    "repudiation_malicious": "type `pta`",
+    "stream": "type `ma`",
 }
 
 

@@ -6,5 +6,5 @@
 - `solver`: components, end components and certified bounds of values (compiled by Cython).
 - `space`: runs a search within limits.
 - `values`: the values of a question: minimum, maximum and uniform value.
-- `path`: the shortest trace to a state, as a recording for a story.
+- `path`: the shortest trace to a state, as a `Recording`.
 """

@@ -22,7 +22,8 @@ MAX_ROUNDS = 200
 MAX_STEPS = 1e12
 """The maximum mean number of steps; beyond it, rounding errors would invalidate the proof."""
 IMPROVEMENT = 1e-12
-"""The relative improvement that a choice must bring to replace another one. Smaller ones are due to rounding."""
+"""The relative improvement that a choice must bring to replace another one. Smaller improvements are due to
+rounding."""
 ROUNDING = 4e-16
 """Twice the relative rounding error of an addition and a multiplication."""
 
@@ -65,7 +66,7 @@ class SmallProcess:
         self.counts_steps = 0
 
     def add_entry(self, target: int, chance: float) -> None:
-        """Let the choice that is being built lead to a state with a probability."""
+        """Add a successor state and its probability to the choice that is being built."""
         self.target[self.entries] = target
         self.chance[self.entries] = chance
         self.entries += 1

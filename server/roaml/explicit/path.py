@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shortest trace to a state, as a recording for a story."""
+"""The shortest trace to a state, as a `Recording`."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def path_to(space: Space, state: int) -> list[PathStep]:
 
 
 def _first(space: Space, verdict: int) -> int | None:
-    """The state with the smallest number that decides the goal, or in which a trace ends, with this verdict."""
+    """The first state in which the goal is decided, or a trace ends, with this verdict; `None` if there is none."""
     labels = bytes(memoryview(space.search.label)[: space.search.expanded])
     is_stuck = space.compiled_property.question.is_stuck
     matching = bytes(label for label in range(256) if _verdict(label, is_stuck) == verdict)

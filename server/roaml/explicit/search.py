@@ -6,7 +6,7 @@
   while its value does not change. If a value does not fit, all states are packed again.
 - A hash table with open addressing contains the numbers of the states, each with half of the hash of the state.
 - The choices of a state are a sequence of 32-bit words. A word that is not negative is a choice with one destination.
-  Other choices have n destinations, a weight other than 1, or a reward. Such a choice consists of `-n`, the number of
+  Other choices have n destinations, a weight other than 1, or a reward. These choices consist of `-n`, the number of
   its weight, the number of its reward, and for each destination a state and the number of its probability. These
   numbers index `reals`.
 - When the choices of a state are computed, the state gets a *label*, which contains the status of the goal there.
@@ -199,7 +199,7 @@ class StateSearch:
         return [self._decoded(state, cell) for cell in range(self.cells)]
 
     def number(self, index: int) -> float:
-        """The weight, reward or probability with a number."""
+        """The weight, reward or probability at an index of `reals`."""
         value: float = self.reals[index]
         return value
 
@@ -266,7 +266,7 @@ class StateSearch:
         return problem
 
     def visit(self, state: int) -> None:
-        """Restore the kernel to the state with a number."""
+        """Restore the kernel to the state with the number `state`."""
         self._visit(state)
 
     # ------------------------------------------------------------ packing
@@ -515,7 +515,7 @@ class StateSearch:
         return state
 
     def _used(self) -> int:
-        """The bytes in use. Memory that was reserved but never written does not count."""
+        """The bytes in use. Memory that was reserved but never written is not included."""
         return self.count * (8 * self.words + 13) + 8 * (self.table_mask + 1) + 4 * self.code_end + 8 * self.real_count
 
     def _make_room(self) -> None:
@@ -542,7 +542,7 @@ class StateSearch:
         return 0
 
     def _number(self, value: float) -> int:
-        """The index of a number in `reals`."""
+        """The index of a number in `reals`; a new number is added."""
         known = self.number_of.get(value)
         if known is not None:
             return known
@@ -558,8 +558,8 @@ class StateSearch:
     # ------------------------------------------------------------ a state
 
     def _visit(self, state: int) -> None:
-        """Restore the kernel to the state with a number, and update what is enabled. Only cells that differ from those
-        of the previous state are examined."""
+        """Restore the kernel to the state with the number `state`, and update what is enabled. Only cells that differ
+        from those of the previous state are examined."""
         first = state * self.words
         moved = 0
         for w in range(self.words):

@@ -51,7 +51,7 @@ class Solver:
         mode: MAXIMUM, MINIMUM or MEAN.
 
     Attributes:
-        most_work: the maximum number of additions for all components. After that, bounds stay as wide as they are.
+        most_work: the maximum number of additions for all components. After that, bounds are not narrowed further.
         has_ended_early: whether some bounds are wider than intended.
         is_unclear: whether the minimum is unknown because of negative rewards in an end component.
     """
@@ -450,7 +450,7 @@ class Solver:
             self._fix_all(first, last, 1.0 if self._accepted(first, last) != 0 else 0.0)
 
     def _accepted(self, first: int, last: int) -> int:
-        """Whether paths that visit all states of a range again and again are accepted."""
+        """Whether paths that visit all states of a range infinitely often are accepted."""
         if self.accepts == NOTHING:
             return 0
         label = self.label[self.order[first]]
@@ -618,7 +618,7 @@ class Solver:
 
     def _best(self, state: int, values: Any, own: int) -> float:
         """The value of the best choice of a state. Choices that do not leave the merged state `own` are ignored. If no
-        choice is left, the value is `INFINITE` or its opposite."""
+        choice is left, the value is `INFINITE` or `-INFINITE`."""
         best = INFINITE if self.mode == MINIMUM else -INFINITE
         total = 0.0
         weights = 0.0
@@ -664,8 +664,8 @@ class Solver:
         return best
 
     def _step(self, first: int, last: int, values: Any) -> float:
-        """Compute all values of a component once; return the greatest relative change. Afterwards `rises` is whether a
-        value has become greater, and `falls` whether a value has become smaller."""
+        """Compute all values of a component once; return the greatest relative change. Afterwards `rises` states
+        whether a value has become greater, and `falls` whether a value has become smaller."""
         self.rises = 0
         self.falls = 0
         change = 0.0
@@ -764,8 +764,8 @@ class Solver:
                 self.high[state] = self.high[self.group[state]]
 
     def _direct_work(self, first: int, last: int) -> int:
-        """The number of additions of value iteration after which a component is solved directly, which takes about as
-        long."""
+        """The number of additions of value iteration after which a component is solved directly; the direct solution
+        takes about as long."""
         count = last - first
         return count * count * count // 16 + 1000 * count
 

@@ -24,7 +24,7 @@ Watch: TypeAlias = Callable[[int, int], None]
 STRIDE = 16_384
 """The number of states that are expanded between two calls of a watch."""
 SHORT_STRIDE = 64
-"""The same, if the number of transitions is limited."""
+"""The number of states that are expanded between two calls of a watch if the number of transitions is limited."""
 MAX_STATES = 0x7FFFFFF0
 MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state. Exploring this many takes some seconds."""

@@ -15,9 +15,9 @@ from roaml.smc.statistics import Bounds
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
 NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
 _OPEN_SHARE = 1e-6
-"""Up to this probability, traces that the end of the model's time leaves undecided are neglected."""
+"""The maximum probability of traces that the end of the model's time leaves undecided and that are neglected."""
 
-_TOO_MUCH_WORK = "its values need too much work"
+_TOO_MUCH_WORK = "computing its values takes too many operations"
 
 
 class NoValueError(Exception):
@@ -62,7 +62,7 @@ class _Question:
 
     def values(self) -> GoalValues:
         if sum(bound == AT_END for bound in self.goal.lower) > 1:
-            raise NoValueError("several `F G` in one property are decided only by traces")
+            raise NoValueError("a property with several `F G` can only be estimated from traces")
         if any(bound == AT_END for bound in self.goal.lower):
             _, share = self.solver(MAXIMUM).probability(UNKNOWN, codes.OPEN, NOTHING)
             if share > _OPEN_SHARE:

@@ -28,7 +28,8 @@ _COMMON_NAMES = frozenset(
         *("GoalUpdated", "InitialPoseReceived"),
     )
 )
-"""Names that are also common in other programs: such a name alone does not show that the library is used."""
+"""Names of library nodes that are also common in other programs: their use alone does not show that the library is
+used."""
 
 OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))

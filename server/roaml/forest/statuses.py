@@ -28,7 +28,7 @@ _CHILD_FIRST = (
     *("Sequence", "SequenceWithMemory", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse"),
     *("WhileDoElse", "PipelineSequence", "RecoveryNode"),
 )
-"""Nodes whose first tick ticks their first child and returns RUNNING if the child returns it."""
+"""The nodes that tick their first child at their first tick, and return RUNNING if this child returns RUNNING."""
 _TRANSPARENT = (
     *("Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout"),
     "KeepRunningUntilFailure",

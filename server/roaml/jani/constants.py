@@ -33,9 +33,9 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not name or not equals or not value:
-            raise ValueError(f"a constant must have the form N=20, not '{text}'")
+            raise ValueError(f"a constant must have the form `N=20`, not `{text}`")
         if name in given:
-            raise ValueError(f"the constant {name} is given twice")
+            raise ValueError(f"the constant `{name}` is given twice")
         given[name] = value
     if not given:
         return model
@@ -44,11 +44,11 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
         if name not in known:
             close = nearest_name(name, known)
             hint = (
-                f"did you mean {close}?" if close else f"the constants of the model are: {', '.join(known) or 'none'}"
+                f"did you mean `{close}`?" if close else f"the constants of the model are: {', '.join(known) or 'none'}"
             )
-            raise ValueError(f"there is no constant {name}; {hint}")
+            raise ValueError(f"there is no constant `{name}`; {hint}")
         if known[name].value is not None:
-            raise ValueError(f"the constant {name} has a value in the model, which --constant cannot change")
+            raise ValueError(f"the constant `{name}` has a value in the model, which --constant cannot change")
     values: dict[str, Value] = {}
     constants = []
     for constant in model.constants:
@@ -78,14 +78,14 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
     if value is None:
         type_phrase = _TYPE_PHRASES.get(base) if isinstance(base, BasicType) else None
         if type_phrase is None:
-            raise ValueError(f"the constant {constant.name} has a type whose values --constant does not support")
-        raise ValueError(f"the constant {constant.name} must be {type_phrase}, not '{text}'")
+            raise ValueError(f"the constant `{constant.name}` has a type whose values --constant does not support")
+        raise ValueError(f"the constant `{constant.name}` must be {type_phrase}, not `{text}`")
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):
             bound = None if end is None else _number(end, known)
             if bound is not None and (value.value < bound if is_lower else value.value > bound):
                 side = "at least" if is_lower else "at most"
-                raise ValueError(f"the constant {constant.name} must be {side} {bound:g}, not {text}")
+                raise ValueError(f"the constant `{constant.name}` must be {side} {bound:g}, not `{text}`")
     return value
 
 

@@ -113,7 +113,7 @@ class Inference:
         self.notes = Notes()
 
     def expect(self, node: Formula, kind: Kind, target: Type, subject: str) -> None:
-        """Report `node` if its kind or type `kind` does not fit `target`. `subject` is a phrase for it in the
+        """Report `node` if its kind or type `kind` does not fit `target`. `subject` is a phrase for `node` in the
         message."""
         if isinstance(kind, PathKind):
             self.notes.type(span_of(node), f"{subject} cannot be a formula about paths; use it in `Pmin` or `Pmax`")

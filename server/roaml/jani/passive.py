@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Removes passive automata from a model. They only take part in steps of other automata, and only write variables that
-no other automaton reads, so the model behaves in the same way without them."""
+"""Removes passive automata from a model. A passive automaton only takes part in steps of other automata, and only
+writes variables that no other automaton reads, so the other automata behave in the same way without it."""
 
 from __future__ import annotations
 

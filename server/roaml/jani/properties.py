@@ -70,8 +70,8 @@ class BinaryPathOperator(enum.Enum):
     """A binary operator on paths.
 
     `U`: the right operand holds at some time, and the left operand holds until then. `W`: the same, or the left operand
-    always holds. `R`: the right operand holds until, and at the time when, the left operand holds, or it always holds.
-    R is a derived operator.
+    always holds. `R`: the right operand holds until, and at the time when, the left operand holds, or the right operand
+    always holds. R is a derived operator.
     """
 
     UNTIL = "U"

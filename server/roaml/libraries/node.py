@@ -25,7 +25,7 @@ class PortLimits:
     Attributes:
         minimum: the least useful number; `None` if there is no minimum.
         is_exclusive: whether `minimum` itself is not useful.
-        special: the numbers below the minimum that have a meaning of their own.
+        special: the numbers below the minimum that have a special meaning.
         counts_children: whether the number is a number of children: at least 1, or at most -1, where -1 means all
             children, -2 all except one, and so on.
         at_most, less_than: the name of another port whose number is an upper bound, or "".
@@ -49,7 +49,7 @@ class Port:
         type: the C++ type as written, such as `unsigned int`; "" if it is not known. `script` is the script language.
         default: the value if the port is not set; `None` if the port has no default.
         required: whether the node needs a value; known only for ports of libraries and of subtrees.
-        alias_of: the port of which this is another name in trees of systems, or "".
+        alias_of: the port for which this port is another name in trees of systems, or "".
         system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
         limits: the useful numbers; `None` if all are useful.
     """
@@ -80,8 +80,8 @@ class Node:
         until: the first version that no longer has the node, or "".
         succeeds: whether it always returns SUCCESS in trees that set its ports as the library's own trees do.
         running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
-        program_only: whether its translation exists only for trees whose nodes are executed as by the library
-            (docs/spec/nodes.md#library).
+        program_only: whether its translation exists only for trees whose nodes are executed as the library executes
+            them (docs/spec/nodes.md#library).
         in_systems: how the node differs in trees of systems, as a sentence, or "".
     """
 

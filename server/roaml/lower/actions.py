@@ -86,7 +86,7 @@ def _to_client(
     action: Channel, event: Callable[[SystemAutomaton], ScxmlEvent], params: tuple[Param, ...], origin: Location
 ) -> Body:
     """The statements that send an event to the client with the stored goal id. `event` returns the event for a client.
-    They are empty for an action without clients, which has a handler, too."""
+    There are none for an action without clients, which also has a handler."""
     branches = tuple(
         Branch(equal(name(GOAL_ID), integer(number)), (Send(event(client.automaton), params, origin),), origin)
         for number, client in enumerate(action.users)

@@ -2,9 +2,9 @@
 """Stores which goals an automaton of an action server executes, for the actions whose cancel requests it handles
 (docs/spec/plain-scxml.md#cancel).
 
-For each client that cancels goals, a boolean variable states whether the automaton executes the goal of the client. The
-server executes a goal from its acceptance, a thread from its own start, until the automaton ends the goal or passes it
-on to a thread.
+For each client that cancels goals, a boolean variable states whether the automaton executes the goal of the client. A
+server executes a goal from its acceptance, and a thread executes it from the start of the thread, until the automaton
+ends the goal or passes it on to a thread.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ _NEVER_TICK_ENDED = frozenset(
         *("RecoveryNode", *(node.name for node in library(BEHAVIORTREE_CPP).nodes.values() if node.children == (1, 1))),
     )
 )
-"""The nodes that never tick a child that has ended before they reset it."""
+"""The nodes that always reset a child that has ended before they tick it again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class LibraryTreeBuilder:
 
     def subtrees_above(self, instance: Instance) -> Iterator[ExecutedNode]:
         """The `<SubTree>` elements that need an automaton and whose top node is the instance, the outermost first:
-        those with conditions, and one whose parent may tick it again although it has ended. Like any decorator, a
+        those with conditions, and one whose parent may tick it again after it has ended. Like any decorator, a
         `<SubTree>` resets its child when the child has ended."""
         parent = None if instance.parent is None else self.system.by_instance.get(instance.parent)
         around = parent.instance.use if parent is not None and parent.instance is not None else None
@@ -354,7 +354,7 @@ def _declared(automaton: SystemAutomaton) -> Node:
 
 
 def _is_condition(instance: Instance) -> bool:
-    """Whether a node is a condition: so says the tree's file or the library that declares the node."""
+    """Whether a node is declared as a condition, in the file of the tree or in a library."""
     known = node_in_libraries(instance.plugin)
     return instance.condition or (known is not None and known.kind is NodeKind.CONDITION)
 

@@ -169,7 +169,7 @@ def _machine_symbol(automaton: SystemAutomaton) -> Symbol | None:
 
 
 class _Query(NamedTuple):
-    """An expression whose type a count depends on, with this type."""
+    """An expression and its type; a count depends on this type."""
 
     tree: Expr
     handler: Handler | None

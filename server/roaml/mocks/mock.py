@@ -70,8 +70,8 @@ def read_mocks(text: str) -> tuple[Mock, ...]:
 
 
 def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
-    """The mock for a node: the mock of its name, otherwise of its type, otherwise of the first pattern that matches,
-    `*` last. `None` if no mock matches.
+    """The mock for a node: the mock with the name of the node as pattern, otherwise the mock with the type of the node
+    as pattern, otherwise the first mock whose pattern matches, with `*` as the last one. `None` if no mock matches.
 
     Args:
         succeeds: whether the node is known to always succeed; `*` does not apply to these nodes.
@@ -90,6 +90,6 @@ def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = Fals
 
 
 def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
-    """The mocks that match none of the nodes, without `*`. Nodes are pairs of name and type."""
+    """The mocks, except `*`, that match none of the nodes. Nodes are pairs of name and type."""
     words = {word for node in nodes for word in node}
     return tuple(m for m in mocks if m.pattern != ALL and not any(fnmatchcase(word, m.pattern) for word in words))

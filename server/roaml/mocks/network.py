@@ -46,7 +46,7 @@ DEFAULT_RATE = Fraction(10)
 DEFAULT_MAX_TIME = 600 * 10**9
 """The default limit of the simulated time, in ns."""
 TICKS = "ticks"
-"""The name of the root's variable that counts the ticks."""
+"""The name of the variable in which the automaton of the tree root counts the ticks."""
 MAX_TEXT_LENGTH = 100
 """The maximum length of a text in the blackboard."""
 
@@ -57,7 +57,7 @@ class MockOptions:
 
     Attributes:
         mocks: the mocks of leaves; `roaml.mocks.mock.mock_for` selects the mock of a leaf.
-        entries: entries of the root blackboard, with the texts that the host sets.
+        entries: entries of the root blackboard, with the texts to which the program that executes the tree sets them.
         rate: the number of ticks per second.
         max_time: the limit of the simulated time, in ns.
         counts: whether mocks count their answers, for measurements.
@@ -220,8 +220,8 @@ class _Builder:
         return EVENT_PROBABILITY
 
     def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[BoardEntry, tuple[Known, ...]]]:
-        """The entries that a mock writes, with their possible values: ports that may be outputs, if the tree reads
-        their entries."""
+        """The entries that a mock writes, with their possible values. A mock writes the entries of the ports that may
+        be outputs, if the tree reads these entries."""
         written = []
         for port, entry, _, _ in node.ports():
             declared = node.known.port(port) if node.known else None

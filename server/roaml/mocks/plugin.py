@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mocks as plugins in HL-SCXML, which answer like the mocks."""
+"""Creates plugins in HL-SCXML that answer like mocks."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class MockPort:
     """A port of a mock.
 
     Attributes:
-        type: in HL-SCXML, such as `int32`.
+        type: the type in HL-SCXML, such as `int32`.
         is_output: whether the mock writes it when it succeeds.
-        values: of an output, as expressions; all have the same probability.
+        values: the possible values of an output, as expressions; all have the same probability.
     """
 
     key: str
@@ -29,7 +29,7 @@ class MockPort:
 
 
 def mock_plugin(name: str, mock: Mock, rate: Fraction, ports: Sequence[MockPort] = (), *, is_condition: bool) -> str:
-    """A plugin that answers like a mock.
+    """The document of a plugin that answers like a mock.
 
     Args:
         name: the name of the plugin, which is the type of the node.
@@ -63,7 +63,8 @@ class _Plugin:
         return lines
 
     def states(self) -> list[str]:
-        """An action that has ended returns the same status until it is halted; a condition is evaluated again."""
+        """The states of the plugin. An action that has ended returns the same status until it is halted; a condition is
+        evaluated again."""
         if self.is_condition:
             return self.state("idle", [*self.drawn("idle", "idle"), *_halt("idle")])
         lines = []
@@ -104,7 +105,7 @@ class _Plugin:
         return [*lines, "</bt_tick>"]
 
     def outputs(self) -> list[tuple[float, list[str]]]:
-        """The combinations of values of the outputs, with their shares."""
+        """The combinations of values of the outputs, with their probabilities."""
         combinations: list[tuple[float, list[str]]] = [(1.0, [])]
         for port in self.ports:
             if port.is_output and port.values:

@@ -19,7 +19,7 @@ from roaml.roles import NodeKind
 from roaml.scxml.names import safe_name
 
 OPAQUE = "int32"
-"""The type of ports of C++ types that a model does not have, and to which the tree gives no constant."""
+"""The HL-SCXML type of a port whose C++ type has no equivalent in HL-SCXML and that the tree sets to no constant."""
 _VALUES = {"bool": ("false", "true"), "string": ("''",), "float64": ("0.0", "1.0")}
 _TYPES = {"double": "float64", "float": "float32", "bool": "bool", "string": "string", "int": "int32",
           "unsigned": "uint32"}  # fmt: skip
@@ -30,8 +30,8 @@ class SystemLeaf:
     """A type of leaves without a plugin.
 
     Attributes:
-        names: of its nodes, those without a name have that of the type.
-        ports: all that nodes of the type set.
+        names: the names of its nodes; a node without a name has the name of the type.
+        ports: all ports that nodes of the type set.
         optional: the ports that some of the nodes do not set.
     """
 
@@ -44,11 +44,12 @@ class SystemLeaf:
 
 
 _Slot: TypeAlias = tuple[str, str]
-"""A type of nodes and a port, or "" and a variable of the blackboard."""
+"""(type of nodes, port) for a port, or ("", variable) for a variable of the blackboard."""
 
 
 def leaves_without_plugins(system: System, declared: Callable[[str], Node | None]) -> tuple[SystemLeaf, ...]:
-    """The leaves without a plugin, by type in the order of the tree; without those whose names no machine can have.
+    """The types of leaves without a plugin, in the order of the tree. Types whose names no machine can have are left
+    out.
 
     Args:
         declared: the declaration of a type of nodes in models, if there is one.
@@ -139,7 +140,7 @@ class _Types:
             yield MockPort(key, type_, is_output, _values(type_) if is_output else ())
 
     def is_written(self, bound: list[PortConstant | Reference]) -> bool:
-        """Whether a port that no model describes is an output: if nothing else writes its variable."""
+        """Whether a port that no model describes is treated as an output, because nothing else writes its variable."""
         variables = [value.variable for value in bound if isinstance(value, Reference)]
         return bool(variables) and not any(map(self.has_writer, variables))
 
@@ -171,7 +172,7 @@ class _Types:
 
 
 def _simple(type_: str) -> str | None:
-    """The type in a model of a C++ type by its normal name; `None` if there is none."""
+    """The HL-SCXML type for a C++ type, which is given by its normal name; `None` if there is none."""
     if type_ in _TYPES:
         return _TYPES[type_]
     return type_ if type_ in BASE_TYPES else None

@@ -21,7 +21,7 @@ from roaml.xml_syntax import Element
 
 @dataclass(frozen=True, slots=True)
 class PlannedMock:
-    """A plugin for a type of leaves. `path` is where its file is, or would be."""
+    """A plugin for a type of leaves. `path` is the path of its file, which need not exist."""
 
     leaf: SystemLeaf
     mock: Mock
@@ -35,8 +35,8 @@ def plan(
     """The plugins for leaves, and the leaves that no mock fits.
 
     Args:
-        rate: ticks of the tree in a second.
-        paths: of the new plugins, by type of leaf.
+        rate: the ticks of the tree per second.
+        paths: type of a leaf -> the path of its plugin.
     """
     planned: list[PlannedMock] = []
     missing: list[SystemLeaf] = []
@@ -52,8 +52,8 @@ def plan(
 
 
 def listing(section: Element, sources: Iterable[str]) -> TextEdit:
-    """The edit that lists plugins at the end of a section on the line of its end, so that all lines keep their
-    numbers."""
+    """The edit that adds plugins to a section of a system file. It inserts them on the line where the section ends, so
+    that all lines keep their numbers."""
     close = section.close_name_span
     at = section.open_span.end if close is None else close.start - len("</")
     entries = "".join(f'<input type="bt-plugin-ascxml" src={quoteattr(source)} />' for source in sources)
@@ -61,8 +61,8 @@ def listing(section: Element, sources: Iterable[str]) -> TextEdit:
 
 
 def defaults(root: Element, leaves: Iterable[SystemLeaf]) -> TextEdit | None:
-    """The edit of a tree file that gives ports of mocks which not all nodes set a default, on the line of its end;
-    `None` if there are none."""
+    """The edit of a tree file that declares defaults for the ports of mocks that only some nodes set; `None` if there
+    are none. It inserts the declarations on the line where the root element ends."""
     models = "".join(f"<Action ID={quoteattr(leaf.type)}>{_ports(leaf)}</Action>" for leaf in leaves if leaf.optional)
     close = root.close_name_span
     if not models or close is None:
@@ -85,7 +85,7 @@ _DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
 
 
 def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
-    """The edits that give nodes that depend on events of the world the probabilities of their mocks, by file."""
+    """The edits, by file, that set the probabilities of events of the world to those of the mocks."""
     exact = [mock for mock in mocks if mock.pattern != ALL]
     edits: dict[str, dict[int, TextEdit]] = {}
     for instance in system.instances:

@@ -173,7 +173,7 @@ def evaluate(expression: Expression, state: State, inputs: Mapping[str, bool], t
 
 
 def simplified(expression: Expression, known: Mapping[Expression, Expression]) -> Expression:
-    """`expression` after its parts in `known` are replaced by their values and the result is simplified."""
+    """A simplified copy of `expression`, in which its parts in `known` are replaced by their values."""
     if expression in known:
         return known[expression]
     match expression:

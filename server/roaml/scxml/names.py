@@ -3,7 +3,7 @@
 (docs/spec/plain-scxml.md#events, docs/spec/jani.md#names).
 
 `roaml.lower` determines the role of each event (`EventRole`). If only the name of an event is known, as in a trace or
-for an event that the user has named, the role is derived from the name, only by `role_of`.
+for an event that the user has named, `role_of` derives the role from the name; no other function does.
 """
 
 from __future__ import annotations
@@ -211,7 +211,8 @@ def is_reserved_name(name: str) -> bool:
 
 
 def is_interface_event(name: str) -> bool:
-    """Whether a name of an event, or of one of its variables, begins like that of a topic, service or action."""
+    """Whether a name of an event, or of one of its variables, begins like the name of an event of a topic, service or
+    action."""
     return name.startswith(_INTERFACE_PREFIXES)
 
 
@@ -247,8 +248,8 @@ def role_of(event: str) -> EventRole:
 
 
 def named(event: str) -> ScxmlEvent:
-    """The event named `event`, with the role that is derived from the name. For names that the user chooses completely
-    or in part."""
+    """The event named `event`, with the role that is derived from the name. It is used for names that the user chooses
+    completely or in part."""
     return ScxmlEvent(event, role_of(event))
 
 

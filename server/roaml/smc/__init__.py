@@ -10,5 +10,6 @@
   and entered, and the guards that read a changed variable.
 - A trace is a pure function of the compiled model, the seed and its number; neither the number of workers nor the order
   of work influences it.
-- An undefined operation of a model (an index outside of an array, a division by zero) is a `Fault` with its position.
+- An undefined operation of a model (an index outside of an array, a division by zero) is reported as a `FaultError`
+  with its position.
 """

@@ -4,8 +4,8 @@
 - Types are known in advance, so each instruction is for ints or for reals.
 - Conditions become jumps; `∧`, `∨`, `⇒` and `ite` evaluate only the operands that they need, as `roaml.jani.semantics`
   defines.
-- Constant expressions are computed here. An expression that always fails is compiled, too, because it may never be
-  reached.
+- Constant expressions are evaluated at compile time. An expression that always fails is compiled, too, because it may
+  never be reached.
 - Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is padded with zeros.
 - A function is compiled where it is called.
 """
@@ -80,7 +80,8 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ scalars
 
     def value(self, node: Expression, names: StorageNames, into: int = -1) -> Operand:
-        """Write code that computes a scalar; with `into`, in that register. Return the register with the value."""
+        """Write code that computes a scalar, in the register `into` if it is given. Return the register with the
+        value."""
         match node:
             case Integer():
                 if abs(node.value) > MAX_INT64:
@@ -302,7 +303,7 @@ class ExpressionAssembler:
         return Region(array.kind, shape, base + fixed, offset)
 
     def region(self, node: Expression, names: StorageNames) -> Region:
-        """The registers of an array; an array that is not in registers is copied there."""
+        """The registers of an array; an array that is not in registers is copied to new ones."""
         match node:
             case Name():
                 meaning = names.meaning(node)
@@ -317,7 +318,7 @@ class ExpressionAssembler:
                 return self.materialized(node, shapes.kind(node, names), shapes.shape(node, names), names)
 
     def materialized(self, node: Expression, kind: str, shape: tuple[int, ...], names: StorageNames) -> Region:
-        """An array that is stored in new registers."""
+        """Write code that stores an array in new registers; return these registers."""
         region = Region(kind, shape, self.tape.reserve(kind, product(shape)))
         self.fill(node, region, names)
         return region

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assignments -> bytecode. An assignment is written at once, or in two parts: first the computation, later the storing.
+"""Assignments -> bytecode. The code of an assignment is written in one piece, or in two: one that computes the value,
+and a later one that stores it.
 
 A value that is stored in an array of a larger shape is padded with zeros.
 """

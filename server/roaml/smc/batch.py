@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
 
 STEPS_BETWEEN_PULSES = 200_000
-"""The number of steps after which Python can handle an interrupt: some hundredths of a second."""
+"""The number of steps after which Python can handle an interrupt: they take some hundredths of a second."""
 
 
 class Payload(NamedTuple):
@@ -42,7 +42,8 @@ class TraceProblem(NamedTuple):
 
 
 class Task(NamedTuple):
-    """The traces `first` to `first + size - 1`, none longer than `max_steps`, by `scheduler` (0: uniform).
+    """A batch: the traces `first` to `first + size - 1`, each with at most `max_steps` steps, under the scheduler
+    `scheduler` (0: uniform choices).
 
     `questions` are the numbers of the questions that the traces answer.
     """

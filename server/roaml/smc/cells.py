@@ -21,7 +21,7 @@ class CellAssembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
 
     def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
-        """Write code for an expression that has no value: it fails if it is reached."""
+        """Write code for an expression that has no value: the code fails if it is executed."""
         self.tape.place(node.origin)
         self.tape.emit(Op.FAULT, code, value, size)
         return Operand(kind, self.tape.temporary(kind))

@@ -4,7 +4,7 @@ unknown, the range of the values of sampled schedulers.
 
 1. A model without nondeterminism has only one scheduler.
 2. If there are few states, the minimum and the maximum are known from all states (`roaml.verification.small`).
-3. Otherwise schedulers are sampled (`lss.probe`), with a part of the effort of the result.
+3. Otherwise schedulers are sampled (`lss.probe`), with a fraction of the effort for the result.
 
 The method depends only on the model, the question, the options and the traces of the result.
 """
@@ -46,8 +46,8 @@ class Extreme:
 
     Attributes:
         value: the estimate, or the exact value.
-        bounds: an interval that contains a probability which some scheduler achieves: with the confidence of the
-            method, or certainly if all states were explored.
+        bounds: an interval that contains the probability under some scheduler; this is certain if all states were
+            explored, and otherwise has the confidence of the method.
         method: the method by which the extreme was found.
         scheduler: a description of the scheduler that achieves the value; empty if all schedulers were considered.
         traces: the number of traces on which the estimate is based.
@@ -96,7 +96,7 @@ def check_choices(
     pool: Pool,
     pulse: Pulse | None = None,
 ) -> Choices:
-    """Determine whether other schedulers may have other values, and which ones.
+    """Determine whether schedulers other than the uniform one may have other values, and estimate the extreme values.
 
     Args:
         answer: the answer under uniform choices.

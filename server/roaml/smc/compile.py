@@ -51,7 +51,9 @@ class Compilation:
 
     def __init__(self, model: Model, formulas: Iterable[Formula] = ()) -> None:
         if model.type not in SUPPORTED:
-            raise FaultError(f"models of type {model.type.value} are not supported; dtmc and mdp are", model.origin)
+            raise FaultError(
+                f"models of type `{model.type.value}` are not supported; use `dtmc`, `lts` or `mdp`", model.origin
+            )
         self.model = model
         self.tape = Tape()
         self.cells = CellAssembler(self.tape)
@@ -211,7 +213,8 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """Write the tables of the changes between the source and the target of each way."""
+        """Write the tables of the slots whose numbers of enabled edges differ between the source and the target of each
+        way."""
         self.move_start, self.move_slot, self.move_count = [0], list[int](), list[int]()
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):

@@ -15,7 +15,8 @@ from typing import TypeAlias
 
 
 class End(IntEnum):
-    """The numbers are those of the kernel; `TIME` to `QUIET` are the marks of locations."""
+    """The reason why a trace has ended. The kernel uses the same numbers; `TIME` to `QUIET` are the marks of
+    locations."""
 
     DECIDED = 0
     """The question about the trace was decided."""
@@ -36,12 +37,12 @@ class End(IntEnum):
 
     @property
     def text(self) -> str:
-        """A phrase for users."""
+        """The reason as a phrase for users."""
         return _TEXTS[self]
 
     @property
     def key(self) -> str:
-        """A key for programs."""
+        """The reason as a key for programs."""
         return self.text.replace(" ", "_")
 
 

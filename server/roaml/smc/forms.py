@@ -51,7 +51,7 @@ COMPARISONS = frozenset(
     (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 )
 JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES))
-"""The operators between paths."""
+"""The operators that join path formulas."""
 TIME_BOUNDS = (
     "bounds on time are not supported, because the model counts only steps (compare the clock's `sec` instead)"
 )
@@ -216,5 +216,5 @@ def _in_reward(formula: Expectation) -> Iterator[tuple[str, Node]]:
         yield "only rewards that are accumulated until a condition holds are supported", formula
         return
     if Accumulation.TIME in formula.accumulate:
-        yield "no time passes in this kind of model, so rewards are accumulated on `steps` or `exit`", formula
+        yield "no time passes in this kind of model, so rewards can only be accumulated on `steps` or `exit`", formula
     yield from _in_state(formula.reach)

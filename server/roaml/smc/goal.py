@@ -2,8 +2,8 @@
 """A property -> its goal for a single trace, and its question about all traces.
 
 Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
-exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only. `F G b` asks for the
-state in which a trace stays.
+exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only. `F G b` is evaluated in
+the state in which a trace stays.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ class Activity(enum.IntEnum):
     CLOSED = 0
     """The scope of the property was never evaluated, so the trace says nothing about the property."""
     IDLE = 1
-    """The scope was evaluated, but the event that triggers the property never occurred in it, such as a request."""
+    """The scope was evaluated, but the event that triggers the property, such as a request, never occurred in it."""
     TRIGGERED = 2
 
 

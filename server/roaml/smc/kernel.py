@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The simulator of compiled models: it generates random traces and evaluates the goal on them.
 
-- Plain Python; Cython compiles it to an extension with the types in `kernel.pxd`. Both compute exactly the same.
-- A trace depends on its seed and its number only: its random number n is a hash of these and n.
+- Plain Python; Cython compiles it to an extension with the types in `kernel.pxd`. Both compute exactly the same traces.
+- A trace depends on its seed and its number only: the random number n of a trace is a hash of both and of n.
 - The set of enabled synchronisation vectors is updated incrementally. A *slot* is an automaton and one of its actions;
   it is ready if an edge of the automaton for this action is enabled. Slots that take part in the same vectors share a
-  *gate*, which counts the slots that are not ready; a vector counts its gates that are not open. A step updates only
-  the slots of the locations that it leaves and enters, and the guards that read a variable that has changed.
+  *gate*, which counts the slots that are not ready; a gate is open if all its slots are ready, and a vector counts its
+  gates that are not open. A step updates only the slots of the locations that it leaves and enters, and the guards that
+  read a variable that has changed.
 - A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
 - If a vector has too many combinations of edges to number them all, the edge of each automaton is drawn separately. The
   weight of the vector is the number of its combinations in both cases.
@@ -324,7 +325,7 @@ class Kernel:
         self.loop_state, self.loop_drawn, self.loop_span, self.loop_left = loop
 
     def _changing(self) -> list[Any]:
-        """The arrays that steps change, except for those that contain something only within a step."""
+        """The arrays that steps change, except for those whose contents are used only within a step."""
         state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
         goal: list[Any] = [self.stale, self.known, self.known_end, self.known_activity, self.known_steps]
         return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
@@ -962,7 +963,7 @@ class Kernel:
         return 1 if self._execute(code) != 0 else 0
 
     def _is_deadlock(self) -> int:
-        """Whether no step is possible. The end of time and a finished tree are not deadlocks."""
+        """Whether no step is possible. The end of the model's time and a finished tree are not deadlocks."""
         if self.enabled_count != 0:
             return 0
         reason = self._reason(0)

@@ -87,7 +87,8 @@ def candidates(
 
     Args:
         automata: the number of automata of the system.
-        per_automaton: the number of schedulers that starve an automaton, for each automaton; as many favour it.
+        per_automaton: for each automaton, the number of schedulers that starve it; the same number of schedulers favour
+            it.
         memoryless, memory: the number of schedulers that decide by the state alone, and of those that also decide by
             the last step.
     """

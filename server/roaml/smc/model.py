@@ -45,8 +45,9 @@ class ModelChecker:
     Args:
         marks: why a trace that stays in a location ends; see `roaml.smc.end`.
         outputs: property -> the outputs of its observer, if it has one.
-        assumptions: property -> the property that its assumptions hold, if it has any; both are in `model`.
-        actors: automaton -> a noun phrase for it, for users; without one, it is the name in backquotes.
+        assumptions: property -> the property which states that its assumptions hold, if it has any; both are in
+            `model`.
+        actors: automaton -> a noun phrase for the automaton, for users; an automaton without one is named in backquotes.
         includes_stuck: whether `stuck` is the last question.
 
     Attributes:
@@ -121,7 +122,7 @@ class ModelChecker:
 
     def reduced(self, property_: CompiledProperty) -> ModelChecker:
         """A model checker for one question, without the automata that only other questions need. The model has fewer
-        states and the same probabilities, but its traces have other numbers."""
+        states and the same probabilities, but different traces for the same numbers."""
         model = without_passive(self.model, *self._read(property_))
         if model is self.model:
             return self
@@ -212,7 +213,7 @@ class ModelChecker:
         watch: Callable[[Search], None] | None = None,
         pulse: Pulse | None = None,
     ) -> None:
-        """Search for schedulers with a small and a great probability; see `roaml.smc.lss.search`.
+        """Search for schedulers that minimise and maximise the probability; see `roaml.smc.lss.search`.
 
         Raises:
             FaultError: a trace failed, or the question is about rewards.

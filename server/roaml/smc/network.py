@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The behaviour of a model: locations, the edges that can be taken, and their synchronisation.
 
-- Every edge without action and every combination of edges of a synchronisation vector is one choice.
+- Every edge without an action and every combination of edges of a synchronisation vector is one choice.
 - Edges that can never be taken and ways of probability 0 are left out.
 """
 

@@ -31,7 +31,7 @@ class NestingError(Exception):
     """A nested formula does not have the form of a pattern.
 
     Attributes:
-        is_time: whether the reason is its bounds on the time.
+        is_time: whether the reason is a bound on the time.
     """
 
     def __init__(self, *, is_time: bool = False) -> None:

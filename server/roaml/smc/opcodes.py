@@ -44,7 +44,7 @@ class Op(enum.IntEnum):
     STORE_MANY = 24  # c numbers from I[b...] to I[d + I[a]...]
     NOTE = 25  # v = d has changed
     RANGE = 26  # fault unless I[b] ≤ I[a] ≤ I[c]
-    FAULT = 27  # always; d says which
+    FAULT = 27  # always a fault; d is its code
     JUMP_EQ_REAL = 28  # to d if D[a] = D[b]
     JUMP_NE_REAL = 29
     JUMP_LT_REAL = 30
@@ -92,5 +92,5 @@ MESSAGES = {
     FaultCode.DOMAIN: "this function has no value for {value}",
     FaultCode.PROBABILITY: "the probabilities of this edge do not add up to 1, or one is negative",
     FaultCode.EMPTY: "the array has no elements",
-    FaultCode.TOO_LARGE: "the result is too large for a number",
+    FaultCode.TOO_LARGE: "the result is too large for a real number",
 }

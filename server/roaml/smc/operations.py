@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Operators on values in registers. They are evaluated here if the values are known, and compiled otherwise.
+"""Operators on values in registers. They are evaluated at compile time if the values are known, and compiled otherwise.
 
 An operation that always fails is compiled, too, because it may never be reached.
 """

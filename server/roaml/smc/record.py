@@ -24,7 +24,7 @@ from roaml.smc.standstill import Standstill
 Plain: TypeAlias = "bool | int | float | list[Plain]"
 
 SHORTEST = -1
-"""The number of a trace that was not generated at random: the shortest possible one."""
+"""The number of the shortest possible trace, which is not generated at random."""
 
 
 class TraceVerdict(Vocabulary):
@@ -129,7 +129,7 @@ class StepReader:
         return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
 
     def change(self, number: int, action: str | None) -> TraceStep:
-        """A step that no automaton has taken, because the state was changed by hand."""
+        """A step that no automaton has taken, because the user has changed the state."""
         ints, reals = self._ints, self._reals
         self.start()
         return TraceStep(number, action, (), self._changes(ints, reals, self._ints, self._reals))
@@ -199,7 +199,7 @@ class Recorder:
         return self.values(storages)
 
     def rush(self, recording: Recording) -> None:
-        """Simulate a trace to its end, without its steps."""
+        """Simulate a trace to its end, without recording its steps."""
         kernel = self._kernel
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
         if verdict == UNKNOWN:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The answer to a question: how many traces are generated, and what they say.
+"""The answer to a question: how many traces are generated, and what follows from them.
 
 - Whether more traces are needed is decided after whole batches, in the order of their numbers. The size of a batch
   depends only on the traces before it. So the answer is a function of model, property, seed and options.
@@ -36,8 +36,8 @@ FIRST_BATCH_TRACES = 100
 MAX_BATCH_TRACES = 5000
 BATCH_GROWTH = 0.1
 STOPPING_ERROR_SHARE = 0.75
-"""Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this part of
-the allowed error. A test computes that the total error stays within the confidence."""
+"""Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this fraction
+of the allowed error. A test computes that the total error stays within the confidence."""
 MIN_EPSILON = 1e-9
 """The minimum half-width of an interval. A narrower interval needs more traces than can be counted."""
 MAX_REWARD_TRACES = 10_000_000
@@ -305,10 +305,10 @@ def answer_together(
     pulse: Pulse | None = None,
 ) -> None:
     """Answer several questions with the same traces. Each answer is exactly that of `answer`, because each question
-    has its own stopping rule, and what a trace says about a question does not depend on the other questions.
+    has its own stopping rule, and the verdict of a trace on a question does not depend on the other questions.
 
     Args:
-        payload: with the questions of all inquiries.
+        payload: the goals of the questions of all inquiries.
         inquiries: their tallies contain the results; a trace that fails is stored in `problem`.
         watch: called for each question after each of its batches.
     """

@@ -182,7 +182,7 @@ def shape_of(value: Value) -> tuple[int, ...]:
 
 
 def larger(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
-    """The smallest shape that contains both."""
+    """The smallest shape that contains both shapes."""
     if len(first) != len(second):
         return first if len(first) > len(second) else second
     return tuple(map(max, first, second))

@@ -95,13 +95,13 @@ def clopper_pearson(successes: int, traces: int, confidence: float, undecided: i
 
 def confidence_sequence(successes: int, traces: int, confidence: float, undecided: int = 0) -> Bounds:
     """The interval for a probability that may be inspected after each trace: with the probability `confidence` all
-    intervals of one run contain the true value, so it is valid whenever and why ever the run stops.
+    intervals of one run contain the true value, so it is valid whenever and for whatever reason the run stops.
 
     The beta-binomial mixture (Robbins 1970; Howard, Ramdas, McAuliffe and Sekhon 2021, "Time-uniform, nonparametric,
-    nonasymptotic confidence sequences"): under the true probability, the likelihood of the observations, averaged over
-    Jeffreys' prior Beta(1/2, 1/2), over its likelihood under that probability is a martingale that begins with 1. By
-    Ville's inequality it ever reaches 1 / error with a probability of at most `error`. The interval contains the
-    remaining probabilities.
+    nonasymptotic confidence sequences"): the likelihood of the observations averaged over Jeffreys' prior Beta(1/2,
+    1/2), divided by their likelihood under a probability p, is a martingale that begins with 1 if p is the true
+    probability. By Ville's inequality it ever reaches 1 / error with a probability of at most `error`. The interval
+    contains the p for which it has not reached 1 / error.
 
     Args:
         successes, traces: the number of successes, and the number of independent traces.

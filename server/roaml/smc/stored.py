@@ -96,7 +96,7 @@ _VERDICTS = (TRUE, FALSE, UNKNOWN)
 
 def _expect(holds: bool, key: str) -> None:
     if not holds:
-        raise ValueError(f"`{key}` is not possible")
+        raise ValueError(f"the value of `{key}` is impossible")
 
 
 def _row(value: Any, key: str) -> dict[str, Any]:

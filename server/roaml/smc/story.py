@@ -114,7 +114,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
 
 
 def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) -> int | None:
-    """The latest earlier step in which the automaton took part together with another one."""
+    """The latest earlier step in which the automaton took part together with another automaton."""
     before = [k for k in own if k < i]
     for k in reversed(before):
         if len(steps[k].parts) > 1:

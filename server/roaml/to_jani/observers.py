@@ -148,8 +148,8 @@ class _ObserverWriter:
     # --------------------------------------------------------------- edges
 
     def _joined(self) -> Iterator[Sync]:
-        """All synchronisations, in which the observer takes part if it is concerned. The edges of the observer are
-        added."""
+        """All synchronisations, with the observer added to those that it observes. The edges of the observer for these
+        synchronisations are added to `edges`."""
         index = len(self.model.automata)
         for sync in self.model.system.syncs:
             action = self._action_in(sync)

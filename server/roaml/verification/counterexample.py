@@ -47,7 +47,8 @@ def unwanted_trace(result: Result) -> StoredTrace | None:
     """The shortest trace that contradicts an expectation; an undecided one if there is none; `None` if there is
     neither.
 
-    If any trace got stuck, the result is the shortest stuck trace, because it explains why the number is doubtful.
+    If any trace got stuck, the shortest stuck trace is returned, because it explains why the result of the property is
+    doubtful.
     """
     if result.answer is None:
         return None

@@ -37,7 +37,7 @@ def exact_values(
     """
     if property_.question.is_conditional:
         raise UndecidedError(
-            "the minimum and the maximum given assumptions are not ratios of minimum and maximum; omit --exhaustive to "
+            "a minimum or maximum given assumptions cannot be computed from all states; omit --exhaustive to "
             "estimate the probability under uniform choices"
         )
     reduced = checker.reduced(property_)

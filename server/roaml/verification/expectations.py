@@ -105,7 +105,7 @@ def parse(text: str) -> Expectation:
     match = _FORM.fullmatch(text)
     comparison = read_comparison(match[2]) if match else None
     if match is None or comparison is None:
-        raise ValueError(f"an expectation must have a form like 'NAME >= 0.95', not '{text}'")
+        raise ValueError(f"an expectation must have a form like `NAME >= 0.95`, not `{text}`")
     return expectation_of(match[1], comparison)
 
 
@@ -126,7 +126,7 @@ def check_range(expectation: Expectation, question: Question) -> None:
     if not is_possible(expectation, question):
         number = expectation.threshold.number
         raise RangeError(
-            f"{expectation.name} is a probability and can only be compared with a number from 0 to 1, not {number:g}"
+            f"`{expectation.name}` is a probability and can only be compared with a number from 0 to 1, not {number:g}"
         )
 
 

@@ -28,7 +28,7 @@ from roaml.verification.target import VerificationTarget
 
 @dataclass(frozen=True, slots=True)
 class ShortestTrace:
-    """The shortest of all traces with a certain verdict."""
+    """The shortest of all traces with a given verdict."""
 
     space: Space = field(repr=False)
     path: Path
@@ -186,7 +186,7 @@ class Result:
         answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
             requested. If there are exact values, too, these traces are examples.
         verdicts: one for each expectation.
-        seconds: the duration in s.
+        seconds: the duration of the verification, in s.
         is_interrupted: whether the work was ended before the answer was complete.
         sampled: the results of traces with sampled schedulers.
         tried: the number of schedulers from which these were selected.
@@ -243,7 +243,7 @@ class Result:
 
     @property
     def has_no_expectation(self) -> bool:
-        """Whether there is an answer, and nothing is expected of it."""
+        """Whether there is an answer, but no expectation."""
         return self.refusal is None and not self.undecided and not self.verdicts
 
     @property

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exact values of a property of a model with few states, without being asked for.
-
-All limits are numbers, not times, so that it does not depend on the machine whether a property is answered exactly. At
-these limits, exploring the states takes less time than a tenth of the default traces of most systems.
+"""Exact values of properties of models with few states, computed without a request of the user. All limits are numbers
+of states, bytes and operations, and not times, so the speed of the machine does not determine whether a property is
+answered exactly. At these limits, exploring the states takes less time than a tenth of the default traces of most
+systems.
 """
 
 from __future__ import annotations

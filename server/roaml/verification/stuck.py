@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether a system gets stuck. Every verification checks this with traces that do not stop when a property is decided.
 
-A trace is stuck if its automata wait for one another, so that the time of the model stands still for ever. What such a
-trace says about a property is accidental. So stuck traces are reported beside every number, with an example: the chain
-of waiting automata.
+A trace is stuck if its automata wait for one another, so that the time of the model never advances again. The verdict
+of a stuck trace on a property has no meaning. So stuck traces are reported with every result, with an example: the
+chain of waiting automata.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class StuckLevel(Vocabulary):
 
 @dataclass(frozen=True, slots=True)
 class Stuck:
-    """Traces of one question that got stuck.
+    """The traces of one question that got stuck.
 
     Attributes:
         count: the number of stuck traces.
@@ -81,7 +81,7 @@ class Stuck:
 
     @property
     def chain(self) -> Chain:
-        """The chain of waiting automata, which does not depend on the time."""
+        """The chain of waiting automata; see `chain_of`."""
         return chain_of(self.waits)
 
 
@@ -89,8 +89,8 @@ Chain: TypeAlias = tuple[tuple[str, str, str], ...]
 
 
 def chain_of(waiting: Sequence[Wait]) -> Chain:
-    """The chain of waiting automata: the automata, their locations, and the events that they wait for. It does not
-    depend on the time."""
+    """The chain of waiting automata: the automata, their locations, and the events that they wait for. Traces that get
+    stuck in the same way at different times have equal chains."""
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
@@ -144,7 +144,7 @@ def _answer(checker: ModelChecker, options: Options, pulse: Pulse | None) -> Ans
 
 
 def can_be_stuck(checker: ModelChecker) -> bool:
-    """Whether it is known which traces are stuck. This is so for translated systems."""
+    """Whether it is known which traces are stuck; true for translated systems."""
     return any(checker.program.location_mark)
 
 

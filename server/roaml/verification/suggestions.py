@@ -15,8 +15,8 @@ from roaml.verification.verifier import with_expectations
 def suggestions(result: Result) -> tuple[str, ...]:
     """The expectations that a result of traces meets, such as `>= 0.97`: the strictest first, lower bounds first.
 
-    If no trace speaks against a probability of 1 or 0, this number is the first. All other numbers are outside of the
-    interval, so that the verdict is certain.
+    If no trace contradicts a probability of 1 or 0, the expectation with this number is the first. The numbers of all
+    others are outside of the interval, so that their verdict is certain.
     """
     return tuple(text for text in _candidates(result) if _is_met(result, text))
 

@@ -37,7 +37,7 @@ class VerificationTarget:
         files: all files that were read, `path` first.
         source_of: path -> the text of the file of an origin; `None` if it is unknown.
         clock: the variables for seconds and nanoseconds, if the model has them.
-        assumptions: property -> the property that its assumptions hold, if it has any.
+        assumptions: property -> the property which states that its assumptions hold, if it has any.
         expectations: property -> the expected values, from the file of the property and from the configuration.
     """
 

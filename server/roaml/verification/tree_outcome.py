@@ -68,7 +68,7 @@ def _eventually(name: str, condition: Expression) -> Property:
 
 @dataclass(frozen=True, slots=True)
 class OutcomeShare:
-    """The number of traces with a certain outcome, with the interval for its probability."""
+    """The number of traces with a given outcome, with the interval for its probability."""
 
     count: int
     traces: int

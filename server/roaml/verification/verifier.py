@@ -231,7 +231,7 @@ class Verifier:
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, from traces with uniform choices; with exact values if they are wanted and the
+        """The result of a property, from traces with uniform choices; with exact values if they are requested and the
         model is small.
 
         Args:
@@ -358,7 +358,9 @@ class Verifier:
         """
         question = property_.question
         if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
-            raise NoThresholdError(f"{question.name} is not compared with a number, which a sequential test needs")
+            raise NoThresholdError(
+                f"a sequential test needs a number to compare with; set an expectation for `{question.name}`"
+            )
 
     def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:
         """The result of a property so far, after an interruption."""

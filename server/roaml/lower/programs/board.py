@@ -296,7 +296,8 @@ class _Reader:
         return Board(entries, observers, flag_of, values, read, written, self.typed is not None)
 
     def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
-        """The values that a mock may write to an entry: those with which the tree compares the entry, and others."""
+        """The values that a mock may write to an entry: those with which the tree compares the entry, and defaults of
+        the kind `kind`."""
         other: list[int | float | str] = [""] if kind is EntryKind.TEXT else [0, 1]
         mentioned = self.mentioned.get(name, [])
         fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]

@@ -23,7 +23,7 @@ from roaml.roles import NodeKind
 from roaml.text import Location
 
 EVENT_PROBABILITY = 0.1
-"""The probability that something happens in the world at a tick, unless the tree or a mock gives another one."""
+"""The probability of an event of the world at a tick, unless the tree or a mock sets another one."""
 
 
 def program_of(node: ExecutedNode) -> NodeProgram | None:
@@ -87,7 +87,7 @@ def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
 
 
 def event_probability(node: ExecutedNode) -> float | None:
-    """The probability in the tree that something happens in the world at a tick; `None` without one.
+    """The probability of an event of the world at a tick that the tree sets; `None` if it sets none.
 
     Raises:
         TreeRefusal: it is not a probability.
