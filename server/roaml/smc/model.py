@@ -47,7 +47,7 @@ class ModelChecker:
         outputs: property -> the outputs of its observer, if it has one.
         assumptions: property -> the property which states that its assumptions hold, if it has any; both are in
             `model`.
-        actors: automaton -> a noun phrase for the automaton, for users; an automaton without one is named in backquotes.
+        actors: automaton -> a noun phrase for users; an automaton without a phrase is named in backquotes.
         includes_stuck: whether `stuck` is the last question.
 
     Attributes:
