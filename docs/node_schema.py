@@ -31,7 +31,7 @@ def _elements(known: Library) -> Iterator[str]:
     for node in known.nodes.values():
         yield _element(node)
     for renamed in known.renamed.values():
-        text = f"Name of `{renamed.now}` in version 3."
+        text = f"The name of `{renamed.now}` in version 3."
         yield _element(replace(known.nodes[renamed.now], name=renamed.name, text=text), use=renamed.now)
     for absent in known.absent.values():
         if absent.name not in _REGISTERED_BY_PROGRAMS:
