@@ -13,6 +13,13 @@ MODELS = """<root BTCPP_format="4">
     <TreeNodesModel><Action ID="Grasp"><input_port name="force" type="int"/></Action></TreeNodesModel>
 </root>
 """
+TREES = {
+    "B": '<ScriptCondition code="x + 1 == 4"/>',
+    "C": '<ScriptCondition code="x == 3"/>',
+    "two words": "<AlwaysSuccess/>",
+}
+"""Trees that are added to the file if the tree `A` uses them."""
+NAMED = '<SubTree ID="C" name="one" x="3"/>'
 ASYNCHRONOUS = "<AsyncSequence><Grasp/></AsyncSequence>"
 
 
@@ -21,7 +28,9 @@ def codes(folder: Path, tree: str, settings: str) -> list[str]:
     (folder / "models").mkdir()
     (folder / "models" / "nodes.xml").write_text(MODELS)
     (folder / "as2fm.toml").write_text(settings)
-    (folder / "tree.xml").write_text(f'<root BTCPP_format="4"><BehaviorTree ID="A">{tree}</BehaviorTree></root>')
+    used = [f'<BehaviorTree ID="{name}">{top}</BehaviorTree>' for name, top in TREES.items() if f'ID="{name}"' in tree]
+    main = f'<BehaviorTree ID="A">{tree}</BehaviorTree>'
+    (folder / "tree.xml").write_text(f'<root BTCPP_format="4">{main}{"".join(used)}</root>')
     result = api.check([str(folder)])
     return [d.code for d in result.diagnostics if d.path.endswith(("tree.xml", "as2fm.toml"))]
 
@@ -41,6 +50,18 @@ def codes(folder: Path, tree: str, settings: str) -> list[str]:
             'behaviortree-cpp = "4.6"',
             [],
         ),
+        ("<Script code=\"a := 10 - 3 .. 'x'\"/>", 'behaviortree-cpp = "4.9"', []),
+        ("<Script code=\"a := 10 - 3 .. 'x'\"/>", 'behaviortree-cpp = "4.8"', ["script-syntax"]),
+        ('<Script code="a := 1 b := 2"/>', 'behaviortree-cpp = "4.8.2"', ["script-syntax"]),
+        ('<SubTree ID="B" x="3"/>', 'behaviortree-cpp = "4.9.1"', []),
+        ('<SubTree ID="B" x="3"/>', 'behaviortree-cpp = "4.9.0"', ["script-type"]),
+        ('<SubTree ID="C" x="3"/>', 'behaviortree-cpp = "4.9.0"', []),
+        (f"<Sequence>{NAMED}{NAMED}</Sequence>", "", ["tree-name"]),
+        (f"<Sequence>{NAMED}{NAMED}</Sequence>", 'behaviortree-cpp = "4.8.3"', []),
+        ('<SubTree ID="two words"/>', 'behaviortree-cpp = "4.8.4"', ["tree-name"]),
+        ('<SubTree ID="two words"/>', 'behaviortree-cpp = "4.8.3"', []),
+        ('<AlwaysSuccess name="tab&#9;tab"/>', 'behaviortree-cpp = "4.8"', ["tree-name"]),
+        ('<AlwaysSuccess name="tab&#9;tab"/>', 'behaviortree-cpp = "4.7"', []),
         ("<AlwaysSuccess/>", 'tree-libraries = ["nav3"]', ["invalid-setting"]),
         ("<AlwaysSuccess/>", 'behaviortree-cpp = "3.8"', ["invalid-setting"]),
         ("<AlwaysSuccess/>", "behaviortree-cpp = 4.6", ["invalid-setting"]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A second implementation of BehaviorTree.CPP 4.10 and Nav2, as classes that call each other.
+"""A second implementation of BehaviorTree.CPP, 4.10 and older versions, and of Nav2, as classes that call each other.
 
 It is written from facts about the libraries, independently of the programs in `roaml.lower.programs`. Leaves take their
 outcomes from lists, so a run can be repeated with the random outcomes of another run.
@@ -32,11 +32,19 @@ class World:
         outcomes: leaf -> its random outcomes, in order.
         writes: entry -> how often it was written.
         happens: whether events of the world that Nav2's nodes ask about always occur, or never.
+        version: the version of BehaviorTree.CPP, as numbers.
     """
 
     def __init__(
-        self, entries: dict[str, Any], outcomes: dict[str, list[str]], rate: int = 10, *, happens: bool = False
+        self,
+        entries: dict[str, Any],
+        outcomes: dict[str, list[str]],
+        rate: int = 10,
+        *,
+        happens: bool = False,
+        version: tuple[int, ...] = (4, 10),
     ) -> None:
+        self.version = version
         self.entries, self.outcomes, self.rate, self.happens = entries, outcomes, rate, happens
         self.calls: list[tuple[str, str]] = []
         self.writes: dict[str, int] = dict.fromkeys(entries, 1)
@@ -472,7 +480,7 @@ class Counting(Decorator):
                 self.count = 0
                 return answer
             self.count += 1
-            if self.counted == F:
+            if self.counted == F and self.world.version >= (4, 7):
                 limit = self.number(self.port)
             if previous == IDLE and (limit == -1 or self.count < limit):
                 return R
@@ -553,7 +561,7 @@ class Precondition(Decorator):
     passed = False
 
     def tick(self) -> str:
-        if not self.passed:
+        if not self.passed or self.world.version < (4, 7):
             if not self.world.run(self.ports["if"]):
                 return self.ports.get("else", F)
             self.passed = True
@@ -565,12 +573,13 @@ class Precondition(Decorator):
 
 class Loop(Decorator):
     left: list[str]
-    running = False
+    filled = running = False
 
     def tick(self) -> str:
         if self.status == IDLE:
-            self.left = self.ports["queue"].split(";")
-            self.running = False
+            if self.world.version >= (4, 7) or not self.filled:
+                self.left = self.ports["queue"].split(";")
+            self.filled, self.running = True, False
         if not self.running:
             if not self.left:
                 return self.ports.get("if_empty", S)
@@ -595,7 +604,8 @@ class UpdateDecorator(Decorator):
         if not self.running:
             now = self.world.writes.get(self.ports["entry"].strip("{}"), 0)
             if now == self.seen:
-                reset(self.child)
+                if self.world.version >= (4, 9):
+                    reset(self.child)
                 return self.otherwise
             self.seen = now
         answer = self.child.execute()
@@ -604,7 +614,8 @@ class UpdateDecorator(Decorator):
 
     def halt(self) -> None:
         self.running = False
-        super().halt()
+        if self.world.version >= (4, 9):
+            super().halt()
 
 
 class SkipUnlessUpdated(UpdateDecorator):

@@ -7,7 +7,7 @@ import itertools
 import random
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, TypeAlias, TypeVar
 from xml.sax.saxutils import quoteattr
 
@@ -174,6 +174,9 @@ class Kinds:
 ANY = Kinds({**CONTROLS, **NAV2_CONTROLS}, {**DECORATORS, **TIMED, **NAV2_DECORATORS}, {**LEAVES, **SLEEP})
 """All nodes but those that ask about the world."""
 WITH_WORLD = Kinds({**ANY.controls, **WORLD_CONTROLS}, {**ANY.decorators, **WORLD_DECORATORS}, ANY.leaves)
+
+OF_OLD_VERSIONS = replace(ANY, controls={name: ports for name, ports in ANY.controls.items() if name != "TryCatch"})
+"""The nodes that all versions of BehaviorTree.CPP 4 have."""
 
 
 def trees(kinds: Kinds) -> st.SearchStrategy[Drawn]:

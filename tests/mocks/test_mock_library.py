@@ -6,11 +6,12 @@ from __future__ import annotations
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_trees import COUNTS, WITH_WORLD, Drawn, as_xml, trees
+from random_trees import COUNTS, OF_OLD_VERSIONS, WITH_WORLD, Drawn, as_xml, trees
 from tree_comparison import difference_with_mocks
 
 from examples import TIMES, examples
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.libraries.version import NEWEST_VERSION, Version, read_version
 from roaml.lower.programs.assembly import programs
 
 TICKS = 14
@@ -18,14 +19,24 @@ DECORATED = WITH_WORLD.decorators
 NODES = {**WITH_WORLD.controls, **DECORATED}
 
 
-def compare(drawn: Drawn, seed: int, *, happens: bool = False) -> None:
-    assert difference_with_mocks(drawn, TICKS, seed, happens=happens) == "", as_xml(drawn)
+VERSIONS = ("4.6", "4.8.2", "4.9")
+"""Versions of BehaviorTree.CPP between which nodes changed."""
+
+
+def compare(drawn: Drawn, seed: int, *, happens: bool = False, version: Version = NEWEST_VERSION) -> None:
+    assert difference_with_mocks(drawn, TICKS, seed, happens=happens, version=version) == "", as_xml(drawn)
 
 
 @settings(max_examples=examples(40), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
 @given(trees(WITH_WORLD), st.integers(0, 2**30), st.booleans())
 def test_random_trees_do_what_the_libraries_do(drawn: Drawn, seed: int, happens: bool) -> None:
     compare(drawn, seed, happens=happens)
+
+
+@settings(max_examples=examples(40), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
+@given(trees(OF_OLD_VERSIONS), st.integers(0, 2**30), st.sampled_from(VERSIONS))
+def test_random_trees_do_what_older_versions_do(drawn: Drawn, seed: int, version: str) -> None:
+    compare(drawn, seed, version=read_version(version) or NEWEST_VERSION)
 
 
 @pytest.mark.parametrize("name", sorted(NODES))

@@ -12,6 +12,7 @@ from random_trees import WORLD_CONTROLS, WORLD_DECORATORS
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST
 from roaml.jani.typecheck import check_model
+from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.mocks.mock import Mock
 from roaml.mocks.network import MockedTree, MockOptions, mocked
 from roaml.model.tree import build_tree_file
@@ -44,18 +45,25 @@ class Observed:
     is_stuck: bool
 
 
-def forest_of(text: str) -> Forest:
+def forest_of(text: str, version: Version = NEWEST_VERSION) -> Forest:
     file = build_tree_file(parse(text))
     assert file is not None
-    return Forest(PATH, ((PATH, file),), replace(NEWEST, libraries=("nav2",)))
+    return Forest(PATH, ((PATH, file),), replace(NEWEST, libraries=("nav2",), version=version))
 
 
-def with_mocks(text: str, entries: dict[str, str], ticks: int, *, happens: bool = False) -> MockedTree:
-    """A tree ticked at 10 Hz; `Act<n>` is RUNNING for n ticks. `happens`: whether events of the world always occur."""
+def with_mocks(
+    text: str, entries: dict[str, str], ticks: int, *, happens: bool = False, version: Version = NEWEST_VERSION
+) -> MockedTree:
+    """A tree ticked at 10 Hz; `Act<n>` is RUNNING for n ticks.
+
+    Args:
+        happens: whether events of the world always occur.
+        version: the version of BehaviorTree.CPP that executes the tree.
+    """
     acts = [Mock(f"Act{n}", 0.6, Fraction(100 * n)) for n in range(4)]
     world = [Mock(node, float(happens)) for node in (*WORLD_CONTROLS, *WORLD_DECORATORS)]
     options = MockOptions((*acts, *world, Mock("*", 0.6)), entries, max_time=ticks * 10**8 + 5 * 10**7, counts=True)
-    return mocked(forest_of(text), options)
+    return mocked(forest_of(text, version), options)
 
 
 def observe(tree: MockedTree, seed: int) -> Observed:

@@ -12,13 +12,16 @@ from translated_trees import Observed, observe, with_mocks
 from trees_in_systems import observe_system, translated
 
 from roaml import api
+from roaml.libraries.version import NEWEST_VERSION, Version
 
 
-def difference_with_mocks(drawn: Drawn, ticks: int, seed: int, *, happens: bool = False) -> str:
+def difference_with_mocks(
+    drawn: Drawn, ticks: int, seed: int, *, happens: bool = False, version: Version = NEWEST_VERSION
+) -> str:
     """What the tree with mocks does differently, or nothing. `happens`: whether events of the world always occur."""
     entries = {key: str(value) for key, value in ENTRIES.items()}
-    seen = observe(with_mocks(as_xml(drawn), entries, ticks, happens=happens), seed)
-    return _difference(drawn, seen, happens=happens)
+    seen = observe(with_mocks(as_xml(drawn), entries, ticks, happens=happens, version=version), seed)
+    return _difference(drawn, seen, happens=happens, version=version)
 
 
 def difference_in_system(
@@ -41,9 +44,9 @@ def difference_in_system(
     return _difference(tree, observe_system(tree, model, seed))
 
 
-def modelled(drawn: Drawn, seen: Observed, *, happens: bool = False) -> Observed:
+def modelled(drawn: Drawn, seen: Observed, *, happens: bool = False, version: Version = NEWEST_VERSION) -> Observed:
     """The same run by the model of the library, with what chance has decided."""
-    world = library_model.World(dict(ENTRIES), copy.deepcopy(seen.outcomes), happens=happens)
+    world = library_model.World(dict(ENTRIES), copy.deepcopy(seen.outcomes), happens=happens, version=version)
     root = as_nodes(drawn, world)
     answers: list[str] = []
     is_stuck = False
@@ -66,9 +69,9 @@ def difference_of(seen: Observed, expected: Observed) -> str:
     return ""
 
 
-def _difference(drawn: Drawn, seen: Observed, *, happens: bool = False) -> str:
+def _difference(drawn: Drawn, seen: Observed, *, happens: bool = False, version: Version = NEWEST_VERSION) -> str:
     try:
-        expected = modelled(drawn, seen, happens=happens)
+        expected = modelled(drawn, seen, happens=happens, version=version)
     except library_model.OutOfOutcomesError:
         return f"the library calls a leaf that is not called: {seen.answers}, {seen.calls}"
     return difference_of(seen, expected)

@@ -15,6 +15,7 @@ from roaml.forest.cpp_types import normal
 from roaml.forest.ports import ports_of
 from roaml.forest.settings import TreeSettings
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library
+from roaml.libraries.version import Version
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.roles import NodeKind
@@ -199,10 +200,8 @@ class Forest:
 
     def is_newer_than_used(self, node: Node) -> bool:
         """Whether the node is newer than the version of the library that is used."""
-        if self.settings.version is None or not node.since:
-            return False
         major, _, minor = node.since.partition(".")
-        return (int(major), int(minor or 0)) > self.settings.version
+        return bool(node.since) and Version(int(major), int(minor or 0), 0) > self.settings.version
 
     def absent(self, name: str) -> Absent | None:
         """What is known about a name that is not the name of a node; `None` if nothing is known about it."""

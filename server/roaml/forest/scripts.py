@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import probable_ports
 from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
+from roaml.libraries.version import SCRIPTS_CHANGED_SINCE, Version
 from roaml.model.tree import TreeNode
-from roaml.script.parse import ScriptProblem, parse
+from roaml.script.parse import ScriptGrammar, ScriptProblem, parse
 from roaml.script.tree import Script
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
@@ -54,7 +55,12 @@ def script_attributes(node: TreeNode) -> Iterator[Attribute]:
             yield attribute
 
 
+def grammar_of(version: Version) -> ScriptGrammar:
+    """The grammar of scripts in a version of BehaviorTree.CPP."""
+    return ScriptGrammar.CURRENT if version >= SCRIPTS_CHANGED_SINCE else ScriptGrammar.BEFORE_4_9
+
+
 @functools.lru_cache(maxsize=2048)
-def parsed(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
+def parsed(source: Decoded, grammar: ScriptGrammar = ScriptGrammar.CURRENT) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text, and its syntax errors. The result is cached, because many rules need it."""
-    return parse(source)
+    return parse(source, grammar)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from roaml.libraries.version import NEWEST_VERSION, Version
+
 
 @dataclass(frozen=True, slots=True)
 class TreeSettings:
@@ -13,12 +15,12 @@ class TreeSettings:
     Attributes:
         models: files with models of nodes, in addition to those that trees include.
         libraries: the names of the libraries whose nodes are available.
-        version: the version of BehaviorTree.CPP, as two numbers; `None` for the newest version.
+        version: the version of BehaviorTree.CPP.
     """
 
     models: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ()
-    version: tuple[int, int] | None = None
+    version: Version = NEWEST_VERSION
 
 
 NEWEST = TreeSettings()

@@ -130,7 +130,7 @@ class _Builder:
     def build(self) -> MockedTree:
         missing = []
         for node in self.tree.nodes:
-            program = program_of(node)
+            program = program_of(node, self.tree.version)
             self.programs[node.number] = program
             if program is None and self.find_mock(node) is None:
                 missing.append(node)

@@ -58,7 +58,8 @@ def unfold(forest: Forest) -> ExecutedTree:
     unfolder = _Unfolder(forest)
     assert tree.id is not None
     unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((tree.id.value,))), 0)
-    return ExecutedTree(tree.id.value, tuple(unfolder.nodes[n] for n in sorted(unfolder.nodes)), unfolder.initial)
+    nodes = tuple(unfolder.nodes[n] for n in sorted(unfolder.nodes))
+    return ExecutedTree(tree.id.value, nodes, unfolder.initial, forest.settings.version)
 
 
 def _main_tree(forest: Forest) -> Tree:

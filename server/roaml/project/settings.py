@@ -8,7 +8,6 @@ reported in that file (`roaml.project.configuration`), and the valid settings ar
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -17,6 +16,7 @@ from roaml.comparison import Comparison, read_comparison
 from roaml.diagnostics import Severity
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
+from roaml.libraries.version import Version, read_version
 from roaml.model.config_files import CONFIG_FILE
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.model.size import DEFAULT_LIMITS, Limits
@@ -280,15 +280,13 @@ def _libraries(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[
     return tuple(name for name in read if name in LIBRARIES)
 
 
-def _version(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[int, int] | None:
-    match = _VERSION.match(value) if isinstance(value, str) else None
-    if match is None:
-        problems.append(SettingProblem(path, f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6"'))
-        return None
-    return 4, int(match[1])
+def _version(path: Path, value: Any, problems: list[SettingProblem]) -> Version | None:
+    version = read_version(value) if isinstance(value, str) else None
+    if version is None:
+        message = f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6" or "4.8.2"'
+        problems.append(SettingProblem(path, message))
+    return version
 
-
-_VERSION = re.compile(r"4\.([0-9]{1,3})(?:\.[0-9]+)?\Z", re.ASCII)
 
 _SETS = ("select", "ignore")
 _TREES = {"tree-models": "models", "tree-libraries": "libraries", "behaviortree-cpp": "version"}

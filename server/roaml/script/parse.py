@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import enum
 import re
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -42,6 +43,15 @@ BINARY = {
     "*": 9, "/": 9, "+": 8, "-": 8, "..": 8, "&": 7, "|": 6, "^": 6, "&&": 4, "||": 3,
 }  # fmt: skip
 """The precedences of the binary operators except comparisons, whose precedence is 5."""
+BINARY_BEFORE_4_9 = {**BINARY, "||": 4}
+_RIGHT_BEFORE_4_9 = ("*", "/", "+", "-")
+"""The operators that were right-associative before version 4.9."""
+_FAMILIES = (
+    ("arithmetic", ("*", "/", "+", "-")),
+    ("operators on bits", ("&", "|", "^", "~", "!")),
+    ("`..`", ("..",)),
+)
+"""The operators that could not be mixed without brackets before version 4.9, and how messages name them."""
 
 _COMPARISON, _CONDITIONAL, _ASSIGNMENT = 5, 2, 1
 
@@ -65,7 +75,15 @@ _INSTEAD = {
     "===": "write `==`",
     "!==": "write `!=`",
 }
+_BEFORE = " before version 4.9 of BehaviorTree.CPP"
 _WORDS = {"and": "&&", "or": "||", "not": "!"}
+
+
+class ScriptGrammar(enum.Enum):
+    """The grammar of scripts, which depends on the version of BehaviorTree.CPP (docs/spec/scripts.md#before)."""
+
+    CURRENT = "4.9 and newer"
+    BEFORE_4_9 = "before 4.9"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +129,9 @@ class _ScriptError(Exception):
         self.replacement = replacement
 
 
-def parse(source: Decoded) -> tuple[Script, tuple[ScriptProblem, ...]]:
+def parse(source: Decoded, grammar: ScriptGrammar = ScriptGrammar.CURRENT) -> tuple[Script, tuple[ScriptProblem, ...]]:
     """The script in a text, and its syntax errors, at most `MAX_PROBLEMS`."""
-    return _Parser(source).script()
+    return _Parser(source, grammar).script()
 
 
 def _tokens(text: str) -> list[_Token]:
@@ -126,8 +144,12 @@ def _tokens(text: str) -> list[_Token]:
 
 
 class _Parser:
-    def __init__(self, source: Decoded) -> None:
+    def __init__(self, source: Decoded, grammar: ScriptGrammar) -> None:
         self.source = source
+        self.is_old = grammar is ScriptGrammar.BEFORE_4_9
+        self.precedences = BINARY_BEFORE_4_9 if self.is_old else BINARY
+        self.family = ""
+        """Before version 4.9: the family of the operators that were read since the last bracket."""
         self.tokens = _tokens(source.text)
         self.at = 0
         self.depth = 0
@@ -152,6 +174,9 @@ class _Parser:
             self.at += 1
         return token
 
+    def is_at_end(self) -> bool:
+        return self.token.kind is _TokenKind.END
+
     def takes(self, *texts: str) -> bool:
         if self.token.kind is _TokenKind.OPERATOR and self.token.text in texts:
             self.at += 1
@@ -167,14 +192,25 @@ class _Parser:
             self.problems.append(ScriptProblem(span, "the script is empty"))
         elif self.token.text == ";":
             self.problems.append(ScriptProblem(self.span(self.token), "a script cannot begin with `;`"))
-        while self.token.kind is not _TokenKind.END:
-            if not self.takes(";"):
+        while not self.is_at_end():
+            if self.is_old and statements:
+                self.separator()
+            if not self.takes(";") and not self.is_at_end():
                 statements.append(self.statement())
         return Script(span, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
+
+    def separator(self) -> None:
+        """Read the `;` between two statements, which version 4.8 needs; it does not allow one at the end."""
+        token = self.token
+        if not self.takes(";"):
+            self.problems.append(ScriptProblem(self.span(token), f"a `;` is missing before `{token.text}`{_BEFORE}"))
+        elif self.is_at_end() or self.token.text == ";":
+            self.problems.append(ScriptProblem(self.span(token), f"no statement follows this `;`{_BEFORE}"))
 
     def statement(self) -> Expr:
         start = self.token
         self.depth = 0
+        self.family = ""
         try:
             expr = self.expression(_ASSIGNMENT)
             if self.token.text in (")", ":") or self.token.kind is _TokenKind.JUNK or self._begins_nothing():
@@ -253,8 +289,8 @@ class _Parser:
         token = self.token
         if token.kind is not _TokenKind.OPERATOR:
             return None
-        if token.text in BINARY:
-            return BINARY[token.text]
+        if token.text in self.precedences:
+            return self.precedences[token.text]
         if token.text in COMPARISONS:
             return _COMPARISON
         if token.text == "?":
@@ -267,15 +303,19 @@ class _Parser:
             if not isinstance(left, Name):
                 raise self.unexpected()
             self.at += 1
-            value = self.expression(_ASSIGNMENT)
+            value = self.expression(_CONDITIONAL if self.is_old else _ASSIGNMENT)
+            self.refuse_chain(*ASSIGNMENTS)
             return Assignment(self.since(start), operator.text, self.span(operator), left, value)
         self.at += 1
         if strength == _CONDITIONAL:
+            family, self.family = self.family, ""
             yes = self.expression(_CONDITIONAL)
+            self.family = family
             height = self.height
             if not self.takes(":"):
                 raise _ScriptError(self.token, "`?` needs a `:` with the other value")
-            no = self.expression(_CONDITIONAL)
+            no = self.expression(_CONDITIONAL + self.is_old)
+            self.refuse_chain("?")
             self.height = max(height, self.height)
             return Conditional(self.since(start), left, yes, no)
         if strength == _COMPARISON:
@@ -286,8 +326,24 @@ class _Parser:
                 operands.append(self.expression(_COMPARISON + 1))
                 self.height = max(height, self.height)
             return Comparison(self.since(start), tuple(operators), tuple(operands))
-        right = self.expression(strength + 1)
+        self.enter_family(operator)
+        is_right = self.is_old and operator.text in _RIGHT_BEFORE_4_9
+        right = self.expression(strength if is_right else strength + 1)
         return Binary(self.since(start), operator.text, self.span(operator), left, right)
+
+    def refuse_chain(self, *operators: str) -> None:
+        """Report an operator that cannot follow another one of its kind before version 4.9."""
+        if self.is_old and self.token.kind is _TokenKind.OPERATOR and self.token.text in operators:
+            raise _ScriptError(self.token, f"a second `{self.token.text}` needs brackets{_BEFORE}")
+
+    def enter_family(self, operator: _Token) -> None:
+        """Record the family of an operator. Before version 4.9, an expression without brackets has operators of at most
+        one family."""
+        family = next((name for name, operators in _FAMILIES if operator.text in operators), "")
+        if self.is_old and family and self.family not in ("", family):
+            message = f"`{operator.text}` cannot be mixed with {self.family}{_BEFORE}; use brackets"
+            raise _ScriptError(operator, message)
+        self.family = family or self.family
 
     def operand(self) -> Expr:
         token = self.token
@@ -295,7 +351,9 @@ class _Parser:
             return self._unary()
         if token.kind is _TokenKind.OPERATOR and token.text == "(":
             self.at += 1
+            family, self.family = self.family, ""
             inner = self.expression(_ASSIGNMENT)
+            self.family = family
             if not self.takes(")"):
                 raise _ScriptError(token, "this `(` is never closed")
             return inner
@@ -315,6 +373,7 @@ class _Parser:
 
     def _unary(self) -> Expr:
         token = self.next()
+        self.enter_family(token)
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise self._too_deep()

@@ -14,6 +14,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
+from roaml.libraries.version import NEWEST_VERSION, Version
+
 FILES = ("behaviortree_cpp.txt", "nav2.txt", "leaves.txt")
 
 _BEFORE = """
@@ -200,13 +202,15 @@ class NodeProgram:
 
 
 @functools.cache
-def programs() -> Mapping[str, NodeProgram]:
-    """Name of a node -> its program."""
+def programs(version: Version = NEWEST_VERSION) -> Mapping[str, NodeProgram]:
+    """Name of a node -> its program in a version of BehaviorTree.CPP."""
     result: dict[str, NodeProgram] = {}
     for file in FILES:
         text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
         for statement in ast.parse(text).body:
             assert isinstance(statement, ast.ClassDef)
+            if not _is_in(version, statement):
+                continue
             program = _program(statement, result)
             result[program.name] = program
     return result
@@ -228,6 +232,17 @@ def after(given: frozenset[str]) -> tuple[Instruction, ...]:
 def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
     """The instructions after a node that has the scripts `given` was halted."""
     return _Assembler(given).function(ast.parse('script("_onHalted")').body)
+
+
+def _is_in(version: Version, definition: ast.ClassDef) -> bool:
+    """Whether a version has a program, which may be marked as one of older versions."""
+    match definition.decorator_list:
+        case [ast.Call(func=ast.Name(id="before"), args=[ast.Constant(value=str(first))])]:
+            major, _, minor = first.partition(".")
+            return version < Version(int(major), int(minor), 0)
+        case []:
+            return True
+    raise AssertionError(ast.dump(definition))
 
 
 def _program(definition: ast.ClassDef, known: Mapping[str, NodeProgram]) -> NodeProgram:

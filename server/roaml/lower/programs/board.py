@@ -7,13 +7,15 @@ any C++ type.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from roaml.forest.forest import port_type
-from roaml.forest.scripts import parsed, script_attributes
+from roaml.forest.scripts import grammar_of, parsed, script_attributes
 from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
+from roaml.libraries.version import CASES_WHOLE_SINCE, CONSTANTS_TYPED_SINCE, Version
 from roaml.lower.programs.assembly import NodeProgram
+from roaml.lower.programs.cases import number_in
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.roles import Direction
@@ -47,6 +49,7 @@ class Board:
         read: the names of the entries that programs and scripts read.
         written: the names of the entries that nodes and scripts write.
         in_system: whether the tree is part of a system.
+        version: the version of BehaviorTree.CPP that executes the tree.
     """
 
     entries: Mapping[str, BoardEntry]
@@ -56,6 +59,7 @@ class Board:
     read: frozenset[str]
     written: frozenset[str]
     in_system: bool
+    version: Version
 
     def unset(self, name: str) -> str:
         """A message that says why the entry `name`, which nothing sets, cannot be read."""
@@ -64,13 +68,13 @@ class Board:
         return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
 
 
-def node_scripts(node: ExecutedNode) -> Iterator[tuple[str, Script, bool]]:
+def node_scripts(node: ExecutedNode, version: Version) -> Iterator[tuple[str, Script, bool]]:
     """The scripts of a node, each with its attribute, and with whether its value is used as a condition."""
     for attribute in script_attributes(node.node):
         is_condition = attribute.name in CONDITIONS or (
             attribute.name in script_ports().get(node.type, ()) and node.type in CONDITION_NODES
         )
-        yield attribute.name, parsed(_text(attribute))[0], is_condition
+        yield attribute.name, parsed(_text(attribute), grammar_of(version))[0], is_condition
 
 
 def _text(attribute: Attribute) -> Decoded:
@@ -143,22 +147,38 @@ class _Reader:
     mentioned: dict[str, list[int | float | str]] = field(default_factory=dict)
     observed: dict[int, str] = field(default_factory=dict)
     copies: list[tuple[str, str]] = field(default_factory=list)
+    switched: list[tuple[str, EntryKind]] = field(default_factory=list)
 
     def board(self) -> Board:
         for entry, text in (*self.tree.initial.items(), *self.given.items()):
             self.texts.setdefault(entry, []).append(text)
         for node in self.tree.nodes:
             self.ports(node)
-        scripts = [(node, _facts(script)) for node in self.tree.nodes for _, script, _ in node_scripts(node)]
-        for _ in range(len(self.tree.nodes) + 2):  # until nothing changes
+        version = self.tree.version
+        if version < CONSTANTS_TYPED_SINCE:
+            for entry in self.tree.initial:
+                self.add(entry, EntryKind.TEXT)
+        scripts = [(node, _facts(script)) for node in self.tree.nodes for _, script, _ in node_scripts(node, version)]
+        self.follow(scripts)
+        self.from_texts()
+        if self.switched:
+            self.follow(scripts)
+            for entry, kind in self.switched:
+                if entry not in self.kinds:
+                    self.add(entry, kind)
+            self.follow(scripts)
+            self.from_texts()
+        return self.result()
+
+    def follow(self, scripts: Sequence[tuple[ExecutedNode, _ScriptFacts]]) -> None:
+        """Infer the kinds of entries from scripts and copies, until nothing changes."""
+        for _ in range(len(self.tree.nodes) + 2):
             before = dict(self.kinds), len(self.readers)
             for node, script_facts in scripts:
                 self.script(node, script_facts)
             self.copied()
             if before == (self.kinds, len(self.readers)):
                 break
-        self.from_texts()
-        return self.result()
 
     def add(self, entry: str, kind: EntryKind | None) -> None:
         """Record that an entry is used with values of `kind`; `None` means that the kind is not known."""
@@ -208,18 +228,15 @@ class _Reader:
         cases = [text for port, entry, text, _ in node.ports() if port.startswith("case_") and entry is None]
         if bound is None:
             return
-        kinds = {read_literal(text)[0] for text in cases}
-        kind = (
-            EntryKind.TEXT
-            if EntryKind.TEXT in kinds
-            else EntryKind.REAL
-            if EntryKind.REAL in kinds
-            else EntryKind.INTEGER
-        )
-        if bound not in self.kinds:
-            self.texts.setdefault(bound, [])
-            self.add(bound, kind)
-        values = [text if kind is EntryKind.TEXT else read_literal(text)[1] for text in cases]
+        is_whole = self.tree.version >= CASES_WHOLE_SINCE
+        numbers = [number_in(text, is_whole=is_whole) for text in cases]
+        if None in numbers:
+            kind = EntryKind.TEXT
+        else:
+            kind = EntryKind.REAL if any(isinstance(number, float) for number in numbers) else EntryKind.INTEGER
+        self.texts.setdefault(bound, [])
+        self.switched.append((bound, kind))
+        values = [text if number is None else number for text, number in zip(cases, numbers, strict=True)]
         self.mentioned.setdefault(bound, []).extend(values)
 
     def copied(self) -> None:
@@ -270,7 +287,7 @@ class _Reader:
                 if entry in (self.typed or {}):
                     continue
                 widens = kind is EntryKind.REAL and known is EntryKind.INTEGER
-                if known is None or widens or (kind is EntryKind.TEXT and not self.mentioned.get(entry)):
+                if known is None or widens or kind is EntryKind.TEXT:
                     self.kinds[entry] = kind
 
     def result(self) -> Board:
@@ -282,7 +299,7 @@ class _Reader:
                 continue
             kind = self.kinds.get(name, EntryKind.INTEGER)
             literal = None if initial is None else read_literal(initial)[1] if kind is not EntryKind.TEXT else initial
-            entries[name] = BoardEntry(name, kind, literal, typed.get(name, ""))
+            entries[name] = BoardEntry(name, kind, literal, typed.get(name, ""), self.constant_text(name))
         flags: dict[str, list[BoardEntry]] = {}
         flag_of: dict[int, BoardEntry] = {}
         for number, name in self.observed.items():
@@ -293,7 +310,12 @@ class _Reader:
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         observers = {name: tuple(known) for name, known in flags.items()}
         read, written = frozenset(self.readers), frozenset(self.writers)
-        return Board(entries, observers, flag_of, values, read, written, self.typed is not None)
+        return Board(entries, observers, flag_of, values, read, written, self.typed is not None, self.tree.version)
+
+    def constant_text(self, name: str) -> str | None:
+        """The text of an entry that a `<SubTree>` sets and nothing else writes, if the version stores it as a text."""
+        is_constant = name not in self.writers and name not in (self.typed or {})
+        return self.tree.initial.get(name) if is_constant and self.tree.version < CONSTANTS_TYPED_SINCE else None
 
     def values(self, name: str, kind: EntryKind) -> tuple[int | float | str, ...]:
         """The values that a mock may write to an entry: those with which the tree compares the entry, and defaults of

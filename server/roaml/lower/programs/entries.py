@@ -26,12 +26,14 @@ class BoardEntry:
         variable: the full name of the entry, which is unique in the tree.
         initial: the value before the first write; `None` if the entry does not exist then.
         type: the type of the variable of the blackboard if a plugin determines it; "" if `kind` determines it.
+        text: the text that scripts read, if the entry is a constant text whatever `kind` is; otherwise `None`.
     """
 
     variable: str
     kind: EntryKind
     initial: int | float | str | None = None
     type: str = ""
+    text: str | None = None
 
     @property
     def local(self) -> str:

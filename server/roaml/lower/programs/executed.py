@@ -12,6 +12,7 @@ from typing import Protocol
 from roaml.forest.entries import entry_of
 from roaml.forest.ports import ports_of
 from roaml.libraries import Node
+from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.model.tree import TreeNode
 from roaml.scxml.names import NODE_PREFIX
 from roaml.text import Location, Span
@@ -71,11 +72,13 @@ class ExecutedTree:
         name: the name of the tree.
         nodes: its nodes, in pre-order.
         initial: entry -> the constant text to which an attribute of a `<SubTree>` sets it.
+        version: the version of BehaviorTree.CPP that executes the tree.
     """
 
     name: str
     nodes: tuple[ExecutedNode, ...]
     initial: Mapping[str, str]
+    version: Version = NEWEST_VERSION
 
 
 def identifier(name: str) -> str:

@@ -12,8 +12,10 @@ from roaml.forest.forest import CPP, port_type
 from roaml.libraries import Port, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.scripts import script_ports
+from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
+from roaml.lower.programs.cases import case_value
 from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
@@ -26,18 +28,20 @@ EVENT_PROBABILITY = 0.1
 """The probability of an event of the world at a tick, unless the tree or a mock sets another one."""
 
 
-def program_of(node: ExecutedNode) -> NodeProgram | None:
-    """The program of a node of the libraries; `None` for a leaf that is not from a library.
+def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodeProgram | None:
+    """The program of a node of the libraries in a version of BehaviorTree.CPP; `None` for a leaf that is not from a
+    library.
 
     Raises:
         TreeRefusal: the node cannot be executed.
     """
+    known_programs = programs(version)
     if node.type == "SubTree" and node.children:
-        return programs()["SubTree"]
+        return known_programs["SubTree"]
     is_library = node.known is not None and bool(node.known.behaviour)
-    if is_library and node.type in programs():
+    if is_library and node.type in known_programs:
         _check_children(node)
-        return programs()[node.type]
+        return known_programs[node.type]
     if node.children:
         reason = f"`{node.type}` has children, but its behaviour is not known"
         raise TreeRefusal(node.origin, reason)
@@ -64,7 +68,7 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
         TreeRefusal: a script cannot be translated.
     """
     result = {}
-    for attribute, script, is_condition in node_scripts(node):
+    for attribute, script, is_condition in node_scripts(node, board.version):
         try:
             result[attribute] = compiled(
                 script,
@@ -189,7 +193,7 @@ class _Reader:
                 continue
             type_ = port_type(port)
             if program.name.startswith("Switch"):
-                known[port.name] = _case(text, kinds)
+                known[port.name] = case_value(text, kinds, is_whole=bool(program.fixed["is_whole"]))
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
                 self.check_divisor(node, port.name, known[port.name], Location(node.origin.path, span))
@@ -314,10 +318,3 @@ def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
 
 _STATUS_NUMBERS = ("1", "2", "3")
 """The numbers that trees of systems may use for statuses."""
-
-
-def _case(text: str, kinds: set[EntryKind]) -> Known:
-    """The value of a case of a switch: a number if the variable of the switch is a number, otherwise the text."""
-    if not kinds or EntryKind.TEXT in kinds:
-        return text
-    return read_literal(text)[1]

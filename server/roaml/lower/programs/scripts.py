@@ -126,6 +126,8 @@ class _Compiler:
                 return _Value(constant(EntryKind.TEXT, text), EntryKind.TEXT)
             case syntax.Name():
                 entry = self.find(expr)
+                if entry.text is not None:
+                    return _Value(constant(EntryKind.TEXT, entry.text), EntryKind.TEXT)
                 if entry.variable not in self.writes:
                     self.reads[entry.variable] = entry
                 return _Value(name(entry.local), entry.kind)

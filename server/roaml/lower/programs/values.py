@@ -15,7 +15,9 @@ from typing import Any
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
 from roaml.lower.build import binary, equal, floor, integer, math_call, name
+from roaml.lower.programs.cases import are_equal
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
+from roaml.lower.programs.entries import EntryKind
 from roaml.text import NO_SPAN
 
 RESULT = "*result"
@@ -102,15 +104,38 @@ class ProgramValues:
                 if isinstance(first, (int, float)) and isinstance(second, (int, float)):
                     return max(first, second)
                 return math_call("max", expr(first), expr(second))
-            case "matches", [int() as case]:
-                return self.matches(case)
+            case "matches", [int() as case, bool() as is_whole]:
+                return self.matches(case, is_whole)
             case "element", [position]:
                 return self.element(position)
         raise AssertionError(function)
 
-    def matches(self, case: int) -> Value:
-        """The condition that the variable of a switch equals the case with the index `case`."""
-        return compared(self.name("variable", {}), ast.Eq, self.name(f"case_{case + 1}", {}))
+    def matches(self, case: int, is_whole: bool) -> Value:
+        """The condition that the variable of a switch equals the case with the index `case`. `is_whole`: whether a text
+        is a number only as a whole."""
+        port = f"case_{case + 1}"
+        variable, constant = self.name("variable", {}), self.name(port, {})
+        if isinstance(variable, str) and isinstance(constant, str):
+            return are_equal(variable, constant, is_whole=is_whole)
+        if self.is_number("variable") is not self.is_number(port):
+            return False
+        if not is_whole and not isinstance(variable, float) and not isinstance(constant, float):
+            variable, constant = self.truncated("variable", variable), self.truncated(port, constant)
+        return compared(variable, ast.Eq, constant)
+
+    def is_number(self, port: str) -> bool:
+        """Whether the value of a port is a number, not a text."""
+        if port in self.code.bound:
+            return self.code.bound[port].kind is not EntryKind.TEXT
+        return not isinstance(self.code.known[port], str)
+
+    def truncated(self, port: str, value: Value) -> Value:
+        """The integer that the text of a number begins with."""
+        if port not in self.code.bound or self.code.bound[port].kind is not EntryKind.REAL:
+            return value
+        number = expr(value)
+        is_negative = binary(number, Operator.LESS, integer(0))
+        return Conditional(NO_SPAN, is_negative, math_call("ceil", number), floor(number))
 
     def element(self, position: Value) -> Value:
         """The element of the queue at `position`, which begins at 0."""

@@ -9,14 +9,12 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import rename_tag
 from roaml.forest.forest import Forest
 from roaml.libraries import Node
+from roaml.libraries.version import TAGS_LOOKED_UP_SINCE
 from roaml.model.tree import TreeNode
 from roaml.roles import NodeKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 from roaml.text import Span, TextEdit
-
-LOOKED_UP_SINCE = (4, 7)
-"""The first version that looks up the tags of the children of a `ReactiveSequence`."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -48,8 +46,7 @@ def _finding(node: TreeNode, known: Node) -> Finding:
 def _refused(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Finding]:
     """Report generic tags such as `<Action ID="X">` directly in a `ReactiveSequence`. A bug of BehaviorTree.CPP looks
     up these tags as names of nodes."""
-    version = forest.settings.version
-    if version is not None and version < LOOKED_UP_SINCE:
+    if forest.settings.version < TAGS_LOOKED_UP_SINCE:
         return
     for child in node.children:
         if child.compact or child.is_subtree or child.plugin is None:

@@ -8,12 +8,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.forest import Forest
 from roaml.forest.statuses import PossibleStatuses
+from roaml.libraries.version import ASYNC_SEQUENCES_REFUSED_SINCE
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
-
-REFUSED_SINCE = (4, 7)
-"""The first version that refuses two `AsyncSequence` in a `ReactiveSequence`."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -37,9 +35,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _refused(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
-    version = forest.settings.version
+    is_refused = forest.settings.version >= ASYNC_SEQUENCES_REFUSED_SINCE
     asynchronous = [child for child in node.children if child.plugin and child.plugin.value == "AsyncSequence"]
-    if name == "ReactiveSequence" and (version is None or version >= REFUSED_SINCE):
+    if name == "ReactiveSequence" and is_refused:
         for child in asynchronous[1:]:
             message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`"
             yield RULE.at(child.element.name_span, message, severity=Severity.ERROR)

@@ -10,6 +10,7 @@ from roaml.forest.cpp_types import ANY, STRING
 from roaml.forest.entries import Entries, Key
 from roaml.forest.forest import Forest
 from roaml.forest.scripts import scripts_of
+from roaml.libraries.version import CONSTANTS_TYPED_SINCE
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import forest_of
@@ -27,7 +28,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     if forest is None:
         return
     entries = entries_of(forest)
-    types = {**_assigned(forest, entries), **_types(entries)}
+    types = {**_assigned(forest, entries), **_types(entries), **_constants(forest, entries)}
     for tree, use, script, problems in scripts(context):
         own = tree.id.value if tree.id else ""
 
@@ -65,6 +66,18 @@ def _assigned(forest: Forest, entries: Entries) -> dict[Key, Type]:
             for name, type_ in created_in(use.attribute.value):
                 types.setdefault(entries.entry(own, name), set()).add(type_)
     return {key: given.pop() for key, given in types.items() if len(given) == 1 and key not in others}
+
+
+def _constants(forest: Forest, entries: Entries) -> dict[Key, Type]:
+    """The entries that only constants of `<SubTree>` nodes set, if the version of the library stores these as texts."""
+    if forest.settings.version >= CONSTANTS_TYPED_SINCE:
+        return {}
+    writers = {key: [use for use in uses if use.writes is not False] for key, uses in entries.by_entry.items()}
+    return {
+        key: Type.TEXT
+        for key, uses in writers.items()
+        if uses and all(use.node.is_subtree and not use.script and use.creates for use in uses)
+    }
 
 
 RULE = Rule("script-type", Severity.ERROR, "An operation of a script always fails.", tree=check)

@@ -10,6 +10,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.forest.forest import CPP, Forest
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
+from roaml.libraries.version import NAMES_CHECKED_SINCE
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext
@@ -24,18 +25,24 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
+    is_checked = forest.settings.version >= NAMES_CHECKED_SINCE
     for tree in context.file.trees:
         if tree.id is not None:
-            yield from _id(tree.id, "tree")
+            yield from _id(tree.id, "tree", is_checked)
             yield from _like_a_node(forest, tree.id)
-        yield from _instances(tree)
-    yield from _models(context)
+        if is_checked:
+            yield from _instances(tree)
+    yield from _models(context, is_checked)
 
 
-def _id(name: Name, kind_name: str) -> Iterator[Finding]:
+def _id(name: Name, kind_name: str, is_checked: bool) -> Iterator[Finding]:
+    """Report a name of a tree or node that the library refuses. `is_checked`: whether its version checks the characters
+    of names."""
     text = name.value
     if not text:
         yield RULE.at(name.span, f"the name of a {kind_name} must not be empty")
+    elif not is_checked:
+        return
     elif text in ("Root", "root"):
         yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {kind_name}; choose another name")
     elif match := _FORBIDDEN.search(text):
@@ -74,7 +81,7 @@ def _instances(tree: Tree) -> Iterator[Finding]:
                 )
 
 
-def _models(context: TreeContext) -> Iterator[Finding]:
+def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
     lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
     for extra in lists[1:]:
         message = (
@@ -86,7 +93,7 @@ def _models(context: TreeContext) -> Iterator[Finding]:
     for model in context.file.models:
         if model.id is None:
             continue
-        yield from _id(model.id, "node")
+        yield from _id(model.id, "node", is_checked)
         earlier = first.setdefault(model.id.value, model.id)
         if earlier is not model.id:
             drop = remove(context.document, model.element)
@@ -101,7 +108,8 @@ def _models(context: TreeContext) -> Iterator[Finding]:
                 message = f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove a description"
                 related = [Related(ports[port.name.value].span, "the first description")]
                 yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
-            yield from _port(port.name)
+            if is_checked:
+                yield from _port(port.name)
 
 
 def _port(name: Name) -> Iterator[Finding]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Fix
-from roaml.forest.scripts import ScriptUse, parsed, script_attributes, scripts_of
+from roaml.forest.scripts import ScriptUse, grammar_of, parsed, script_attributes, scripts_of
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import TreeContext
 from roaml.rules.support.forest import forest_of
@@ -23,9 +23,10 @@ def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tup
     forest = forest_of(context)
     if forest is None:
         return
+    grammar = grammar_of(forest.settings.version)
     for tree, node in forest.own_nodes:
         for use in scripts_of(forest, node):
-            yield tree, use, *parsed(context.document.decoded(use.attribute.value_span))
+            yield tree, use, *parsed(context.document.decoded(use.attribute.value_span), grammar)
 
 
 def all_scripts(context: TreeContext) -> Iterator[tuple[Attribute, Script, tuple[ScriptProblem, ...]]]:

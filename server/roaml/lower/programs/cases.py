@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cases of a `Switch`: when BehaviorTree.CPP regards its variable and a case as equal (docs/spec/mocks.md#cases)."""
+
+from __future__ import annotations
+
+import re
+
+from roaml.lower.programs.entries import EntryKind
+
+_INTEGER = re.compile(r"\s*[+-]?[0-9]+", re.ASCII)
+_REAL = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
+
+
+def number_in(text: str, *, is_whole: bool) -> int | float | None:
+    """The number that the library reads from a text; `None` if there is none.
+
+    Args:
+        is_whole: whether all of the text must be the number. Otherwise, the text after an integer is ignored, and only
+            without an integer, the text after a real number.
+    """
+    integer = _read(_INTEGER, text, is_whole)
+    return _read(_REAL, text, is_whole) if integer is None else int(integer)
+
+
+def are_equal(variable: str, case: str, *, is_whole: bool) -> bool:
+    """Whether two constant texts are equal: as texts, as integers, or as real numbers."""
+    numbers = ((_read(pattern, variable, is_whole), _read(pattern, case, is_whole)) for pattern in (_INTEGER, _REAL))
+    return variable == case or any(first is not None and first == second for first, second in numbers)
+
+
+def _read(pattern: re.Pattern[str], text: str, is_whole: bool) -> float | None:
+    match = pattern.fullmatch(text) if is_whole else pattern.match(text)
+    return None if match is None else float(match[0])
+
+
+def case_value(text: str, kinds: set[EntryKind], *, is_whole: bool) -> int | float | str:
+    """A constant of a `Switch` beside entries of the kinds `kinds`: a number if the entries are numbers and the library
+    reads one, otherwise the text."""
+    if not kinds or EntryKind.TEXT in kinds:
+        return text
+    number = number_in(text, is_whole=is_whole)
+    return text if number is None else number

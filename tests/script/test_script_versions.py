@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The grammar of scripts before version 4.9 of BehaviorTree.CPP (docs/spec/scripts.md#before).
+
+If `behaviortreepy` is installed, which binds version 4.8.2, the library judges: it refuses the same random scripts, and
+the others have the same value as with all brackets.
+"""
+
+from __future__ import annotations
+
+from html import escape
+from importlib import util
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from examples import TIMES, examples
+from roaml.script.parse import ScriptGrammar, parse
+from roaml.script.tree import (
+    Assignment,
+    Binary,
+    Boolean,
+    Comparison,
+    Conditional,
+    ErrorExpr,
+    Expr,
+    Name,
+    Number,
+    String,
+    Unary,
+)
+from roaml.text import Decoded
+
+
+def with_brackets(expr: Expr) -> str:
+    """An expression with brackets around each of its parts."""
+    match expr:
+        case Number(value=value):
+            return str(value)
+        case Boolean(value=value):
+            return str(value).lower()
+        case String(value=text):
+            return f"'{text}'"
+        case Name(name=name):
+            return name
+        case Unary(operator=operator, operand=operand):
+            return f"({operator}{with_brackets(operand)})"
+        case Binary(operator=operator, left=left, right=right):
+            return f"({with_brackets(left)} {operator} {with_brackets(right)})"
+        case Comparison(operators=operators, operands=operands):
+            parts = [part for pair in zip(("", *operators), map(with_brackets, operands), strict=True) for part in pair]
+            return f"({' '.join(parts).strip()})"
+        case Conditional(test=test, yes=yes, no=no):
+            return f"({with_brackets(test)} ? {with_brackets(yes)} : {with_brackets(no)})"
+        case Assignment(operator=operator, target=target, value=value):
+            return f"({target.name} {operator} {with_brackets(value)})"
+        case ErrorExpr():
+            raise AssertionError(expr)
+
+
+def read(text: str, grammar: ScriptGrammar) -> str:
+    """The last statement of a script with all brackets, or the first syntax error."""
+    script, problems = parse(Decoded(text, 0), grammar)
+    return problems[0].message if problems else with_brackets(script.statements[-1])
+
+
+@pytest.mark.parametrize(
+    ("text", "before", "now"),
+    [
+        ("10 - 3 - 2", "(10 - (3 - 2))", "((10 - 3) - 2)"),
+        ("100 / 10 * 5", "(100 / (10 * 5))", "((100 / 10) * 5)"),
+        ("1 - 2 * 3 - 4", "(1 - ((2 * 3) - 4))", "((1 - (2 * 3)) - 4)"),
+        ("4 ^ 1 | 5", "((4 ^ 1) | 5)", "((4 ^ 1) | 5)"),
+        ("1 || 0 && 0", "((1 || 0) && 0)", "(1 || (0 && 0))"),
+        ("1 < 2 == 2", "(1 < 2 == 2)", "(1 < 2 == 2)"),
+        ("a := 1; b := 2", "(b := 2)", "(b := 2)"),
+    ],
+)
+def test_precedences(text: str, before: str, now: str) -> None:
+    assert (read(text, ScriptGrammar.BEFORE_4_9), read(text, ScriptGrammar.CURRENT)) == (before, now)
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "now"),
+    [
+        ("1 + 2 & 3", "`&` cannot be mixed with arithmetic", "((1 + 2) & 3)"),
+        ("~0 == 0 - 1", "`-` cannot be mixed with operators on bits", "((~0) == (0 - 1))"),
+        ("'a' .. 5 - 2", "`-` cannot be mixed with `..`", "(('a' .. 5) - 2)"),
+        ("2 * !0", "`!` cannot be mixed with arithmetic", "(2 * (!0))"),
+        ("1 ? 2 : 0 ? 3 : 4", "a second `?` needs brackets", "(1 ? 2 : (0 ? 3 : 4))"),
+        ("a := b := 1", "a second `:=` needs brackets", "(a := (b := 1))"),
+        ("a := 1 b := 2", "a `;` is missing before `b`", "(b := 2)"),
+        ("a := 1;", "no statement follows this `;`", "(a := 1)"),
+        ("a := 1;; b := 2", "no statement follows this `;`", "(b := 2)"),
+    ],
+)
+def test_scripts_that_were_errors(text: str, message: str, now: str) -> None:
+    assert read(text, ScriptGrammar.BEFORE_4_9).startswith(f"{message} before version 4.9 of BehaviorTree.CPP")
+    assert read(text, ScriptGrammar.CURRENT) == now
+
+
+@pytest.mark.parametrize("text", ["(1 + 2) & 3", "1 ? 4 & 5 : 6 + 1", "0 ? 1 ? 2 : 3 : 4", "a := (b := 1)"])
+def test_brackets_separate_operators(text: str) -> None:
+    assert read(text, ScriptGrammar.BEFORE_4_9) == read(text, ScriptGrammar.CURRENT)
+
+
+def larger(parts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    operators = st.sampled_from(("+", "-", "*", "/", "&", "|", "^", "&&", "||", "==", "!=", "<", ">="))
+    return st.one_of(
+        st.tuples(parts, operators, parts).map(" ".join),
+        st.tuples(parts, operators, parts).map(" ".join),
+        st.tuples(parts, parts, parts).map(lambda three: "{} ? {} : {}".format(*three)),
+        st.tuples(st.sampled_from("-~!"), parts).map("".join),
+        parts.map("({})".format),
+    )
+
+
+SCRIPTS = st.recursive(st.sampled_from(("0", "1", "2", "3", "7")), larger, max_leaves=7)
+
+
+def value_of(library: Any, text: str) -> float | None:
+    """The value of an expression; `None` if the library refuses the script. Not all values can be computed."""
+    factory, board = library.BehaviorTreeFactory(), library.Blackboard.create()
+    tree = f'<BehaviorTree ID="A"><Script code="r := {escape(text)}"/></BehaviorTree>'
+    factory.register_behavior_tree_from_text(f'<root BTCPP_format="4">{tree}</root>')
+    try:
+        created = factory.create_tree("A", board)
+    except RuntimeError:
+        return None
+    try:
+        created.tick_exactly_once()
+    except RuntimeError:
+        return float("nan")
+    value: float = board.get_double("r")
+    return value
+
+
+if util.find_spec("behaviortreepy") is None:
+    print("behaviortreepy is not installed: BehaviorTree.CPP itself does not judge the grammar of scripts")
+else:
+
+    @settings(max_examples=examples(300), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
+    @given(SCRIPTS)
+    def test_random_scripts_are_read_as_by_behaviortree_cpp(text: str) -> None:
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        script, problems = parse(Decoded(text, 0), ScriptGrammar.BEFORE_4_9)
+        value = value_of(behaviortreepy, text)
+        assert (value is None) is bool(problems), (text, [problem.message for problem in problems])
+        if value is not None:
+            expected = value_of(behaviortreepy, with_brackets(script.statements[0]))
+            assert repr(value) == repr(expected), text  # also if both are not numbers
