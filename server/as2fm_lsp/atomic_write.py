@@ -22,7 +22,7 @@ PREFIX = ".as2fm-writing-"
 
 
 def write_file(path: str, content: str | bytes | Iterable[str]) -> None:
-    """Write a file so that it is complete or, after a failure, unchanged. Links are followed.
+    """Write a file so that it is complete or, after a failure, unchanged. Symbolic links are followed.
 
     Args:
         content: the whole content, or its text in pieces, which are not joined in memory.

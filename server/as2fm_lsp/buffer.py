@@ -5,7 +5,7 @@
 - A position beyond the end of a line or of the text is replaced by that end.
 - A byte order mark at the beginning is part of the text here. Analyses get the text without it, and `Converter` adds it
   to the columns of the first line again.
-- In UTF-16 a client may split a character in two, because half a character is a unit there.
+- In UTF-16 a client may split a character beyond U+FFFF, because it consists of two units.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from as2fm_lsp.transport import Endpoint
 log = logging.getLogger(__name__)
 
 SECTION = "as2fm"
-"""The section of the client's settings."""
+"""The name of the section of the client's settings that the server reads."""
 
 
 class Client:
@@ -26,7 +26,7 @@ class Client:
     Attributes:
         show_references: the command of the client that shows places; "" if it has none.
         show_counterexample: the command that explains why a property fails.
-        show_witness: the command that explains how a property holds.
+        show_witness: the command that explains why a property holds.
         debug_counterexample: the command that debugs a trace in which a property fails.
         set_expectation: the command that asks for the expected value of a property.
         trigger_suggest: the command that requests completions.

@@ -36,7 +36,7 @@ class Context:
     Attributes:
         session: open documents, folders, settings.
         client: the client's capabilities; notifications and requests to it.
-        requests: whether an answer is still needed.
+        requests: the requests of the client, and whether their answers are still needed.
         progress: shows the progress of long work in the client.
         diagnostics: computes and sends diagnostics.
         results: the known results of properties.

@@ -96,7 +96,7 @@ class Converter:
         return Span(min(start, end), max(start, end))
 
     def _hidden(self, source: SourceFile, line: int) -> int:
-        """The number of units that the client has before the text of a line."""
+        """The number of units by which the client's columns of a line are greater: those of the byte order mark."""
         return self.units.count(MARK) if line == 0 and source.path in self._marked else 0
 
     # ----------------------------------------------------------- diagnostics
@@ -104,7 +104,7 @@ class Converter:
     def diagnostic(
         self, diagnostic: Diagnostic, source: SourceFile, sources: Mapping[str, SourceFile]
     ) -> types.Diagnostic:
-        """`sources` are the texts of the files that contain related places."""
+        """A diagnostic in the protocol's types. `sources` contains the files of the related places, by path."""
         related = [
             types.DiagnosticRelatedInformation(
                 types.Location(self.uri(r.location.path), self.range(sources[r.location.path], r.location.span)),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """When diagnostics are computed and how they reach the client.
 
-- The newest text takes precedence: a change cancels the pending work for older ones. The changed file is first, then
-  the other files of its workspace.
+- The newest text takes precedence: a change cancels the pending work for older ones. The changed file is checked first,
+  then the other files of its workspace.
 - Messages of the client take precedence: the work yields to them, and its results so far are kept.
 - A file is published only when its diagnostics differ from those that the client already has.
 """

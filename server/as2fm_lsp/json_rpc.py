@@ -18,7 +18,7 @@ def is_answered(message: object) -> bool:
 
 
 def error_response(message: object, error: JsonRpcException) -> dict[str, Any]:
-    """The response to an invalid message; its id is null if the message has no usable one."""
+    """The response to an invalid message; its id is null if the message has no valid id."""
     id_ = message.get("id") if isinstance(message, dict) else None
     body = {"code": error.code, "message": error.message}
     return {"jsonrpc": VERSION, "id": id_ if is_id(id_) else None, "error": body}

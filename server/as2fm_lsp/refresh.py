@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Asks the client to request hints and lenses again.
 
-A client requests those of the edited document itself. The hints and lenses of *other* documents change only with the
-linked systems: while these stay the same objects, nothing is sent. Results of properties change as well, and become
-stale.
-
-The first request is always sent: the client may have asked before anything was known.
+A client requests those of the edited document itself. The hints and lenses of *other* documents depend on the linked
+systems, on the results of properties and on whether these are stale; nothing is sent while all of them are unchanged.
+The first request is always sent, because the client may have requested hints before any system was analysed.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ from as2fm_lsp.verification.known_results import KnownResults, expected_now
 
 
 class Refresh:
-    """The state that was last sent to the client."""
+    """Requests a refresh when the state on which hints and lenses depend has changed."""
 
     def __init__(self, client: Client, session: Session, results: KnownResults) -> None:
         self._client = client
@@ -26,7 +24,7 @@ class Refresh:
         self._known: object = None
 
     def update(self) -> None:
-        """Request hints and lenses again if something has changed."""
+        """Ask the client to request hints and lenses again, if the state has changed."""
         workspace = self._client.capabilities.workspace
         hints = bool(workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support)
         lenses = bool(workspace and workspace.code_lens and workspace.code_lens.refresh_support)
@@ -41,7 +39,7 @@ class Refresh:
             self._client.refresh_code_lenses()
 
     def _now(self) -> object:
-        """Everything on which hints and lenses depend, except their own document."""
+        """The state on which hints and lenses depend, apart from the document that contains them."""
         moment = self._session.moment()
         systems = {
             system: (snapshot.analysis.system(system), len(snapshot.checker.errors(system)))

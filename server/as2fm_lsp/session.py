@@ -2,8 +2,8 @@
 """The state of the server: open documents, folders, settings.
 
 - Each folder of the client is a workspace with its own configuration, so that it is checked as in CI.
-- A file outside all folders and their systems is checked in a separate workspace, around its repository or folder,
-  while it is open.
+- A file that is outside of all folders, and that no system in them uses, is checked in a separate workspace, its
+  repository or folder, while it is open.
 - All workspaces see all open documents. Each file is analysed and reported in one of them (`Moment`).
 """
 
@@ -186,7 +186,7 @@ class Session:
 
     @property
     def client_settings(self) -> object:
-        """The settings as the client sent them; they may be anything."""
+        """The settings as the client has sent them; they are not validated."""
         return self._client_settings
 
     def _workspaces(self) -> tuple[Workspace, ...]:
@@ -207,7 +207,8 @@ class Session:
         return workspace
 
     def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
-        """The folders that are searched for ROS packages: the nearest first, then the client's others."""
+        """The folders that are searched for ROS packages: the one of the file first, then the client's other
+        folders."""
         outside = [root for root in roots if not is_below(root, folder)]
         return tuple(filter(is_on_disk, dict.fromkeys((folder, *outside, *self._folders))))
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Waiting for one client on sockets.
 
-Anyone who can reach a port can send data to it: other users of the machine, and every web page that is open in a
+Anyone who can reach a port can send data to it: other users of the machine, and the web pages that are open in a
 browser. So a client is served only after its first message, which must be an `initialize` with the token that the
 server was started with. A connection that begins in any other way, such as with HTTP, is closed before its data are
 processed. A socket file needs no token: the operating system allows only its owner to connect.
@@ -52,7 +52,7 @@ class RemoteError(ValueError):
 
 
 class InUseError(OSError):
-    """A socket file is in use, or is another file; the message states what to do."""
+    """Another server uses the socket file, or the file is not a socket. The message states what to do."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def listening_at(path: str) -> Iterator[tuple[socket.socket, ...]]:
     replaced.
 
     Raises:
-        InUseError: there is another file or server.
+        InUseError: another server listens at `path`, or `path` is a file of another kind.
         OSError: the file cannot be created.
     """
     if _is_socket(path):

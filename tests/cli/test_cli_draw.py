@@ -95,4 +95,4 @@ def test_nothing_to_draw(
         file.unlink()
     assert alone.exists()
     assert run(["draw", *arguments]) == 2
-    assert (message or "there is no behavior tree") in capsys.readouterr().err
+    assert (message or "the file contains no behavior tree") in capsys.readouterr().err

@@ -53,8 +53,8 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
     assert done.out.count("the clock waits") == 1
     assert re.search(
         r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
-        r"warning: the system gets stuck, time stands still; "
-        r"the waiting automata are shown above, beneath `delivered`\n",
+        r"warning: the system gets stuck and time does not advance; "
+        r"the waiting automata are shown above, below `delivered`\n",
         done.out,
     )
     assert "\nnodes of the behavior tree: bt_1002 is Fetch (tree.xml:5)\n" in done.out
@@ -67,7 +67,7 @@ def test_a_stuck_system_whose_properties_are_decided_before(command: Command, wa
     out = command("verify", "main.xml").out
     assert "got stuck" not in out
     assert re.search(
-        r"\nwarning: the system gets stuck, time stands still: trace \d+ after 55 steps at 2 s\n  the", out
+        r"\nwarning: the system gets stuck and time does not advance: trace \d+ after 55 steps at 2 s\n  the", out
     )
     assert out.count("the clock waits") == 1
 
@@ -78,7 +78,7 @@ def test_waiting_automata_are_shown_once_for_two_properties(command: Command, wa
     (ward / "properties.jani").write_text(json.dumps(written), encoding="utf-8")
     out = command("verify", "main.xml").out
     assert out.count("the clock waits") == 1
-    assert "doubtful; the waiting automata are shown above, beneath `delivered`\n" in out
+    assert "doubtful; the waiting automata are shown above, below `delivered`\n" in out
     explained = command("verify", "main.xml", "--explain").out
     assert explained.count("waits at 2 s for the tree") == 1
     assert explained.count("doubtful; the waiting automata are shown in the trace below\n") == 2

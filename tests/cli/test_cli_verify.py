@@ -203,10 +203,12 @@ def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Pat
 def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
     name, traces = write(tmp_path, coin()), ("--method", "adaptive")
     done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1", *traces)
-    assert "expected ≥ 1: met; no trace against it in 200; the interval reaches down to 0.98\n" in done.out
+    assert "expected ≥ 1: met; no trace of 200 contradicts it; the interval reaches down to 0.98\n" in done.out
     assert "expected ≥ 0.1: met\n" in done.out
     done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads", *traces)
-    assert re.search(r"expected ≤ 0: met; no trace against it in 200; the interval reaches up to 0\.0[12]", done.out)
+    assert re.search(
+        r"expected ≤ 0: met; no trace of 200 contradicts it; the interval reaches up to 0\.0[12]", done.out
+    )
 
 
 def test_explains_a_failing_trace(command: Command, robot: Path) -> None:

@@ -198,7 +198,7 @@ def test_filters_of_exceptions(client: Client) -> None:
     chance = client.move()
     assert (chance["reason"], chance["text"]) == ("exception", "the next step is decided by chance")
     client.ask("setExceptionBreakpoints", filters=[], filterOptions=[{"filterId": "time", "condition": "time >= 7"}])
-    assert client.move()["text"] == "time passes to 7 s"
+    assert client.move()["text"] == "time advances to 7 s"
     client.ask("setExceptionBreakpoints", filters=["satisfied"])
     assert client.move()["text"] == "satisfied: block_placed"
 

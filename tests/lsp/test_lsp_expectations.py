@@ -164,7 +164,7 @@ async def test_an_expectation_is_set_in_the_configuration(tmp_path: Path) -> Non
         ((hint, _),) = await hints(client, file)
         assert hint.startswith("✓ 1 [")
         traces = (await ask(client, PROPERTIES, None))[0]["properties"][0]["result"]["traces"]
-        assert hint.endswith(f", no trace against it in {traces:,}")
+        assert hint.endswith(f", no trace of {traces:,} contradicts it")
         # There is one now.
         (edits,) = (await set_expectation(client, main, "ticks", "< 0.5"))["edit"]["changes"].values()
         configuration.write_text(changed(configuration.read_text(encoding="utf-8"), edits), encoding="utf-8")

@@ -24,6 +24,6 @@ def test_the_program_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
 
 
 def test_the_table_has_the_commands_of_the_help() -> None:
-    table = PAGE[PAGE.index("| input |") : PAGE.index("Going back")]
+    table = PAGE[PAGE.index("| input |") : PAGE.index("After going back")]
     in_help = set(re.findall(r"(?:^  |   )([a-z])(?:[ ,]|$)", HELP, re.MULTILINE)) - {"q"}
     assert in_help == set(re.findall(r"`([a-z])(?:[` ])", table))

@@ -359,7 +359,7 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     text = one_as_text(results["scoped"], str)
     assert re.search(r"\n  its scope was not evaluated in [0-9]+ of 300 traces \(", text)
     assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)
-    assert "failed traces fail at the end of time (max_time)" in text
+    assert "failed traces fail when the time ends (max_time)" in text
 
 
 def test_what_observers_say_of_their_activity_changes_no_answer() -> None:

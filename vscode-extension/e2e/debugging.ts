@@ -59,7 +59,7 @@ export function debugging(stage: Stage): void {
 
         // The arm keeps the block, and the property holds to the end.
         await choices.getByText("way := 2, Arm enters").first().click();
-        await choices.getByText("chosen by hand").first().waitFor();
+        await choices.getByText("chosen by the user").first().waitFor();
         await page.keyboard.press("F5");
         await choices.getByText(`The property ${PROPERTY} holds in this run.`).waitFor();
         await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();

@@ -48,7 +48,7 @@ export function serverLifeCycle(stage: Stage): void {
     });
 }
 
-/** Corrects the error by hand; a running server then removes the squiggle. */
+/** Corrects the error in the editor; a running server then removes the squiggle. */
 async function mend(window: Window): Promise<void> {
     await window.goBehind("nodes/battery.ascxml", 'location="levle');
     await window.press("Backspace", "Backspace");

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ArgumentParser(argparse.ArgumentParser):
-    """Like that of the standard library, with suggestions for unknown arguments."""
+    """An `argparse.ArgumentParser` whose errors for unknown arguments contain suggestions."""
 
     def parse_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: None = None
@@ -50,7 +50,7 @@ class ArgumentParser(argparse.ArgumentParser):
 
 
 class WordAction(argparse.Action):
-    """Stores a member of a vocabulary; users write its value.
+    """Stores a member of an enumeration. The argument is the value of the member.
 
     Args:
         words: the members that users may choose.

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`--baseline FILE`: introduce the tool in an existing project by suppressing the diagnostics that it already has.
 
-The file lists fingerprints with their number, computed from names relative to the folder of the file, so that it is
-valid wherever the tool is called from. If the file does not exist yet, it is written with all current diagnostics.
+The file contains the fingerprints of diagnostics and how often each occurs. Fingerprints use paths relative to the
+folder of the baseline, so that it is valid in every working directory. If the baseline does not exist yet, it is
+written with all current diagnostics.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
 
 
 def _name(entry: Entry, path: str) -> str:
-    """The entry's file, relative to the baseline."""
+    """The path of the entry's file, relative to the folder of the baseline."""
     return seen_from(entry.diagnostic.path, os.path.abspath(path))
 
 

@@ -15,7 +15,7 @@ EXAMPLES = """\
 An editor starts this program; docs/debugging.md describes the configuration. The arguments of `launch` are:
   program       the system file, or a JANI model
   property      the property that is evaluated on the run (the first one)
-  seed, trace   the run is this trace of `verify` with this seed (0, 0)
+  seed, trace   the run is the trace of `verify` with this seed and number (0, 0)
   against       N: the N-th trace in which the property does not hold
   inFavor       N: the N-th trace in which it holds
   session       the file of a saved run (`simulate --save`)

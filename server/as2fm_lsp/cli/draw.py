@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp draw FILE`: a state machine, all of a system, the behavior tree or the ROS graph as SVG."""
+"""`as2fm-lsp draw FILE`: draws a state machine, all state machines of a system, its behavior tree or its ROS graph as
+SVG."""
 
 from __future__ import annotations
 
@@ -76,13 +77,13 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _default_output(file: str, title: str, kind: DiagramKind) -> str:
-    """The name that the editor proposes, in the folder of the file."""
+    """The path that is used without `--output`: the file name that the editor proposes, in the folder of the input."""
     return os.path.join(os.path.dirname(file), f"{os.path.splitext(title)[0]}.{kind.value}.svg")
 
 
 _NOTHING = {
     DiagramKind.MACHINE: "the file contains no state machine",
-    DiagramKind.TREE: "there is no behavior tree",
+    DiagramKind.TREE: "the file contains no behavior tree; name a tree file, or the system file of a tree",
     DiagramKind.ROS: "the file is not a system; name the system file",
     DiagramKind.SYSTEM: "the file is not a system with state machines; name the system file",
 }
@@ -142,7 +143,7 @@ def parser() -> ArgumentParser:
     result.add_argument(
         "--direction",
         choices=tuple(direction.value for direction in LayoutDirection),
-        help="where links lead (default: the direction in which the drawing fits a page of 4:3 better)",
+        help="the direction of the edges (default: the one in which the drawing fits a page of 4:3 better)",
     )
     return result
 

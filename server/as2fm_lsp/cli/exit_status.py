@@ -4,4 +4,4 @@
 from __future__ import annotations
 
 CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
-"""Nothing found; errors found; usage error; internal error."""
+"""The exit statuses if no errors were found, if errors were found, after a usage error, and after an internal error."""

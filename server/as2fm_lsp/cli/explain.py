@@ -26,7 +26,7 @@ def run(arguments: Sequence[str]) -> int:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp explain",
-        description="Print what a rule means, why it matters, and how to fix what it reports.",
+        description="Print the document of a rule: what it reports, why this is a problem, and how to fix it.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -92,7 +92,7 @@ def parser() -> ArgumentParser:
 
 
 def _problem(analysis: Analysis, path: str) -> str:
-    """Why a given file cannot be formatted."""
+    """The reason why a given file cannot be formatted; "" if it can be formatted."""
     source = analysis.files.read(path)
     if isinstance(source, UnreadableReason):
         return source.value
@@ -100,7 +100,7 @@ def _problem(analysis: Analysis, path: str) -> str:
 
 
 def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iterator[str]:
-    """The given files, and the hand-written files of supported languages in the given folders."""
+    """The given files, and the source files of supported languages in the given folders."""
     for path in map(os.path.abspath, paths):
         if not os.path.isdir(path):
             yield path
@@ -111,8 +111,8 @@ def _files(analysis: Analysis, paths: Sequence[str], settings: Settings) -> Iter
 
 
 def _is_hand_written(analysis: Analysis, path: str) -> bool:
-    """Whether a file is written by hand: it is not a JANI model, and it is listed by a system or is not in a similar
-    format such as plain SCXML."""
+    """Whether a file is a source, and not the output of a tool: it is not a JANI model, and it is listed by a system or
+    is not in a similar format such as plain SCXML."""
     kind, document = analysis.kind(path), analysis.document(path)
     if kind is FileKind.JANI_MODEL or path in analysis.memberships:
         return kind is not FileKind.JANI_MODEL

@@ -23,10 +23,10 @@ from roaml.suggest import close_names, did_you_mean, listing
 
 COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
-    "explain": "print what a rule means",
+    "explain": "print the document of a rule",
     "serve": "serve an editor: the language server",
     "format": "lay out files",
-    "migrate": "move systems to the current dialect",
+    "migrate": "migrate systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "compute or estimate the probabilities of properties",
     "draw": "draw a state machine, a tree or a ROS graph",
@@ -43,12 +43,12 @@ examples:
   as2fm-lsp --check models --ros-path msgs --format github
   as2fm-lsp --check . --warnings-as-errors --baseline .as2fm-baseline.json
   as2fm-lsp --check models --fix          make all safe fixes, report the remaining findings
-  as2fm-lsp --explain late-event-data     what a rule means
+  as2fm-lsp --explain late-event-data     the document of a rule
   as2fm-lsp init my_robot                 write a small working system
   as2fm-lsp format models --check         format files, or list those that are not formatted
   as2fm-lsp migrate old_models --diff     show how to move to the current dialect
   as2fm-lsp draw main.xml                 the ROS graph as SVG; see draw --help
-  as2fm-lsp simulate main.xml             one run as a story; see simulate --help
+  as2fm-lsp simulate main.xml             the steps of one run; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
   as2fm-lsp                               language server on standard input and output
@@ -125,7 +125,8 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 
 _ALSO_OPTIONS = ("check", "explain", "serve")
-"""Commands with an option of the same name, which is older. `--check` may be followed by a folder with such a name."""
+"""Commands that are also options, as in `--check`. After an option, the name of a command may be the name of a
+folder."""
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("help", "version")
 """Options that users mistake for commands."""

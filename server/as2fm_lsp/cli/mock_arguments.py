@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mocks that the arguments of a command give."""
+"""The mocks that the arguments of a command declare."""
 
 from __future__ import annotations
 

@@ -19,10 +19,10 @@ def add_mock_options(parser: argparse.ArgumentParser) -> None:
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "
         "repeated")  # fmt: skip
-    add("--mocks", metavar="FILE", help="mocks from a file, one in each line")
+    add("--mocks", metavar="FILE", help="read mocks from a file, one in each line")
     add("--entry", action="append", default=[], metavar="NAME=VALUE", help="the blackboard entry NAME has this "
         "value at the start; may be repeated")  # fmt: skip
-    add("--tick-rate", type=_rate, metavar="HZ", help="ticks of the tree in a second (10)")
+    add("--tick-rate", type=_rate, metavar="HZ", help="tick rate of the tree, in Hz (10)")
 
 
 def has_mock_options(options: argparse.Namespace) -> bool:

@@ -13,7 +13,8 @@ from roaml.project.settings import Settings
 
 
 def mocked_texts(options: argparse.Namespace, settings: Settings) -> Mapping[str, str]:
-    """The texts of the system's files with the mocks that the arguments give; says on standard error what is mocked.
+    """The texts of the system's files with the mocks that the arguments declare. A summary is written to standard
+    error.
 
     Raises:
         MockError: a mock is not valid, or leaves have none.
@@ -23,7 +24,7 @@ def mocked_texts(options: argparse.Namespace, settings: Settings) -> Mapping[str
     if mocked.missing:
         raise missing_mocks(options.main, mocked.missing)
     for mock in mocked.unused:
-        complain(f"the mock `{mock.pattern}` fits no node of the tree")
+        complain(f"the mock `{mock.pattern}` matches no node of the tree")
     leaves = len(mocked.planned)
     parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
     if mocked.events:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments of the sub-commands that run a model, and reading the model that they name."""
+"""Arguments of the sub-commands that run a model, and functions that read the named model."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def check_model_arguments(options: argparse.Namespace) -> None:
     if options.main.endswith(".jani") and has_mock_options(options):
         raise UsageError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
     if (options.entry or options.tick_rate) and not names_tree(options.main):
-        raise UsageError("entries and a tick rate are for files of behavior trees; a system has its own")
+        raise UsageError("entries and a tick rate are for files of behavior trees; a system declares them in its files")
 
 
 def read_target(options: argparse.Namespace, settings: Settings) -> VerificationTarget:
@@ -105,7 +105,7 @@ def error_report(error: api.ModelError | api.JaniError) -> CheckReport:
 
 
 def report_of(diagnostics: Iterable[Diagnostic], source_of: Callable[[str], SourceFile], count: int) -> CheckReport:
-    """Diagnostics of `count` files, for standard error."""
+    """A report with the diagnostics of `count` files, for standard error."""
     entries = [entry(diagnostic, source_of, shown_path) for diagnostic in diagnostics]
     return CheckReport(entries, count, color=takes_color(sys.stderr))
 

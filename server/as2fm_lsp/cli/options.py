@@ -15,7 +15,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
     check.add_argument(
         "--fix",
         action="store_true",
-        help="first apply all safe fixes: those that guess nothing and do not change the behaviour of a model",
+        help="first apply all safe fixes: those that do not guess and do not change the behaviour of a model",
     )
     check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
     check.add_argument(
@@ -37,7 +37,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
 
 
 def serve_options(serve: argparse._ActionsContainer) -> None:
-    """Add the options that say how the server is connected to its client."""
+    """Add the options that determine how the server is connected to its client."""
     serve.add_argument("--stdio", action="store_true", help="serve on standard input and output (default)")
     serve.add_argument(
         "--tcp",

@@ -15,8 +15,8 @@ STANDARD_OUTPUT = "standard output"
 
 
 def print_text(text: str, encoding: str | None = None, stream: TextIO | None = None) -> None:
-    """Write to standard output or `stream`, in its own encoding unless another is given. Characters that the encoding
-    does not support are escaped, because names of files may contain any characters.
+    """Write to standard output or `stream`, in the encoding of the stream unless another is given. Characters that the
+    encoding does not support are escaped, because names of files may contain any characters.
 
     Raises:
         OSError: standard output cannot be written to. Errors of standard error are ignored, because they could not be

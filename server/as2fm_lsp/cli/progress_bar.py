@@ -37,18 +37,18 @@ class ProgressBar:
         self._line.__exit__(kind, error, at)
 
     def begin(self, question: Question, options: Options, tally: Tally) -> None:
-        """Begin with a new label."""
+        """Begin with the progress of another property."""
         self._question, self._options, self._tally = question, options, tally
         self._began, self._first = time.monotonic(), tally.traces
         self._search = None
 
     def together(self, question: Question, tally: Tally, number: int) -> None:
-        """Update after a batch for one of several properties that share traces."""
+        """Update after a batch of traces that several properties share. `question` is one of these properties."""
         self._question = replace(question, name=f"{question.name} ({number} properties together)")
         self.watch(tally)
 
     def watch(self, tally: Tally) -> None:
-        """Update after a batch."""
+        """Update after a batch of traces."""
         self._tally = tally
         self._show()
 
@@ -80,7 +80,8 @@ class ProgressBar:
 
 
 def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
-    """The line: name, bar, traces, the current estimate, the remaining time."""
+    """The line: the name of the property, the bar, the number of traces, the current estimate and the remaining
+    time."""
     if tally.traces == 0:
         return f"{question.name} …"
     share = progress(question, options, tally)
@@ -96,7 +97,8 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
 
 
 def search_line(question: Question, search: Search, options: Options) -> str:
-    """The line during a search for schedulers: the round and the best share so far; then the estimate."""
+    """The line during a search for schedulers: the round and the best probability so far; after the search, the
+    estimate."""
     text = f"{question.name}, {search.side} probability"
     side = search.selected.get(search.side)
     if side is not None and side.tally.traces:

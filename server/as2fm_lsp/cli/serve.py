@@ -21,10 +21,10 @@ UNEXPECTED_END = 1
 """The exit status that the protocol requires if a server ends without a `shutdown` request."""
 
 SWITCH_INTERVAL_S = 0.001
-"""The time in s after which a computation lets the thread run that reads the messages of the client."""
+"""The interval, in s, at which a computation gives way to the thread that reads the messages of the client."""
 
 TOKEN = "AS2FM_TOKEN"
-"""The environment variable with the token of a client, so that it need not be read from the log."""
+"""The environment variable with the token that a client must send. Without it, a token is generated and printed."""
 
 MIN_TOKEN_CHARACTERS = 16
 
@@ -35,7 +35,7 @@ class _UsageError(ValueError):
 
 EXAMPLES = """\
 examples:
-  as2fm-lsp serve                          on standard input and output, as editors start it
+  as2fm-lsp serve                          on standard input and output, as editors start the server
   as2fm-lsp serve --tcp 127.0.0.1:0        on a free port, for one editor that sends the printed token
   as2fm-lsp serve --socket server.sock     on a socket file to which only you can connect
 

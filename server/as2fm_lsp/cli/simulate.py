@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp simulate MAIN.xml|MODEL.jani`: shows one run, as a whole or interactively on a terminal."""
+"""`as2fm-lsp simulate MAIN.xml|MODEL.jani`: shows one run, as a whole or step by step on a terminal."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from roaml.verification.target import VerificationTarget
 
 EXAMPLES = """\
 examples:
-  as2fm-lsp simulate main.xml                         one run until the first property is decided, as a story
+  as2fm-lsp simulate main.xml                         the steps of one run until the first property is decided
   as2fm-lsp simulate main.xml --seed 7 --for "10 s"   the first 10 s of another run
   as2fm-lsp simulate main.xml --until /arm/command    until a message is sent on this topic
   as2fm-lsp simulate main.xml --property dropped --trace 4 --html run.html
@@ -44,8 +44,8 @@ examples:
   as2fm-lsp simulate main.xml --interactive           choose on the terminal what happens next, and go back
   as2fm-lsp simulate main.xml --script run.json       repeat a run that --save has written
 
-The run of seed N and trace M is trace M of `verify --seed N`. A run with a step chosen by hand is not a trace of
-`verify`.
+The run of seed N and trace M is trace M of `verify --seed N`. A run in which the user has chosen a step is not a
+trace of `verify`.
 
 exit status: 0 success; 1 the model has errors, or the run fails; 2 usage error; 3 internal error
 """
@@ -102,7 +102,8 @@ def _saved(options: argparse.Namespace) -> SavedSession | None:
 
 
 def _property(options: argparse.Namespace, target: VerificationTarget) -> str | None:
-    """The property that is evaluated on the run: the one given with `--until`, if any."""
+    """The name of the property that is evaluated on the run: that of `--property`, or of `--until` if it names a
+    property."""
     names = {property_.name for property_ in target.properties}
     if options.until not in names:
         return options.property  # type: ignore[no-any-return]
@@ -166,16 +167,16 @@ def _summary(session: Session) -> str:
     if end is not None:
         parts.append(end.text)
     if session.is_changed:
-        parts.append("the state was changed by hand, so that the run says nothing about the model")
+        parts.append("the state was changed by the user, so the run does not show the behaviour of the model")
     elif session.is_by_hand:
-        parts.append("some steps were chosen by hand")
+        parts.append("some steps were chosen by the user")
     return f"  {', '.join(parts)}\n"
 
 
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp simulate",
-        description="Make one run of a system or JANI model, and show what happens in it.",
+        description="Simulate one run of a system or JANI model, and show its steps.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -193,7 +194,7 @@ def parser() -> ArgumentParser:
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
     add("--script", metavar="FILE", help="repeat a run that --save has written")
     add("--save", metavar="FILE", help="write the decisions of the run, for --script")
-    add("--interactive", "-i", action="store_true", help="choose what happens next, step by step, and go back")
+    add("--interactive", "-i", action="store_true", help="choose each next step on the terminal, and go back")
     add("--csv", metavar="FILE", help="write the state after each step as CSV")
     add("--json", metavar="FILE", help="write the steps as JSON")
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")

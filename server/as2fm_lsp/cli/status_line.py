@@ -40,7 +40,8 @@ class StatusLine:
 
     @property
     def is_due(self) -> bool:
-        """Whether the line needs an update: it appears now, or was last written a while ago."""
+        """Whether the line must be written now: for the first time after the delay, or because the last update is too
+        old."""
         return self._is_terminal and time.monotonic() >= self._next
 
     def stage(self, text: str) -> None:

@@ -110,9 +110,7 @@ def parser() -> ArgumentParser:
     result.add_argument("main", metavar="MAIN.xml", help="the system file")
     result.add_argument("-o", "--output", metavar="FILE", help="the JANI file (MAIN.jani); - for standard output")
     result.add_argument("--indent", type=_count, metavar="N", help="indent the JANI file by N spaces (one line)")
-    result.add_argument(
-        "--map", metavar="FILE", help="write the place in the models of each automaton, edge and variable"
-    )
+    result.add_argument("--map", metavar="FILE", help="write the source position of each automaton, edge and variable")
     result.add_argument(
         "--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton, and the properties in XML"
     )

@@ -14,7 +14,7 @@ from roaml.project.settings import Settings
 
 
 def load_subject(options: argparse.Namespace, settings: Settings, *, counts: bool) -> LoadedTree:
-    """The tree that the arguments name, with their mocks.
+    """The tree that the arguments name, with the mocks that they declare.
 
     Raises:
         MockError: the arguments are wrong, or leaves have no mock.
@@ -35,5 +35,5 @@ def load_subject(options: argparse.Namespace, settings: Settings, *, counts: boo
         raise missing_mocks(options.main, [leaf.type for leaf in missing.leaves]) from None
     nodes = [(node.name, node.type) for node in tree.mocked.tree.nodes]
     for mock in unused(mocks, nodes):
-        complain(f"the mock `{mock.pattern}` fits no node of the tree")
+        complain(f"the mock `{mock.pattern}` matches no node of the tree")
     return tree

@@ -73,7 +73,8 @@ INTERRUPTED = 130
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
-"""Up to this number, traces of a tree take less time than the start of further processes."""
+"""The maximum number of traces of a tree that are generated in one process, which is faster than starting more of
+them."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -123,7 +124,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
-    """A tree that belongs to no system, with mocks (docs/spec/mocks.md)."""
+    """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
     from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
     from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
 
@@ -284,7 +285,8 @@ class _Verification:
         return self.verifier.sampled(property_, search, time.monotonic() - began, is_interrupted=interrupted)
 
     def _check_stuck(self, bar: ProgressBar | None) -> stuck.StuckResult:
-        """The result of a check for stuck systems; with a progress bar, traces are generated for it."""
+        """The result of the check whether the system gets stuck. With a progress bar, traces are generated for this
+        check."""
         level = self.options.stuck
         own = stuck.StuckResult(None, None, level) if bar is None else self.verifier.check_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
@@ -347,8 +349,8 @@ class _Verification:
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
     def _where_shown(self, has_story: bool) -> str:
-        """The place in the output where the waiting automata of the example of a stuck trace are shown; "" if they are
-        not shown elsewhere."""
+        """The place in the output where the automata that wait in the stuck trace are already shown; "" if they are not
+        shown yet."""
         if self.stuck_result is None or self.stuck_result.stuck is None:
             return ""
         same = [
@@ -357,7 +359,7 @@ class _Verification:
         if same and has_story:
             return "in the trace below"
         named = next((result.name for result in same if not result.includes_stuck), None)
-        return "" if named is None else f"above, beneath `{named}`"
+        return "" if named is None else f"above, below `{named}`"
 
     def _assumptions(self) -> str:
         """The assumptions of all results, in one line."""
@@ -402,7 +404,7 @@ class _Verification:
                 print_text(render(report, Format.TEXT), stream=sys.stderr)
 
     def _write_traces(self) -> None:
-        """Write traces and stories."""
+        """Write the traces to files, and the explanations of traces to their outputs."""
         from as2fm_lsp.verification.trace_files import write_traces  # noqa: PLC0415
 
         stories: list[Story] = []
@@ -429,7 +431,7 @@ class _Verification:
             self._write_stories(stories, file)
 
     def _shortest(self, result: Result, exact: Exact) -> Iterator[Story]:
-        """The story of the shortest trace that contradicts an expectation."""
+        """The explanation of the shortest trace that contradicts an expectation."""
         if self.options.traces is not None:
             complain(f"{result.name}: --traces writes random traces only, not those of --exhaustive")
         verdict = unwanted_verdict(result)
@@ -441,7 +443,7 @@ class _Verification:
             print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
-        """The stories, one after the other; common parts are written once."""
+        """The text of all explanations. Parts that several of them share are written once."""
         from roaml.views.story import as_text as story_text  # noqa: PLC0415
         from roaml.views.story import waits_of  # noqa: PLC0415
 

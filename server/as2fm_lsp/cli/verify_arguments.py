@@ -21,19 +21,19 @@ EXAMPLES = """\
 examples:
   as2fm-lsp verify main.xml                              all properties: exact values if the model has few states,
                                                          otherwise to 0.01 with 95 percent confidence
-  as2fm-lsp verify main.xml --property alarm --explain   and the shortest trace in which it fails
+  as2fm-lsp verify main.xml --property alarm --explain   also show the shortest trace in which it fails
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
   as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
-  as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and who waits for whom
+  as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and the automata that wait
   as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
   as2fm-lsp verify main.xml --exhaustive                 all states: exact minimum, maximum and uniform value
 
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
 combination of edges of a synchronisation is one choice, and all enabled choices are equally probable. A trace ends
 where nothing is enabled or no choice changes anything; then F and U are false, G and W are true. The result lists how
-many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time stands
-still; a warning with an example reports this.
+many traces have ended for each reason. A trace is stuck if its automata wait for one another, so that time does not
+advance; a warning with an example reports this.
 
 exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
@@ -51,7 +51,7 @@ TRACE_OPTIONS = (
     "dask",
     "exhaustive",
 )
-"""The options with which `verify` does not decide by the size of the model whether values are exact."""
+"""The options that select random traces or all states. Without them, the size of the model decides which are used."""
 STANDARD_OUTPUT = "-"
 
 
@@ -90,7 +90,7 @@ def parser() -> ArgumentParser:
         "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
         "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
     add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; they stay "
+    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; cut traces are "
         "undecided (1000000)")  # fmt: skip
     add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
     add(
@@ -98,7 +98,7 @@ def parser() -> ArgumentParser:
         type=positive,
         default=_processors(),
         metavar="N",
-        help="number of processes (all processors); does not change the results",
+        help="number of processes (all processors); it does not change the results",
     )
     add("--scheduler", action=WordAction, words=Scheduler,
         help="how nondeterminism is resolved: uniformly at random, or by "

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The debug adapter: reads requests, calls their handlers, moves the run, and reports where it stops.
+"""The debug adapter: reads requests, calls their handlers, moves the run, and reports where the run stops.
 
-Requests are handled one after the other, in the order in which they arrive. While the run is moving, it is moved in
-small portions, and requests are handled between them. Any request may arrive at any time. The answer to a request that
-is not possible states the reason.
+Requests are handled one after the other, in the order in which they arrive. The run moves in small portions, and
+requests are handled between these portions. Any request may arrive at any time. The answer to a request that is not
+possible states the reason.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from roaml.suggest import alternatives
 
 
 class BreakpointRequests:
-    """The handlers of these requests, with the breakpoints that the client has set."""
+    """The handlers of requests about breakpoints, with the breakpoints that the client has set."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session
@@ -75,7 +75,7 @@ class BreakpointRequests:
             line = debugger.places.next_line(known, breakpoint_.number("line") + 1 - self._session.client.first_line)
             try:
                 if line is None:
-                    raise WatchError("no line from here on is executed in this system")
+                    raise WatchError("neither this line nor a later one of this file is executed in this system")
                 name = f"{os.path.basename(path)}:{line}"
                 set_.append((line, self._breakpoint(number, name, breakpoint_)))
                 body |= {"verified": True, "line": line - 1 + self._session.client.first_line}
@@ -167,7 +167,7 @@ class BreakpointRequests:
             data = given.text("dataId", None)
             variable = self._variable(debugger, data)
             if variable is None:
-                raise WatchError(f"there is no variable `{data}`; set the breakpoint again in the list of variables")
+                raise WatchError(f"there is no variable `{data}`; set the breakpoint again in the variables view")
             chosen.append((variable, self._breakpoint(number, f"{data} changes", given)))
 
         numbered = [(self._number(), given) for given in arguments.objects("breakpoints")]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests that change the run by hand: publish a message, call a service, set a variable. Such a run says nothing
-about the model."""
+"""Requests that change the run: publish a message, call a service, set a variable. A changed run does not show the
+behaviour of the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def is_command(text: str) -> bool:
 
 
 class ByHandRequests:
-    """The handlers of these requests."""
+    """The handlers of requests that change the run."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session
@@ -43,7 +43,7 @@ class ByHandRequests:
         """Execute a line of the console for which `is_command` is true; return a description of the effect.
 
         Raises:
-            WatchError, RequestError: it is not possible.
+            WatchError, RequestError: the command is not valid, or not possible in this state.
         """
         match = _COMMAND.fullmatch(text)
         if match is None:
@@ -56,7 +56,7 @@ class ByHandRequests:
         debugger = self._session.stopped
         change = sending(debugger.session, debugger.sources, name, fields)
         self._intervene(change)
-        return f"sent `{change.event}` by hand; from here on, the run says nothing about the model"
+        return f"sent `{change.event}`; from here on, the run does not show the behaviour of the model"
 
     def _intervene(self, change: Intervention) -> None:
         try:
@@ -129,7 +129,7 @@ def _template(form: Sendable) -> str:
 
 
 def _object(value: Value) -> str:
-    """A value as an expression; unlike `shown`, it is not cut."""
+    """A value as an expression; unlike the result of `shown`, it is not abbreviated."""
     match value:
         case dict():
             return f"{{{', '.join(f'{name}: {_object(inner)}' for name, inner in value.items())}}}"
@@ -153,7 +153,7 @@ MAX_DEPTH = 50
 
 
 def _value(value: object, depth: int) -> Value:
-    """A value of JSON as a value of expressions."""
+    """Convert a value of JSON to a value of expressions."""
     if depth < MAX_DEPTH:
         match value:
             case bool() | int() | float() | str():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the adapter can do, as the answer to `initialize`."""
+"""The capabilities of the adapter: the answer to `initialize`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _FILTERS = {
     ExceptionFilter.SATISFIED: ("A property is satisfied", "A property is decided, and holds in this run", False),
     ExceptionFilter.FAILURE: ("A node fails", "A node of the behavior tree returns FAILURE", False),
     ExceptionFilter.CHANCE: ("Chance decides", "The next step is drawn by probabilities of the model", False),
-    ExceptionFilter.END: ("Nothing is possible any more", "No step changes anything: the run is at its end", True),
+    ExceptionFilter.END: ("The run ends", "No further step changes the state", True),
     ExceptionFilter.TIME: ("Time passes", "The time of the model has advanced", False),
 }
 

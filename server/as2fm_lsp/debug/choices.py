@@ -14,7 +14,7 @@ from roaml.smc.fault import FaultError
 
 
 class ChoiceRequests:
-    """The handlers of these requests."""
+    """The handlers of requests about choices."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session
@@ -76,7 +76,7 @@ class ChoiceRequests:
 
 
 def _is_choice(debugger: Debugger, choice: Choice) -> bool:
-    """Whether the next step takes a choice, unless another one is taken by hand."""
+    """Whether the next step takes this choice if the user does not select another one."""
     step = debugger.upcoming()
     taken = [] if step is None else [part.automaton for part in step.parts]
     return step is not None and set(taken) == set(choice.automata)

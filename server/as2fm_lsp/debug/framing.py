@@ -84,8 +84,8 @@ class PendingMessages(Protocol):
     def has_ended(self) -> bool:
         """Whether the last message has been taken."""
 
-    def has(self, is_meant: Callable[[Message], bool]) -> bool:
-        """Whether there is a waiting message for which `is_meant` is true, or no more messages arrive."""
+    def has(self, matches: Callable[[Message], bool]) -> bool:
+        """Whether there is a waiting message for which `matches` is true, or no more messages arrive."""
 
 
 class MessageReader:
@@ -124,7 +124,7 @@ class MessageReader:
         with self._changed:
             return self._has_ended and not self._waiting
 
-    def has(self, is_meant: Callable[[Message], bool]) -> bool:
-        """Whether there is a waiting message for which `is_meant` is true, or the stream has ended."""
+    def has(self, matches: Callable[[Message], bool]) -> bool:
+        """Whether there is a waiting message for which `matches` is true, or the stream has ended."""
         with self._changed:
-            return self._has_ended or any(map(is_meant, self._waiting))
+            return self._has_ended or any(map(matches, self._waiting))

@@ -11,7 +11,7 @@ from roaml.debugging.debugger import Unit
 
 
 class MovementRequests:
-    """The handlers of these requests."""
+    """The handlers of requests that move the run."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session

@@ -38,7 +38,7 @@ class MessageWriter:
         self.send({"type": "event", "event": event, **({} if body is None else {"body": body})})
 
     def is_broken(self, error: Exception) -> bool:
-        """Whether an error means that nobody reads the output any more."""
+        """Whether an error means that the client has closed the connection."""
         return isinstance(error, (BrokenPipeError, ConnectionError)) or self._output.closed
 
 
@@ -76,13 +76,13 @@ class ClientFormat:
 
 
 class DebugSession:
-    """The run that is debugged, and what the client knows about it.
+    """The run that is debugged, and the frames and variables that the client knows.
 
     Attributes:
         debugger: the run; `None` before the launch and after `terminate`.
         launch: the arguments of the last launch.
-        has_begun: whether the client has been told where the run is.
-        stop: where the run has stopped last.
+        has_begun: whether the first position of the run has been reported to the client.
+        stop: the last stop of the run.
         frames: the frames that the client knows, by their numbers.
         references: the variables that the client may open.
         after: the actions to take after the response to the current request.

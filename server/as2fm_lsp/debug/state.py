@@ -18,7 +18,7 @@ from roaml.debugging.values import shown, type_of
 
 
 class StateRequests:
-    """The handlers of these requests."""
+    """The handlers of requests about the state."""
 
     def __init__(self, session: DebugSession, by_hand: ByHandRequests) -> None:
         self._session = session

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests for what a client shows beside the source: the timeline of the run, and the active parts of pictures."""
+"""Requests for the timeline of the run and for the active parts of pictures, which a client shows beside the source."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _FORMATS = {format_.value: format_ for format_ in TimelineFormat}
 
 
 class TimelineRequests:
-    """The handlers of these requests."""
+    """The handlers of requests for the timeline and for active parts."""
 
     def __init__(self, session: DebugSession) -> None:
         self._session = session
@@ -144,7 +144,7 @@ def _view(arguments: Arguments, timeline: Timeline) -> View:
 
 
 def _at(debugger: Debugger, step: int, read: Callable[[Session], T]) -> T:
-    """What is read at a step of the run; the run is where it was afterwards."""
+    """The result of `read` at a step of the run. Afterwards, the run is at its previous position again."""
     session = debugger.session
     position = session.position
     session.jump(step)

@@ -39,7 +39,7 @@ def register(context: Context) -> None:
         return [session.convert.range(source, span) for span in spans] if source else []
 
     def ask(item: types.CallHierarchyItem, question: Ask) -> tuple[Analysis, tuple[calls.HierarchyCall, ...]]:
-        """The calls of an item that the client received before."""
+        """The incoming or outgoing calls of an item that the client has received before."""
         analysis = session.moment().snapshot(session.convert.path(item.uri)).analysis
         symbol = unpack(item.data)
         return analysis, question(analysis, symbol) if symbol else ()

@@ -72,7 +72,7 @@ def register(context: Context) -> None:
 def _all(
     context: Context, snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[str], bool]
 ) -> Iterator[CodeAction]:
-    """The actions at a place: those of the models, and those of known results."""
+    """The actions at a place: those for the models, and those for known results of properties."""
     yield from actions(snapshot, path, place, is_requested)
     if is_requested(REWRITE):
         yield from expectation.actions(context, snapshot, path, place)

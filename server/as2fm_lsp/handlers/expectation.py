@@ -32,8 +32,8 @@ SET_EXPECTATION = "as2fm/setExpectation"
 
 
 class Expectations(TypedDict):
-    """`suggestions` are met by the known result, the strictest first; `current` are the expectations of the property,
-    `file` is the name of the file in which one is set."""
+    """`suggestions` are met by the known result, the strictest first; `current` are the expectations of the property;
+    `file` is the name of the file in which an expectation is set."""
 
     suggestions: list[str]
     current: list[str]
@@ -87,7 +87,8 @@ def register(context: Context) -> None:
 
 
 def actions(context: Context, snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAction]:
-    """Set the expectation of the property at a place, if its result is known and nothing is expected of it."""
+    """Code actions that set the expectation of the property at a place, if its result is known and it has no
+    expectation."""
     for system in snapshot.analysis.memberships.get(path, ()) if context.results.systems else ():
         current = CurrentResults(context, snapshot, system)
         for property_ in verifiable(snapshot.analysis, system) if context.results.has(system) else ():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm.showFirstError`: systems with errors are neither translated nor verified; lenses state that and lead to the
-cause.
+"""`as2fm.showFirstError`: systems with errors are neither translated nor verified; lenses state that, and show the
+first error when they are clicked.
 
 The client shows the place if it supports that (`window/showDocument`); a message names it in any case.
 """

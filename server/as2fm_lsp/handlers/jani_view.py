@@ -21,7 +21,7 @@ MAX_CHARACTERS = 4_000_000
 
 
 class JaniText(TypedDict):
-    """`problem` is the reason if there is no text; otherwise it is empty."""
+    """`problem` is the reason why there is no text; empty if there is one."""
 
     text: str
     symbols: list[types.DocumentSymbol]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/propertySentences`, the sentences and events of which a property can be made; `as2fm/newProperty`, an edit
-that makes one."""
+"""`as2fm/propertySentences`, the sentences and events from which a property can be built; `as2fm/newProperty`, an edit
+that adds a property."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ class Sentence(TypedDict):
 
 
 class Sentences(TypedDict):
-    """`events` are the events that the system sends, in words; `hasClock` states whether times can be bounded."""
+    """`events` are the events that the system sends, in words; `hasClock` is whether properties of the system can have
+    bounds on time."""
 
     sentences: list[Sentence]
     events: list[str]

@@ -10,7 +10,7 @@ def document_uri(params: object) -> str:
     """The URI in `textDocument`.
 
     Raises:
-        JsonRpcInvalidParams: there is none.
+        JsonRpcInvalidParams: there is no URI.
     """
     return string(getattr(params, "textDocument", None), "uri", "textDocument.uri")
 
@@ -19,7 +19,7 @@ def string(params: object, name: str, shown: str = "") -> str:
     """A parameter that is a string.
 
     Raises:
-        JsonRpcInvalidParams: it is missing, or something else.
+        JsonRpcInvalidParams: it is missing, or not a string.
     """
     value = getattr(params, name, None)
     if not isinstance(value, str):
@@ -28,12 +28,12 @@ def string(params: object, name: str, shown: str = "") -> str:
 
 
 def natural(params: object, name: str) -> int:
-    """A parameter that is a number from 0.
+    """A parameter that is an integer of at least 0.
 
     Raises:
-        JsonRpcInvalidParams: it is missing, or something else.
+        JsonRpcInvalidParams: it is missing, or another value.
     """
     value = getattr(params, name, None)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise JsonRpcInvalidParams(f"`{name}` must be a number from 0")
+        raise JsonRpcInvalidParams(f"`{name}` must be an integer of at least 0")
     return value

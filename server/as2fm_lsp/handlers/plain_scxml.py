@@ -27,7 +27,7 @@ class PlainLine(TypedDict):
 
 
 class PlainScxml(TypedDict):
-    """`problem` is the reason if there is no text; otherwise it is empty."""
+    """`problem` is the reason why there is no text; empty if there is one."""
 
     text: str
     lines: list[PlainLine]

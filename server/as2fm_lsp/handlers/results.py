@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The known results of properties: lenses and hints; `as2fm/properties`, the properties with their results;
-`as2fm/counterexample`, why a property fails or holds; `as2fm/traceState`, the whole state at one of its steps.
-
-- A result is compared with what is expected now, without new traces.
-- The protocol has no commands that show traces or ask for an expectation. A client that has some names them in its
-  initialization options, as `showCounterexample`, `showWitness`, `debugCounterexample` and `setExpectation`: they are
+`as2fm/counterexample`, why a property fails or holds; `as2fm/traceState`, the whole state at a step of a trace. - A
+result is compared with the current expectations, without new traces. - The protocol has no commands that show traces or
+ask for an expectation. A client that has these commands names them in its initialization options, as
+`showCounterexample`, `showWitness`, `debugCounterexample` and `setExpectation`: they are
   called with the URI of a system and the name of a property.
 """
 
@@ -98,8 +97,8 @@ def register(context: Context) -> None:
 
     @context.feature(TRACE_STATE)
     async def trace_state(params: Any) -> list[Json] | None:
-        """The state after `step` steps of a trace of a known result; what differs from the state after `earlier` steps
-        is marked. `null` if there is no result."""
+        """The state after `step` steps of a trace of a known result; values that differ from the state after `earlier`
+        steps are marked. `null` if there is no result."""
         path = session.convert.path(document_uri(params))
         known = CurrentResults(context, session.moment().snapshot(path), path).get(string(params, "property"))
         if known is None or known.result.traces is None:
@@ -115,7 +114,7 @@ def register(context: Context) -> None:
 
 
 class CurrentResults:
-    """The known results of a system at one moment, compared with what is expected then."""
+    """The known results of a system at one moment, compared with the expectations at that moment."""
 
     def __init__(self, context: Context, snapshot: Snapshot, system: str) -> None:
         self.context = context

@@ -96,7 +96,8 @@ def register(context: Context) -> None:
 
 
 def encoded(file: RequestedDocument, tokens: Sequence[SemanticToken]) -> list[int]:
-    """Five numbers for each token, its position relative to the previous one."""
+    """The tokens in the encoding of the protocol: five numbers for each token, with its position relative to the
+    previous one."""
     data: list[int] = []
     line = character = 0
     columns = file.convert.columns(file.source, (token.span for token in tokens))

@@ -51,7 +51,7 @@ def pack(symbol: Symbol) -> list[str]:
 
 
 def unpack(data: object) -> Symbol | None:
-    """The inverse of `pack`; `None` for other data."""
+    """The inverse of `pack`; `None` if the data are not a packed symbol."""
     if not isinstance(data, (list, tuple)) or len(data) != 4:
         return None
     path, kind, name, scope = map(str, data)

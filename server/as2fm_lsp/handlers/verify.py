@@ -56,7 +56,7 @@ def register(context: Context) -> None:
         Returns:
             `results`, one for each property as `as2fm-lsp verify --format json` writes them, or with an `error` instead
                 of the numbers; `stuck`, whether the system gets stuck, in the same form, null if unknown; and `errors`,
-                those of the model. null if the user has cancelled it.
+                those of the model. null if the user has cancelled the verification.
         """
         if not _are_arguments(arguments):
             text = f"{VERIFY} needs the URI of a system file, and optionally a list of names and options."
@@ -200,7 +200,8 @@ class _VerifyCommand:
     async def together(
         self, verifier: Verifier, properties: Sequence[CompiledProperty], analysis: Analysis, texts: Texts
     ) -> list[Result]:
-        """The results of properties that share traces. If the user cancels, those that are complete are kept."""
+        """The results of properties that share traces. If the user cancels the verification, the complete results are
+        kept."""
         count = len(properties)
         await self.bar.step(f"{count} properties from the same traces")
 

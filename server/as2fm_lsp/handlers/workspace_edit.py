@@ -11,7 +11,7 @@ from roaml.project.workspace import Snapshot
 
 
 def workspace_edit(context: Context, snapshot: Snapshot, change: WorkspaceEdit) -> types.WorkspaceEdit:
-    """A change of files, for the client."""
+    """A `WorkspaceEdit` of the protocol. Creations of files precede edits, and renames follow them."""
     convert, analysis = context.session.convert, snapshot.analysis
     edits = {
         path: [convert.edit(source, edit) for edit in sorted(change.edits[path])]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far traces have exercised a property, in every format: assumptions, scopes, requests, and what the end of time
-left open (docs/verification.md#vacuity)."""
+"""Reports on how far traces have exercised a property: how many satisfy its assumptions, enter its scope, contain its
+trigger, or are left open when the time ends (docs/verification.md#vacuity)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def remarks(answer: Answer) -> list[str]:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
     if tally.late:
         lines.append(
-            f"{tally.late:,} of {answer.failures:,} failed traces fail at the end of time (max_time), because an event "
+            f"{tally.late:,} of {answer.failures:,} failed traces fail when the time ends (max_time), because an event "
             "that the property requires has not occurred; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
@@ -48,7 +48,7 @@ def open_at_end(tally: Tally) -> int:
 
 
 def warning(answer: Answer) -> str:
-    """The reason why the number says nothing about the property; "" if it is meaningful."""
+    """The reason why the value says nothing about the property; "" if the value is meaningful."""
     tally = answer.tally
     if answer.question.is_conditional and tally.traces == 0 and tally.rejected:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
@@ -60,7 +60,7 @@ def warning(answer: Answer) -> str:
 
 
 def row(answer: Answer) -> dict[str, Any]:
-    """The same facts as a value for JSON."""
+    """The facts of `remarks` as a value for JSON."""
     tally, question = answer.tally, answer.question
     values: dict[str, Any] = {"open_at_end_of_time": open_at_end(tally)}
     if question.is_conditional:

@@ -108,7 +108,7 @@ async def answer_together(
 
 
 async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callable[[], None]) -> T:
-    """Do some work in a thread. The work gets a function that it must call regularly: the function raises an exception
+    """Do some work in a thread. The work receives a function that it must call regularly, and that raises an exception
     if the result is no longer needed."""
     abandoned = threading.Event()
 

@@ -13,7 +13,7 @@ from roaml.verification.results import EXACT_WIDTH, Exact, Proof, Result
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
 _PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
-"""What all states prove, in JSON."""
+"""The names in JSON of what an exploration of all states has proved."""
 
 
 def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
@@ -24,7 +24,7 @@ def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False
     """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}, {seconds:.1f} s"
-    quality = "exact" if exact.is_precise else "not exact, the bounds did not become closer"
+    quality = "exact" if exact.is_precise else "not exact, because the bounds no longer converge"
     shown: list[str] = []
     if exact.agrees:
         shown.append(f"{name}: = {_number(exact.minimum)} for all schedulers, {quality}, {end}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The known results of the properties of an editor's systems, in memory while the server runs.
+"""The known results of the properties of the systems in an editor, in memory while the server runs.
 
 A result is valid for the texts for which it was computed: it is stale while a file of the system differs, and valid
 again when the change is undone.

@@ -2,8 +2,8 @@
 """The names that a translation gives to the nodes of the behavior tree, such as `bt_1005`, and the nodes that they
 denote.
 
-Properties use these names. Messages use them if several nodes have the same name. Each text that uses them explains
-them once.
+Properties use these names. Messages use them if several nodes have the same name. Each text that contains these names
+explains each of them once.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ def as_text(
         where = "" if result.stuck is None else shown or shown_at.get(result.stuck.chain, "")
         blocks.append(_block(result, place_of, level, where, is_alone=False))
         if result.stuck is not None and not result.includes_stuck:
-            shown_at.setdefault(result.stuck.chain, f"above, beneath `{result.name}`")
+            shown_at.setdefault(result.stuck.chain, f"above, below `{result.name}`")
     open_ = [
         (result.answer.question, result.choices or Choices())
         for result in results
@@ -158,7 +158,7 @@ def _remarks(answer: Answer) -> list[str]:
 
 
 def _example_remarks(answer: Answer) -> list[str]:
-    """What the traces show that were generated as examples for an exact value."""
+    """Remarks on the traces that were generated as examples for an exact value."""
     lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"]
     return lines + activity_report.remarks(answer)
 
@@ -232,7 +232,7 @@ def _verdict(result: Result) -> str:
 
 
 def warning(result: Result) -> str:
-    """The reason why the value is not, or may not be, the requested one; "" if it is."""
+    """The reason why the value may differ from the requested one; "" if it is the requested one."""
     parts = []
     if result.stuck is not None and not result.includes_stuck:
         parts.append(result.stuck.warning)

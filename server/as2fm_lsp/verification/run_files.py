@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated run as files: CSV in the terms of the user, JSON with the steps as `trace_files` writes them, and a
+"""A simulated run as files: CSV in the terms of the model, JSON with the steps as `trace_files` writes them, and a
 timeline as SVG.
 
 CSV has a line for each state, including the first one, and columns for its number, the time in s if the model has a

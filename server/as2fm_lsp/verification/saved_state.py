@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The intermediate state in a file, so that a long run can be continued.
 
-The file is valid for one model, its properties, a seed and a limit of steps. It can be continued with other limits, a
-higher confidence or more traces; the counts so far stay valid.
+The file is valid for one model, its properties, a seed and a limit of steps. The run can be continued with other
+limits, a higher confidence or more traces; the stored counts stay valid.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class SavedState:
         return tally
 
     def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
-        """Store the state of a property. The file is written from time to time, or at once with `now`.
+        """Store the state of a property. The file is written at intervals, or immediately with `now`.
 
         Raises:
             OSError: the file cannot be written; it is unchanged.

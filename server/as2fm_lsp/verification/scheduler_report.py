@@ -22,7 +22,7 @@ def remark(question: Question, choices: Choices | None) -> str:
     head += f", and the property asks for the {extreme_of(question)} over all schedulers"
     least, greatest = choices.minimum, choices.maximum
     if least is not None and greatest is not None and choices.differ:
-        return f"{head}; schedulers range from {_reached(least)} to {_reached(greatest)}"
+        return f"{head}; the values of schedulers range from {_reached(least)} to {_reached(greatest)}"
     return f"{head}, which may differ; {_looked(question, choices)}"
 
 

@@ -5,7 +5,7 @@
     "stuck": "warning", "exactIfSmall": true}}
 
 The options of a call have the same form, with `seed`, `silent` and `partialResultToken` in addition, and take
-precedence. A call whose options contain one of `TRACE_OPTIONS` asks for traces, without exact values. An invalid value
+precedence. A call whose options contain one of `TRACE_OPTIONS` generates traces, without exact values. An invalid value
 is reported, and the default is used.
 """
 
@@ -64,12 +64,16 @@ def verification_settings(settings: object, options: object = None) -> Verificat
 
     default = Options()
     share, integer = "a number between 0 and 1", "a whole number"
-    width = f"a number from {MIN_EPSILON:g} to 1"
+    width = f"a number of at least {MIN_EPSILON:g} and less than 1"
     chosen = Options(
         confidence=number("confidence", default.confidence, lambda value: 0 < value < 1, share),
         epsilon=number("epsilon", default.epsilon, lambda value: MIN_EPSILON <= value < 1, width),
-        max_steps=number("maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{integer} from 1 on"),
-        seed=number("seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{integer} from 0 on"),
+        max_steps=number(
+            "maxSteps", default.max_steps, lambda v: isinstance(v, int) and v > 0, f"{integer} of at least 1"
+        ),
+        seed=number(
+            "seed", default.seed, lambda v: isinstance(v, int) and 0 <= v < 1 << 63, f"{integer} from 0 to 2^63 - 1"
+        ),
     )
     expectations = []
     for name, text in _mapping(values.get("expectations")).items():

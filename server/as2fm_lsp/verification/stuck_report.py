@@ -22,7 +22,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
     """The result as text for users.
 
     Args:
-        shown: where the waiting automata have been shown; "" to show them here.
+        shown: the place in the output where the waiting automata are already shown; "" if they are to be shown here.
     """
     answer, stuck = result.answer, result.stuck
     lines = []
@@ -35,7 +35,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
     if result.fault:
         lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {result.fault}")
     if stuck is not None:
-        still = "" if stuck.time is None else ", time stands still"
+        still = "" if stuck.time is None else " and time does not advance"
         if shown:
             lines.append(f"{result.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
         else:

@@ -20,9 +20,9 @@ from roaml.views.turns import Turn, turns
 
 MAX_LEAVES = 10
 MIN_NORMAL_TRACES = 30
-"""If fewer traces than this have one of the outcomes, the intervals of influences are only approximate."""
+"""If fewer traces than this succeed, or fewer fail, the intervals of influences are only approximate."""
 MAX_LINES = 40
-"""The maximum number of lines of a story; those in between are folded."""
+"""The maximum number of shown lines of a trace; the lines in its middle are folded."""
 
 PlaceOf = Callable[[Location], str]
 
@@ -33,7 +33,7 @@ def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> str:
 
 
 def assumptions(mocked: MockedTree) -> str:
-    """What was assumed about the tree, its host and the world."""
+    """The assumptions about the tree, the rate of its ticks, and the events that it reads."""
     options = mocked.options
     leaves = len(mocked.leaves)
     known = [leaf for leaf in mocked.leaves if leaf.is_known]
@@ -52,7 +52,7 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
     failure = outcome.failure
     yield f"  the tree fails: {_interval(failure.value, failure.bounds)}"
     if outcome.unfinished:
-        yield f"  not ended at the end of time: {outcome.unfinished} of {outcome.traces} traces"
+        yield f"  not ended when the time ends: {outcome.unfinished} of {outcome.traces} traces"
     if outcome.exceptions:
         yield f"  ended by an exception of the library: {outcome.exceptions} of {outcome.traces} traces"
     if outcome.time is not None:
@@ -65,8 +65,8 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
         yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
     if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield (
-            "  the influence of the leaves cannot be estimated, because all traces had the same outcome; if the other "
-            "one is possible, more traces (--max-traces) may show it"
+            "  the influence of the leaves cannot be estimated, because all traces had the same outcome; more traces "
+            "(--max-traces) may have other outcomes"
         )
     if outcome.influences:
         rare = min(outcome.success.count, outcome.traces - outcome.success.count)
@@ -75,14 +75,17 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
             if rare < MIN_NORMAL_TRACES
             else ""
         )
-        yield f"  change of the probability of success for each leaf, if that of its mock changes by 1{note}:"
+        yield (
+            "  change of the tree's probability of success for each leaf, if the probability of the leaf's mock "
+            f"changes by 1{note}:"
+        )
         for influence in outcome.influences[:MAX_LEAVES]:
             node = influence.leaf.node
             place = place_of(node.origin)
             yield f"    {_interval(influence.value, influence.bounds, sign='+')}  {node.name} ({place})"
         more = len(outcome.influences) - MAX_LEAVES
         if more > 0:
-            yield f"    … {more} more with less influence …"
+            yield f"    … {more} more leaves with less influence …"
 
 
 def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
@@ -118,7 +121,7 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
 
 
 def _has_ended(turn: Turn) -> bool:
-    """Whether a leaf returned a new status in a turn, not that of an earlier tick again."""
+    """Whether a leaf has returned a new status in a turn, instead of the status of an earlier tick again."""
     ended = ("SUCCESS", "FAILURE")
     return turn.status in ended and not turn.parts[0].source.upper().startswith(ended)
 

@@ -19,7 +19,7 @@ from roaml.project.workspace import Snapshot, Workspace
 
 class SharedFileError(ValueError):
     """Raised if systems that are not migrated would break. `shared` maps each file that would change to the systems
-    that use it and are not migrated."""
+    that use the file and are not migrated."""
 
     def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
         path, systems = next(iter(shared.items()))
@@ -82,8 +82,8 @@ def migrate(
 
 
 def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
-    """For each file whose change breaks systems that are not migrated, these systems. A system breaks if a file that it
-    uses is renamed, or if the new text of the file causes errors in it."""
+    """Each file whose change breaks systems that are not migrated, with these systems. A system breaks if a file that
+    it uses is renamed, or if the new text of the file causes errors in it."""
     memberships = around.analysis.memberships
     shared: dict[str, tuple[str, ...]] = {}
     for migration in migrations:

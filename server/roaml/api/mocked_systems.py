@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems whose trees have leaves without plugins, with mocks for these (docs/spec/mocks.md#systems)."""
+"""Systems whose trees have leaves without plugins, with mocks for these leaves (docs/spec/mocks.md#systems)."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SystemMocks:
-    """Attributes:
-    texts: the changed system and tree files and the new plugins, by path; `load` and `target` accept them.
-    planned: the new plugins.
-    missing: the types of the leaves without a plugin that no mock fits.
-    events: the number of nodes that read an event of the world, such as a new goal, and have a mock for it.
-    unused: the mocks that fit nothing.
+    """The mocks for a system.
+
+    Attributes:
+        texts: the changed system and tree files and the new plugins, by path; `load` and `target` accept them.
+        planned: the new plugins.
+        missing: the types of the leaves without a plugin that no mock matches.
+        events: the number of nodes that read an event of the world, such as a new goal, and have a mock for it.
+        unused: the mocks that match no node.
     """
 
     texts: Mapping[str, str]
@@ -39,7 +41,7 @@ class SystemMocks:
 def mock_system(
     path: str, mocks: Sequence[Mock], ros_paths: Iterable[str] = (), settings: Settings | None = None
 ) -> SystemMocks:
-    """Mocks for a system, without writing any file.
+    """Create mocks for the leaves of a system that have no plugin. No file is written.
 
     Raises:
         PathError: the path is not a system file.

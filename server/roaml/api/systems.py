@@ -85,7 +85,7 @@ def load(
 
 
 def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
-    """A system of a workspace, if it has no errors.
+    """A system without errors, from a workspace.
 
     Args:
         path: the absolute path of the system file.

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 UNTRANSLATABLE = "untranslatable-tree"
-"""The code of the diagnostic that says why a tree without errors cannot be translated."""
+"""The code of the diagnostic that states why a tree without errors cannot be translated."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadedTree:
-    """A tree with mocks, and the model to verify; its properties are `succeeds` and `fails`."""
+    """A tree with mocks, and the model of both. The properties of the model are `succeeds` and `fails`."""
 
     mocked: MockedTree
     target: VerificationTarget
@@ -38,7 +38,7 @@ def load_tree(
     settings: Settings | None = None,
     texts: Mapping[str, str | bytes] | None = None,
 ) -> LoadedTree:
-    """Read, check and translate a tree that belongs to no system.
+    """Read, check and translate a tree without a system.
 
     Args:
         path: the file of the tree.

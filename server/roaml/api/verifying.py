@@ -36,7 +36,7 @@ def target(
     overrides: Overrides = NO_OVERRIDES,
     constants: Sequence[str] = (),
 ) -> VerificationTarget:
-    """Read a system or model to verify; a file whose name ends in `.jani` is a JANI model, any other one a system.
+    """Read a system or model to verify; a file whose name ends in `.jani` is a JANI model, any other file is a system.
 
     Args:
         path: the system file, or a JANI model.
@@ -123,7 +123,8 @@ def verifier(
 
     Args:
         subject, properties, options, expectations, only_uniform, exact_if_small: as for `verify`.
-        example_traces: the number of traces for a result with exact values; `None` for as many as for others.
+        example_traces: the number of traces for a result with exact values; `None` for the number that an estimate
+        needs.
 
     Raises:
         PropertyError, FaultError, ValueError: as for `verify`.
@@ -163,9 +164,9 @@ def verify(
         jobs: the number of processes. It has no influence on the results.
         executor: an executor that runs the batches of traces, instead of `jobs` new processes.
         expectations: such as `alarm >= 0.95`; each adds a verdict to the result of its property.
-        only_uniform: whether only uniform choices are considered. Otherwise, it is also examined whether other
-            schedulers lead to other values, and the verdicts contain the result.
-        exact_if_small: whether a result also has exact values (`Result.exact`), which decide its verdicts, if the model
+        only_uniform: whether only uniform choices are considered. Otherwise, other schedulers are examined as well, and
+        the verdicts state whether they lead to other values. exact_if_small: whether a result also has exact values
+        (`Result.exact`), which decide its verdicts, if the model
             has few states.
 
     Raises:

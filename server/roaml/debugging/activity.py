@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The active parts of pictures while a run is stopped: active states, statuses of tree nodes, messages that have been
-sent and not been received yet."""
+sent and have not been received yet."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from roaml.scxml.names import InterfaceEventKind, read_interface_event, received
 from roaml.simulation.state import MachineState, SystemState
 
 ACTIVE, NEXT, MESSAGE = "active", "next", "message"
-"""How a part looks: an active state, one of a machine that does the next step, a message. The look of a tree node
-is its status in lower case."""
+"""The looks of parts: of an active state, of an active state of a machine that takes the next step, and of a message.
+The look of a tree node is its status in lower case."""
 
 
 @dataclass(frozen=True, slots=True)
 class ActiveNode:
-    """
+    """An active node of a picture.
+
     Attributes:
-        path: the file of the picture: of a machine, or of the system.
+        path: the file of the picture: the file of a machine, or the system file.
         node: the id of the node in the picture.
         look: `ACTIVE`, `NEXT`, `MESSAGE`, or the status of a node of the tree in lower case.
     """
@@ -98,7 +99,8 @@ def _sources(debugger: Debugger) -> tuple[Analysis | None, System | None]:
 
 
 def _chart(analysis: Analysis, machine: MachineState, origin: Origin | None) -> Chart | None:
-    """The chart of a machine with its state; of several, the one that contains what the machine does."""
+    """The chart of a machine that contains its state; of several, the chart around `origin`, the place of its next
+    step."""
     read = None if origin is None else analysis.machine(origin.path)
     charts = [
         chart

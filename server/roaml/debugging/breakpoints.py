@@ -58,11 +58,10 @@ class Breakpoint:
     Attributes:
         number: identifies the breakpoint; 0 for a filter.
         name: its subject, for messages.
-        condition: the run stops only if this is true: in the state before the step, or after it if the breakpoint stops
-            there.
-        required_hits: a function of the number of hits: whether the run stops at this hit.
-        message: a text that is logged instead of stopping; expressions are in braces.
-        hits: how often the breakpoint was reached with its condition met.
+        condition: the run stops only if the condition is true. It is evaluated in the state in which the breakpoint
+        stops. required_hits: a function that returns whether the run stops at the hit with a given number, from 1.
+        message: a text that is logged instead of stopping; expressions are in braces. hits: the number of times that
+        the breakpoint was reached while its condition was true.
     """
 
     number: int = 0

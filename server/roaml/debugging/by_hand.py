@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changes of a run by hand: a message is published, a service is called, or a variable or a blackboard entry is set."""
+"""Changes of a run by the user: a message is published, a service is called, or a variable or a blackboard entry is
+set."""
 
 from __future__ import annotations
 
@@ -32,14 +33,12 @@ from roaml.views.event_words import event_phrase, interface_name
 
 @dataclass(frozen=True, slots=True)
 class Sendable:
-    """An event that can be sent by hand.
-
-    Attributes:
-        name: the topic, service or action; for a plain event, its name.
-        text: a description such as "a message on the topic `/level`".
-        template: the fields with the values that they have if they are omitted.
-        types: the types of the fields.
-        is_free: whether the previous event of this name has been received, so that another one can be sent.
+    """An event that the user can send. Attributes:
+    name: the topic, service or action; for a plain event, its name.
+    text: a description such as "a message on the topic `/level`".
+    template: the fields with the values that they have if they are omitted.
+    types: the types of the fields.
+    is_free: whether the previous event of this name has been received, so that another one can be sent.
     """
 
     event: str
@@ -51,7 +50,7 @@ class Sendable:
 
 
 def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
-    """The events that can be sent by hand, ordered by name: messages, requests, goals, and plain events. Events of the
+    """The events that the user can send, ordered by name: messages, requests, goals, and plain events. Events of the
     tree, of timers, of the clock and of the blackboard cannot be sent."""
     automata = session.automata
     events = {sent_by(action or "") for action in session.actions} - {""}

@@ -35,7 +35,7 @@ PORTION_S = 0.02
 
 
 class Unit(enum.Enum):
-    """How far a movement goes unless a breakpoint stops it."""
+    """The unit of a movement, which ends earlier at a breakpoint."""
 
     STEP = "step"
     TURN = "turn"
@@ -44,7 +44,7 @@ class Unit(enum.Enum):
 
 
 class StopReason(enum.Enum):
-    """Why a run has stopped, in DAP's words if it has one for the reason."""
+    """Why a run has stopped. If DAP defines the reason, the value is that of DAP."""
 
     ENTRY = "entry"
     STEP = "step"
@@ -290,7 +290,7 @@ class Debugger:
         return self._stop(StopReason.GOTO)
 
     def choose(self, choice: Choice, outcome: Outcome | None) -> Stop:
-        """Take a step by hand, and discard the steps that followed here before."""
+        """Take a step that the user has chosen. The steps after the current position are discarded."""
         self._remember()
         position = self.session.position
         self.session.step(choice, outcome)
@@ -301,7 +301,7 @@ class Debugger:
         return self._stop_at(after) if after else self._stop(StopReason.STEP)
 
     def intervene(self, change: Intervention) -> Stop:
-        """Change the state by hand, and discard the steps that followed here before."""
+        """Change the state as the user requests. The steps after the current position are discarded."""
         self._remember()
         position = self.session.position
         self.session.intervene(change)
@@ -421,9 +421,9 @@ class Debugger:
             case ExceptionFilter.CHANCE:
                 return "the next step is decided by chance"
             case ExceptionFilter.TIME:
-                return f"time passes to {self.session.time:g} s"
+                return f"time advances to {self.session.time:g} s"
             case ExceptionFilter.END:
-                return "no step changes anything any more"
+                return "no further step changes the state"
 
     def _stop(
         self,

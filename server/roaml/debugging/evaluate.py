@@ -30,7 +30,7 @@ from roaml.suggest import alternatives, close_names
 from roaml.text import Decoded
 
 Scope = Callable[[str], "Value | None"]
-"""The value of a name; `None` if there is no such name."""
+"""A function that returns the value of a name; `None` if there is no such name."""
 
 
 class WatchError(ValueError):

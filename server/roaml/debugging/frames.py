@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Threads and stacks: where each machine and the tree are, and what they execute next.
+"""Threads and stacks: the position of each machine and of the tree, and the statements that they execute next.
 
 A thread is a state machine, or the tree with all its nodes. The innermost frame of a stack is the statement that is
 executed next. The frames of a machine are the statement, its handler and its state; the frames of the tree are the

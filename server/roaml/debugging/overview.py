@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole state of a system as a tree of rows, with what has changed since an earlier state of the same run."""
+"""The whole state of a system as a tree of rows, which mark the changes since an earlier state of the same run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class StateRow:
     """A value of the state.
 
     Attributes:
-        value: for readers; "" for a row that only groups others.
+        value: for readers; "" for a row that only groups other rows.
         before: its value in the earlier state; `None` if it is the same.
         has_changed: whether the value, or one of the rows below, differs from the earlier state.
     """
@@ -30,9 +30,8 @@ class StateRow:
 
 
 def overview(session: Session, sources: Sources, step: int, earlier: int) -> tuple[StateRow, ...]:
-    """The state after `step` steps; what differs from the state after `earlier` steps is marked. The session moves.
-
-    Both states are in the run already.
+    """The state after `step` steps. Values that differ from the state after `earlier` steps are marked. Both steps have
+    been taken in this run. The session moves to them.
     """
     before = _texts(_values(session, sources, earlier))
     after = _texts(_values(session, sources, step))

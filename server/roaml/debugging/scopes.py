@@ -48,7 +48,7 @@ class ScopeEntry:
 
 
 class ScopeHint(Vocabulary):
-    """The kind of a scope, in DAP's words."""
+    """The kind of a scope, as named in DAP."""
 
     LOCALS = "locals"
     ARGUMENTS = "arguments"

@@ -116,7 +116,7 @@ MAX_SHOWN = 120
 
 
 def shown(value: Value) -> str:
-    """A value in the notation of expressions; a long struct or array is cut."""
+    """A value in the notation of expressions; a long struct or array is abbreviated."""
     match value:
         case bool():
             return "true" if value else "false"

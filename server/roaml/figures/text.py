@@ -47,8 +47,8 @@ _PARTS = tuple(
         ),
     )
 )
-"""Patterns of the parts after which a line may end: a word, a part up to punctuation, a part up to a capital letter, a
-character."""
+"""Patterns of the parts after which a line may end: a word, a part that ends with punctuation, a part before a capital
+letter, a character."""
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
@@ -64,8 +64,8 @@ def _other_width(character: str) -> float:
 
 
 def wrap(text: str, size: float, width: float, *, bold: bool = False, limit: int = 0) -> tuple[str, ...]:
-    """The text in lines of at most `width`. A line ends after a space or, in a long word, after punctuation or before a
-    capital letter. A part that is still too long is cut at any place.
+    """The text, split into lines of at most `width` pixels. A line ends after a space or, in a long word, after
+    punctuation or before a capital letter. A part that is still too long is cut at any place.
 
     Args:
         limit: the maximum number of lines, 0 for any number. The last line ends with an ellipsis if the text is longer.

@@ -76,7 +76,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
 
 @cache
 def style_sheet(theme: str, names: tuple[str, ...]) -> str:
-    """The rules for a file, with the colors of a theme. A rule that uses a tone is written once for every tone.
+    """The style sheet of a file, with the colors of a theme. A rule that uses a tone is written once for every tone.
 
     Args:
         names: the style sheets in this folder.
@@ -110,7 +110,7 @@ def _written(selectors: str, body: str, tones: Mapping[str, str]) -> str:
 
 
 def _within(tone: str, selector: str) -> str:
-    """The selector for the parts of a group that has a tone."""
+    """A selector, restricted to the parts of a group that has a tone."""
     scene, _, rest = selector.partition(" ")
     group, arrow, part = rest.partition(" > ")
     return f"{scene} {group}{tone} > {part}" if arrow else f"{scene} {tone} > {group}"

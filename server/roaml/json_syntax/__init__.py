@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tolerant JSON: any text gives a tree in which every value and every name has a position.
 
-Implements RFC 8259 only; the packages above define the meaning of the members.
+This package implements RFC 8259 only; packages that import it define the meaning of the members.
 """
 
 from roaml.json_syntax.layout import indented

@@ -418,7 +418,7 @@ class _Parser:
         return string.end
 
     def bare(self, text: str, span: Span) -> JsonValue:
-        """The value that a word without quotes is probably intended to be; report how JSON writes it."""
+        """The probable value of a word without quotes. A finding states how JSON writes this value."""
         if literal := _FOREIGN_LITERALS.get(text):
             self.report(span, f"`{text}` is not a JSON literal; write `{literal}`", _replacement(span, literal))
             return JsonNull(*span) if literal == "null" else JsonBool(*span, literal == "true")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Step-by-step simulation of a system, forwards and backwards, in the terms of ROS, SCXML and BehaviorTree.CPP.
 
-A run is a pure function of the model, a seed, the number of its trace and the decisions taken by hand (`run`). A
-`Session` is a position in a run: it provides the state there (`state`) and the possible next steps (`choices`), and can
-move. The package does not depend on files, editors or protocols.
+A run is a pure function of the model, a seed, the number of its trace and the decisions of the user (`run`). A
+`Session` is a position in a run, and can move to other positions. It provides the state (`state`) and the possible next
+steps (`choices`) at its position. The package does not depend on files, editors or protocols.
 """
 
 from roaml.simulation.choices import Choice, Outcome

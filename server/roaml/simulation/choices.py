@@ -131,7 +131,8 @@ def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> It
 
 
 def _consequences(automaton: Automaton, destination: Destination, clients: Sequence[str]) -> Iterator[str]:
-    """A description of the actions of an automaton after a destination, as far as they are already determined."""
+    """Descriptions of what an automaton does after a destination, up to a state in which it waits or to the next
+    branch."""
     rest = resting(automaton)
     name = who(automaton.name)
     visited: set[str] = set()
@@ -178,7 +179,7 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
     if event:
         parameters = _parameters(events.parameters(event))
         if not names:
-            return f"nobody receives {event_phrase(event, clients)}{parameters}"
+            return f"no automaton receives {event_phrase(event, clients)}{parameters}"
         return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
     if not names:
         names = [who(part.automaton.name) for part in parts]

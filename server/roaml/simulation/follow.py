@@ -200,7 +200,7 @@ class Follower:
 
 
 def _state_before(location: str, resting: frozenset[str]) -> str:
-    """The state that the name of a location begins with, followed by its handler: the longest one, if there are
-    several."""
+    """The state whose name, followed by a handler, is the name of a location. If there are several, the one with the
+    longest name."""
     states = [state for state in resting if location.startswith(f"{state}-")]
     return max(states, key=len, default=location)

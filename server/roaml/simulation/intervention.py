@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A change of the state by hand, which the model itself does not make: a message is sent, or a variable is set."""
+"""A change of the state by the user, which is not a step of the model: a message is sent, or a variable is set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class Intervention:
 
     Attributes:
         event: the event that is sent; "" if only variables are set.
-        values: the variables of the network that are set; an array is given with all elements.
+        values: the variables of the network that are set, with their values. The value of an array contains all
+        elements.
     """
 
     event: str
@@ -50,7 +51,7 @@ def _plain(value: Any) -> Plain:
 
 
 def is_free(kernel: Kernel, legend: Legend, event: str) -> bool:
-    """Whether an event can be sent: the previous one with its name has been received."""
+    """Whether an event can be sent: the previous event with its name has been received."""
     buffer = _buffer(legend, event)
     return buffer < 0 or legend.locations[kernel.location(buffer)][1] != RECEIVED
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A run of a model: a sequence of steps, each decided by the seed or by hand, that can be replayed up to any step.
+"""A run of a model: a sequence of steps, each decided by the seed or by the user, that can be replayed up to any step.
 
 A step that the seed decides is the same as in the trace that `verify` generates for this seed and trace number. Going
 back restores the last snapshot before the position and replays the steps from there.
@@ -32,7 +32,7 @@ class RunError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """A step decided by hand.
+    """A step that the user has chosen.
 
     Attributes:
         vector: the number of the synchronisation vector in `roaml.smc.compile.Legend`.
@@ -49,7 +49,8 @@ ByHand = Decision | Intervention
 
 
 class EnabledEdges(NamedTuple):
-    """The enabled edges of an automaton for an action. For each: its first way, and the probabilities of its ways."""
+    """The enabled edges of an automaton for an action. Each has the number of its first destination in the kernel, and
+    the probabilities of its destinations."""
 
     instance: int
     edges: tuple[tuple[int, tuple[float, ...]], ...]
@@ -60,7 +61,7 @@ class Enabled:
     """An enabled synchronisation vector.
 
     Attributes:
-        ties: for each combination of edges, the number of choices with the same effect.
+        ties: the number of choices with the same effect, for each combination of edges.
         slots: the enabled edges of each participating automaton.
     """
 
@@ -73,7 +74,8 @@ class Run:
     """A run, and a position in it.
 
     Args:
-        decisions: the decisions of the first steps, `None` if the seed decides a step. It decides all later steps.
+        decisions: the decisions of the first steps; `None` for a step that the seed decides, which decides all later
+            ones.
 
     Attributes:
         start: the variables of the model before the first step.
@@ -204,8 +206,8 @@ class Run:
         self.position = position
 
     def _take(self, decision: ByHand | None, until: int = 0) -> None:
-        """Take one step by hand, or the steps that the seed decides up to position `until`; 0 means only the next
-        one."""
+        """Take the step of `decision`. Without a decision, take the steps that the seed decides up to position `until`;
+        0 means only the next step."""
         if decision is None:
             until = until or self.position + 1
             while self._kernel.outcome()[0] < until:
@@ -227,11 +229,12 @@ class Run:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the state was changed by hand up to the position, so that it says nothing about the model."""
+        """Whether the user has changed the state up to the position, so that the run does not show the behaviour of the
+        model."""
         return bool(self._interventions) and self._interventions[0] <= self.position
 
     def is_free(self, event: str) -> bool:
-        """Whether an event can be sent by hand: the previous one with its name has been received."""
+        """Whether the user can send an event: the previous event with its name has been received."""
         return is_free(self._kernel, self.legend, event)
 
     def _check_possible(self, decision: ByHand) -> None:
@@ -252,8 +255,8 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """Store the verdict on the property after a step. A decided property stays decided. A state that was changed by
-        hand decides nothing."""
+        """Store the verdict on the property after a step. A decided property stays decided. A state that the user has
+        changed decides nothing."""
         if status == FAULTY or (self.status == UNKNOWN and not self.is_changed):
             self.status = status
             self._check()
@@ -262,11 +265,11 @@ class Run:
 
     @property
     def end(self) -> End | None:
-        """The reason why no further step changes anything; `None` if one does."""
+        """The reason why no further step changes the state; `None` if a step changes it."""
         return End(self._kernel.standstill()) if self.has_ended else None
 
     def standstill(self) -> Standstill:
-        """The current state, as input for the analysis of which automaton waits for which."""
+        """The current state, as input for the analysis of the automata that wait for one another."""
         return self._reader.standstill(self.checker.model.system)
 
     def enabled(self) -> list[Enabled]:
@@ -284,7 +287,7 @@ class Run:
         )
 
     def _first_ways(self, slot: int) -> list[int]:
-        """For each enabled edge of a slot the number of its first destination, in the order of the kernel."""
+        """The number of the first destination of each enabled edge of a slot, in the order of the kernel."""
         program = self._program
         instance = program.slot_instance[slot]
         location = self._kernel.location(instance)

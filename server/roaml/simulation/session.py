@@ -109,7 +109,7 @@ class Session:
 
     Args:
         property_: the property that is evaluated on the run, one of those of `checker`.
-        clock: the names of the variables with the seconds and nanoseconds of the time of the model.
+        clock: the names of the variables that contain the time of the model in s and the rest in ns.
         saved: the session to continue; it overrides `seed` and `trace`.
 
     Raises:
@@ -151,7 +151,7 @@ class Session:
 
     @property
     def end(self) -> End | None:
-        """The reason why no further step changes anything; `None` if one does."""
+        """The reason why no further step changes the state; `None` if a step changes it."""
         return self._run.end
 
     @property
@@ -166,17 +166,18 @@ class Session:
 
     @property
     def is_decided(self) -> bool:
-        """Whether the property is decided here or before, so that the trace of `verify` ends."""
+        """Whether the property is decided at the position or before, so that the trace of `verify` has ended."""
         return self._run.status != UNKNOWN
 
     @property
     def is_by_hand(self) -> bool:
-        """Whether a step up to here was decided by hand, so that the run is not one of the traces of `verify`."""
+        """Whether the user has decided a step up to the position, so that the run is not a trace of `verify`."""
         return any(decision is not None for decision in self._run.decisions[: self.position])
 
     @property
     def is_changed(self) -> bool:
-        """Whether the state was changed by hand up to here, so that the run says nothing about the model."""
+        """Whether the user has changed the state up to the position, so that the run does not show the behaviour of the
+        model."""
         return self._run.is_changed
 
     @property
@@ -269,7 +270,7 @@ class Session:
         return Session(run.checker, run.compiled_property, clock=self._clock, saved=saved)
 
     def story(self) -> Story:
-        """The run up to the position, as a list of all turns."""
+        """An explanation of the run up to the position, with all turns."""
         steps = tuple(self._run.steps[: self.position])
         question = self._run.compiled_property.question
         end = End.DECIDED if self.is_decided else self.end or End.CUT
@@ -304,7 +305,7 @@ class Session:
         return self._advance(self._run.decisions[self.position] if self.position < len(self._run.steps) else None)
 
     def intervene(self, change: Intervention) -> None:
-        """Change the state by hand, as a step of the run. From then on, the run decides no property.
+        """Change the state as the user requests, as a step of the run. From then on, no property is decided.
 
         Raises:
             RunError: the model has no such event or variable, or the previous event of this name has not been received.
@@ -313,7 +314,7 @@ class Session:
         self._advance(change)
 
     def is_free(self, event: str) -> bool:
-        """Whether an event can be sent by hand: the previous one with its name has been received."""
+        """Whether the user can send an event: the previous event with its name has been received."""
         return self._run.is_free(event)
 
     def _advance(self, decision: ByHand | None) -> TraceStep | None:
@@ -328,7 +329,7 @@ class Session:
         return step
 
     def upcoming(self) -> TraceStep | None:
-        """The step that is taken next unless a choice is made by hand. The position does not change.
+        """The step that is taken next unless the user chooses another one. The position does not change.
 
         Returns:
             The step; `None` if no step changes anything.
@@ -357,7 +358,7 @@ class Session:
         """Take steps up to the first one for which `is_reached` is true.
 
         Returns:
-            Whether such a step was taken. It was not if no step changes anything, or after `limit` steps.
+            Whether such a step was taken. False if no further step changes the state, or after `limit` other steps.
         """
         for _ in range(limit):
             step = self.step()
@@ -388,7 +389,7 @@ class Session:
     def turn(self) -> bool:
         """Take steps until a state machine has handled an event completely; return whether one has.
 
-        Automata added by the translation, and nodes of the tree that only tick others, have no turns.
+        Automata added by the translation, and nodes of the tree that only tick other nodes, have no turns.
         """
         return self.go_on(self.ends_turn)
 
@@ -404,17 +405,17 @@ class Session:
         return self.go_on(ends_tick)
 
     def until_time(self, seconds: float, limit: int = MAX_STEPS) -> bool:
-        """Take steps until the time of the clock is at least `seconds`; return whether it is."""
+        """Take steps until the time of the clock is at least `seconds`; return whether this time was reached."""
         return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
 
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
-        """Take steps until an event is sent; return whether it was. The event is named as in plain SCXML, or by its
-        topic, service or action."""
+        """Take steps until an event is sent; return whether it was sent. `name` is that of the event in plain SCXML, or
+        of its topic, service or action."""
         events = self.events_named(event)
         return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
-        """Take steps until the property is decided; return whether it is."""
+        """Take steps until the property is decided; return whether it was decided."""
         return self.is_decided or self.go_on(lambda _: self.is_decided, limit)
 
     def back(self, steps: int = 1) -> None:

@@ -47,7 +47,7 @@ class MachineState:
 
 @dataclass(frozen=True, slots=True)
 class NodeState:
-    """A node of the tree: its number, its type and its status."""
+    """The state of a node of the tree: its number, its type and its status."""
 
     number: int
     type: str
@@ -82,9 +82,9 @@ class SystemState:
         time: the time in s; `None` if the model has no clock.
         machines: the state machines and the plugins of the tree.
         nodes: all nodes of the tree, ordered by their numbers.
-        events: the last message of each topic, the last call of each service and so on, in the order of sending.
-        blackboard: the entries of the blackboard.
-        shared: the global variables of a JANI model that belong to no event.
+        events: the last event of each kind, such as the message of a topic or the request of a service, in the order of
+        sending. blackboard: the entries of the blackboard. shared: the global variables of a JANI model that belong to
+        no event.
     """
 
     step: int

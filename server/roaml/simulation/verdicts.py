@@ -24,7 +24,7 @@ class Decided(NamedTuple):
 
 
 class Verdicts:
-    """Follows a run, and stores where each property is decided."""
+    """Follows a run, and stores the position at which each property is decided."""
 
     def __init__(self, checker: ModelChecker, seed: int, trace: int) -> None:
         self._followers = [
@@ -36,7 +36,7 @@ class Verdicts:
 
         Args:
             decisions: the decisions of the steps of the run.
-            has_ended: whether no step changes anything at the position.
+            has_ended: whether no further step changes the state at the position.
         """
         for follower in self._followers:
             follower.follow(decisions, position, has_ended)

@@ -21,11 +21,11 @@ from roaml.smc.record import Plain
 from roaml.views.actors import name_of
 
 STATUS_NAMES = {number: name for name, number in STATUSES.items()}
-"""The number that a node returns -> the name of the status."""
+"""The number of a status that a node returns -> the name of the status."""
 
 
 def who(automaton: str) -> str:
-    """The name of an automaton that messages show."""
+    """The name of an automaton in texts for users."""
     role = automaton_role(automaton)
     match role:
         case Role.CLOCK:
@@ -57,7 +57,7 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
     """A description of how a node sends or receives an event of the tree; "" for other events.
 
     Args:
-        actor: the name of the node that messages show.
+        actor: the name of the node in texts for users.
         parameters: the parameters of the event; empty if it has not been sent yet.
     """
     tree = read_tree_event(event)
@@ -79,6 +79,6 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
         case TreeEventKind.HALT_RESPONSE if is_sent:
             return f"{actor} reports that it has halted"
         case TreeEventKind.HALT_RESPONSE:
-            return f"{actor} receives from {child} that it has halted"
+            return f"{actor} receives the report of {child} that it has halted"
         case _:
             return assert_never(tree.kind)

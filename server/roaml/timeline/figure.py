@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drawing of a part of a timeline.
 
-Only what is visible is drawn: what is narrower than a few pixels is drawn together with its neighbours. So the size of
-a drawing, and the time that it takes, depend on its width and not on the number of steps.
+Only visible parts are drawn, and parts that are narrower than a few pixels are drawn together with their neighbours. So
+the size of a drawing and the time to create it depend on its width and not on the number of steps.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages."""
 _SPAN, _MARGIN = 20.0, 8.0
 _LEAST = 3.0
-"""States that are shorter are drawn together."""
+"""The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one."""
 _SAMPLE = 50
-"""States drawn together have the color of their kind if so many of them have the same."""
+"""The number of states drawn as one that are examined for a common color."""
 _ARROW_DISTANCE = 6.0
-"""Messages have arrows if their average distance is not smaller, in pixels."""
+"""The minimum average distance of messages that are drawn with arrows, in pixels."""
 _MACHINE_TONES = (Tone.ROS, Tone.TREE, Tone.BLACKBOARD, Tone.ACTION, Tone.CHANCE)
 _STATUS_TONES: Mapping[str, Tone] = {
     "RUNNING": Tone.RUNNING,
@@ -36,7 +36,7 @@ _STATUS_TONES: Mapping[str, Tone] = {
 
 
 class Axis(enum.Enum):
-    """What the horizontal axis shows: the time of the model, or the steps of the run."""
+    """The quantity on the horizontal axis: the time of the model, or the steps of the run."""
 
     TIME = "time"
     STEPS = "steps"
@@ -68,7 +68,7 @@ def extent(timeline: Timeline, axis: Axis) -> float:
 
 
 def position_of(timeline: Timeline, axis: Axis, step: int) -> float:
-    """Where the state after `step` steps is on an axis."""
+    """The position of the state after `step` steps on an axis, in s or steps."""
     return timeline.times[step] if axis is Axis.TIME and timeline.times else float(step)
 
 
@@ -143,7 +143,7 @@ class _Painter:
     # ------------------------------------------------------------ axis
 
     def _axis(self) -> tuple[Group, Group]:
-        """The lines of the axis, and its numbers."""
+        """The grid lines of the axis, and its numbers."""
         view = self._view
         distance = _round_distance((view.end - view.start) * 90.0 / max(view.width, 1.0))
         if view.axis is Axis.STEPS:
@@ -192,7 +192,7 @@ class _Painter:
             yield self._busy(lane, first, number, left, x, y)
 
     def _ends(self, starts: Sequence[int], number: int) -> tuple[float, float]:
-        """Where a state begins and ends, in pixels."""
+        """The positions where a state begins and ends, in pixels."""
         end = self._x(starts[number + 1]) if number + 1 < len(starts) else self._end
         return self._x(starts[number]), end
 
@@ -222,7 +222,8 @@ class _Painter:
     # ------------------------------------------------------------ messages
 
     def _messages(self) -> Iterator[Group]:
-        """A mark and, where there is space, a name for each message; arrows if there are not too many of them."""
+        """A mark for each message, with its name if there is space. Messages have arrows unless there are too many of
+        them."""
         messages = self._timeline.messages
         first = bisect_left(messages, self._first_step(0.0), key=_received)
         last = bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a timeline shows, read from the steps of a run.
+"""The content of a timeline, read from the steps of a run.
 
-Steps are read once and in their order, so that a timeline of a long run can be continued. If other steps follow at an
-earlier position, because a choice was made by hand, the timeline is read again from the start.
+Steps are read once and in their order, so that a timeline of a long run can be continued. If the steps after an earlier
+position are replaced, because the user has chosen another step there, the timeline is read again from the start.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Lane:
     """The states of a machine or plugin, or the statuses of a tree node.
 
     Attributes:
-        starts: the numbers of the steps after which it has another state, 0 first.
-        states: its state after each of them.
+        starts: the numbers of the steps after which the state is another one, beginning with 0.
+        states: the state after each of these steps.
         ranks: the different states, numbered in the order in which they are entered first.
     """
 
@@ -63,10 +63,10 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class SentMessage:
-    """An event from one lane to another one.
+    """An event from one lane to others.
 
     Attributes:
-        name: that of the topic, service or action, or of the event.
+        name: the name of the topic, service or action, or of the event.
         sent, received: the numbers of the steps.
         sender, receivers: indexes of lanes.
     """
@@ -80,7 +80,7 @@ class SentMessage:
 
 @dataclass(slots=True)
 class Plot:
-    """A variable that is a number or a truth value: its values after the steps that change it."""
+    """The values of a variable that is a number or a truth value, after the steps that change them."""
 
     name: str
     is_flag: bool
@@ -89,7 +89,8 @@ class Plot:
 
 
 class Timeline:
-    """
+    """The content of a timeline.
+
     Attributes:
         times: the time in s before the first step, and after each step; empty if the model has no clock.
         messages: in the order in which they are received.
@@ -146,7 +147,7 @@ class Timeline:
 
     @property
     def plots(self) -> list[Plot]:
-        """The variables that change in the run, those of the same machine together."""
+        """The plots of the variables that change in the run, ordered by machine."""
         return [self._plots[key] for key in sorted(self._plots)]
 
     def follow(self, session: Session) -> None:

@@ -72,7 +72,7 @@ class Verdict:
     @property
     def unanimous_text(self) -> str:
         """What the traces say about an expected 0 or 1 that none of them contradicts; "" for other expectations."""
-        return f"no trace against it in {self.unanimous[0]:,}" if self.unanimous is not None and self.is_met else ""
+        return f"no trace of {self.unanimous[0]:,} contradicts it" if self.unanimous is not None and self.is_met else ""
 
     def doubt(self, epsilon: float) -> str:
         """The reason why the interval leaves the verdict open; "" if it does not.

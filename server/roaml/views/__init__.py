@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Representations of models and their traces for users: diagrams as DOT, Mermaid or PlantUML, and stories as text."""
+"""Representations of models and traces for users: diagrams as DOT, Mermaid or PlantUML, and explanations of traces as
+text."""

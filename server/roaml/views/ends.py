@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Why a trace of a translated system has ended, determined from its final state (`roaml.smc.end`).
 
-If the clock has ended, the time is over. If the root of the tree has ended, the tree has finished. Otherwise a clock
-that does not advance, or an event that is not received, means that automata wait for one another. In a system without a
-clock, the remaining case is that there is nothing left to do.
+If the clock has ended, the maximum time is reached. If the root of the tree has ended, the tree has finished. Otherwise
+a clock that does not advance, or an event that is not received, means that automata wait for one another. In a system
+without a clock, the remaining case is that no event is left to be handled.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from roaml.smc.goal import ObserverOutputs
 
 
 def marks(model: Model) -> Mapping[tuple[str, str], End]:
-    """(automaton, location) -> why a trace that stays in the location ends; empty for a model that is not a
-    translation."""
+    """(automaton, location) -> the reason why a trace ends if the automaton stays in the location; empty for a model
+    that is not a translation."""
     marks = {(a.name, location.name): _mark(a, location.name) for a in model.automata for location in a.locations}
     return marks if is_translation(model) else {}
 
@@ -49,7 +49,7 @@ def is_translation(model: Model) -> bool:
 
 
 def is_event(automaton: Automaton) -> bool:
-    """Whether an automaton buffers an event between sending and receiving, if the event has a receiver."""
+    """Whether an automaton buffers an event that has a receiver."""
     locations = {location.name for location in automaton.locations}
     sends = on_send(named(automaton.name))
     return locations <= {WAITING, RECEIVED} and any(edge.action == sends for edge in automaton.edges)

@@ -45,7 +45,7 @@ def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE
     """A phrase for an event.
 
     Args:
-        clients: the automata of the system; the name of an event may end with one of them.
+        clients: the automata of the system; the name of an event may end with the name of such an automaton.
         role: the role of the automaton that waits for the event, or receives it.
         taken: whether this automaton receives the tick of a timer, instead of waiting for the timer.
     """

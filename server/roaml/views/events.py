@@ -20,7 +20,7 @@ class EventReader:
         start: the variables of the model before the first step.
 
     Attributes:
-        hearing: for each instance, whether it receives any event.
+        hearing: whether each instance receives any event.
     """
 
     def __init__(self, automata: Sequence[Automaton], start: Mapping[str, Plain]) -> None:
@@ -49,7 +49,7 @@ class EventReader:
         return [part for part in step.parts if part.automaton not in self._events]
 
     def is_event(self, name: str) -> bool:
-        """Whether an event of the system, or the automaton that buffers it, has this name."""
+        """Whether the name denotes an event of the system, and so also the automaton that buffers the event."""
         return name in self._events
 
     def carries_event(self, variable: str) -> bool:

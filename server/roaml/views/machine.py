@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A diagram of a state machine as it is written: its states and transitions."""
+"""A diagram of the states and transitions of a state machine, before its translation."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story of a trace for users: as text, as a Mermaid sequence diagram, or as a self-contained HTML page."""
+"""The explanation of a trace (`Story`) for users: as text, as a Mermaid sequence diagram, or as a self-contained HTML
+page."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from roaml.views.waiting import Wait, help_line, waits
 
 MAX_CHARACTERS = 60
 FIRST, LAST = 30, 50
-"""The maximum number of turns that are shown. If there are more, those in the middle are folded."""
+"""The maximum number of turns that are shown. If there are more turns, those in the middle are folded."""
 
 PlaceOf = Callable[[Origin], str]
 """File and line of an origin, as text for users."""
@@ -46,7 +47,7 @@ class StoryLine(NamedTuple):
 
 
 def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    """The lines of a story. If it gets stuck, the waiting automata follow at its end."""
+    """The lines of an explanation. If the trace gets stuck, the waiting automata are listed at the end."""
     return [*_turn_lines(story, place_of), *_waiting(story, place_of)]
 
 
@@ -74,7 +75,7 @@ def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 
 
 def waits_of(story: Story) -> tuple[Wait, ...]:
-    """The waiting automata at the end of a story; empty if it is not stuck."""
+    """The waiting automata at the end of a trace; empty if the trace is not stuck."""
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
@@ -94,10 +95,10 @@ def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
 
 
 def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
-    """The story for a terminal.
+    """The explanation as text for a terminal.
 
     Args:
-        shown: where the waiting automata have already been shown; "" to show them here.
+        shown: the place in the output where the waiting automata are already shown; "" if they are to be shown here.
     """
     waiting = waits_of(story)
     table = [*_turn_lines(story, place_of), *([] if shown else _waiting(story, place_of))]

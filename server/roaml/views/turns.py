@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A story in turns: in each turn, an automaton receives an event and executes everything that follows from it.
+"""A trace in turns: in each turn, an automaton receives an event and executes all statements that follow from it.
 
-A translated system takes many steps for a turn: each statement is one, each event is buffered by a separate automaton
-between sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree pass ticks
-down and statuses up. A turn is included if one of its steps is relevant, or if it receives an event that a relevant
-turn sends. Turns that only pass an event on are omitted.
+A translated system takes many steps for a turn: each statement is a step, each event is buffered by a separate
+automaton between sender and receiver, calls of services go through a handler, and the inner nodes of a behavior tree
+pass ticks down and statuses up. A turn is included if one of its steps is relevant, or if it receives an event that a
+relevant turn sends. Turns that only pass an event on are omitted.
 """
 
 from __future__ import annotations
@@ -118,8 +118,8 @@ class Turn:
         return self.heard is not None and self._is_between_tree_and_node(self.heard.event, kind)
 
     def _is_between_tree_and_node(self, event: str, *kinds: TreeEventKind) -> bool:
-        """Whether an event is of one of these kinds, and passes between the tree, or the conditions of this node, and
-        this node."""
+        """Whether an event is of one of these kinds, and is sent between this node and the tree, or between this node
+        and the conditions of its ports."""
         node, read = NODE_AUTOMATON.fullmatch(self.automaton), read_tree_event(event)
         return node is not None and read is not None and read.number == int(node[1]) and read.kind in kinds
 
@@ -150,7 +150,7 @@ def turns(story: Story) -> list[Turn]:
 
 
 def _observes_another(turn: Turn, own: Collection[str]) -> bool:
-    """Whether the automaton observes another property than that of the story."""
+    """Whether the automaton is the observer of another property than the explained one."""
     return turn.automaton.endswith(OBSERVER_SUFFIX) and turn.automaton not in own
 
 
@@ -215,7 +215,7 @@ class _Reader:
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
-        The latter are included once."""
+        A change of a variable of the model is included once."""
         for change in step.changes:
             instance, name = change.variable
             is_lasting = instance < 0 and is_last and not self._events.carries_event(name)
@@ -224,7 +224,8 @@ class _Reader:
 
 
 def is_inner(automaton: Automaton) -> bool:
-    """Whether an automaton only ticks others: a node of BehaviorTree.CPP that has children, or the root of the tree."""
+    """Whether an automaton only ticks other nodes: it is a node of BehaviorTree.CPP that has children, or the root of
+    the tree."""
     node = NODE_AUTOMATON.fullmatch(automaton.name)
     comes_along = _is_builtin(node[2]) or _is_in_tree(automaton) if node else is_generated(automaton.name)
     return comes_along and any(_kind(sent_by(edge.action or "")) in _CALLS for edge in automaton.edges)

@@ -42,7 +42,7 @@ from roaml.views.turns import is_inner
 
 
 class Wait(NamedTuple):
-    """An automaton that waits, with a description of what it waits for.
+    """An automaton that waits, and a description of the event or condition for which it waits.
 
     Attributes:
         origin: the place in the source where it waits.
@@ -66,7 +66,7 @@ class Wait(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Link:
-    """An automaton, and what it waits for: each of `others` must receive or send the event.
+    """An automaton that waits, and the event for which it waits: each of `others` must receive or send the event.
 
     Attributes:
         action: the action that the previous automaton waits for; "" for the first one.
@@ -102,7 +102,7 @@ def rule(waiting: Sequence[Wait]) -> str:
 
 
 def advice(waiting: Sequence[Wait]) -> str:
-    """How to fix a node that does not answer the tree in time; "" for other reasons."""
+    """The fix for a node that does not answer the tree in time; "" if the system is stuck for another reason."""
     late = next((wait for wait in waiting if wait.unanswered), None)
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
@@ -113,7 +113,7 @@ def advice(waiting: Sequence[Wait]) -> str:
 
 
 def help_line(waiting: Sequence[Wait]) -> str:
-    """How to fix the system, as a line with the rule that documents it; "" if unknown."""
+    """The fix of the system as a line, with the rule that documents it; "" if no fix is known."""
     text, code = advice(waiting), rule(waiting)
     return f"help: {text}{f' [{code}]' if code else ''}" if text else ""
 
@@ -213,8 +213,8 @@ class _Chain:
         return self.does.get(on_send(named(event)), []) if event else []
 
     def is_asleep(self, event: str, asker: int) -> bool:
-        """Whether all possible senders of an event wait for the automaton that waits for the event, because they are
-        children that are not ticked."""
+        """Whether all possible senders of an event are nodes that the automaton that waits for the event would have to
+        tick first."""
         senders = self.senders(event)
         return bool(senders) and all(
             not any(True for _ in self.blocked(sender, ""))
@@ -304,7 +304,7 @@ class _Chain:
             takers = {self.role(other) for other, _ in shown}
             taker = Role.TREE_ROOT if takers == {Role.TREE_ROOT} else Role.MACHINE
             event = event_phrase(link.event, self.clients(), taker, taken=True)
-            text = f"waits{where} for {them or 'nobody'} to take {event}"
+            text = f"waits{where} for {them or 'another automaton'} to take {event}"
         elif answered_by(link.event):
             is_halt = any(event.endswith("_halt_response") for _, event in shown)
             unanswered = TreeEventKind.HALT if is_halt else TreeEventKind.TICK

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""References in XML text (`&lt;`, `&#10;`, ...): resolve them, write them, and map positions back.
+"""References in XML text (`&lt;`, `&#10;`, ...): functions that resolve and write them, and map positions in a resolved
+text to the source.
 
 Only the five predefined entities and character references are supported (XML 1.0, sections 4.1 and 4.6); every other
 reference is left unchanged. Declarations in a document type declaration are never expanded.

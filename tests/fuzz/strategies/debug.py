@@ -88,8 +88,8 @@ class _Inbox:
     def has_ended(self) -> bool:
         return not self._waiting
 
-    def has(self, is_meant: Callable[[Message], bool]) -> bool:
-        return any(map(is_meant, self._waiting))
+    def has(self, matches: Callable[[Message], bool]) -> bool:
+        return any(map(matches, self._waiting))
 
 
 class _Output(BytesIO):

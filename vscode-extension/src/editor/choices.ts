@@ -23,7 +23,7 @@ interface Choice {
     readonly line?: number;
 }
 
-/** An event that can be sent by hand, as in the answer to the request `events`. */
+/** An event that the user can send, as in the answer to the request `events`. */
 interface Sendable {
     readonly event: string;
     readonly text: string;
@@ -109,9 +109,11 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         try {
             const choices = (await session.customRequest("choices")) as Choices;
             const time = choices.time === null ? "" : `, ${choices.time.toFixed(3)} s`;
-            const byHand = choices.isChanged ? vscode.l10n.t("changed by hand") : vscode.l10n.t("chosen by hand");
-            const hand = choices.isByHand ? `, ${byHand}` : "";
-            const description = `${vscode.l10n.t("step {0}", choices.step)}${time}${hand}`;
+            const origin = choices.isChanged
+                ? vscode.l10n.t("changed by the user")
+                : vscode.l10n.t("chosen by the user");
+            const suffix = choices.isByHand ? `, ${origin}` : "";
+            const description = `${vscode.l10n.t("step {0}", choices.step)}${time}${suffix}`;
             const entries = choices.choices.map((choice) => ({ choice }));
             const end = choices.end === null ? "" : vscode.l10n.t("The run has ended: {0}.", choices.end);
             const messages = [choices.fault ?? "", end, verdict(choices)];
@@ -155,21 +157,26 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         if (text !== undefined) await this.sessions.request("goToStep", { step: Number(text) });
     }
 
-    /** Let the user choose an event and its fields, and send it by hand. */
+    /** Let the user choose an event and its fields, and send the event. */
     private async publish(): Promise<void> {
         const answer = (await this.sessions.request("events", {})) as
             { readonly events: readonly Sendable[] } | undefined;
         if (!answer) return;
         const items = answer.events.map((sendable) => ({
             label: sendable.text,
-            description: sendable.isFree ? sendable.fields : vscode.l10n.t("the last one has not been received yet"),
+            description: sendable.isFree
+                ? sendable.fields
+                : vscode.l10n.t("the previous event has not been received yet"),
             sendable,
         }));
         const placeHolder = vscode.l10n.t("Publish a message, or call a service");
         const picked = await vscode.window.showQuickPick(items, { placeHolder, matchOnDescription: true });
         if (!picked) return;
         const { event, fields, text } = picked.sendable;
-        const prompt = vscode.l10n.t("The fields of {0}; then the run says nothing about the model", text);
+        const prompt = vscode.l10n.t(
+            "The fields of {0}; after this change, the run does not show the behaviour of the model",
+            text,
+        );
         const written = fields === "{}" ? fields : await vscode.window.showInputBox({ prompt, value: fields });
         if (written !== undefined) await this.sessions.request("publish", { event, fields: written });
     }

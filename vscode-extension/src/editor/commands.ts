@@ -198,7 +198,7 @@ async function showChanges({ state }: LanguageServer, system: vscode.Uri): Promi
 
 async function selectInterpreter(): Promise<void> {
     const browse = { label: vscode.l10n.t("$(folder) Browse…"), path: "" };
-    const automatic = { label: vscode.l10n.t("$(search) Find one automatically"), path: "" };
+    const automatic = { label: vscode.l10n.t("$(search) Find an interpreter automatically"), path: "" };
     const items = [browse, automatic];
     for await (const python of pythons(thisHost, [], untrustedFolders())) {
         items.push({ label: `Python ${python.version}`, path: python.executable, ...described(python) });

@@ -52,8 +52,8 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         const trace = await this.server.ask(counterexample, { textDocument: { uri: system }, property, witness });
         if (!trace) {
             const text = witness
-                ? vscode.l10n.t("There is no trace that speaks for {0}, or it has not been verified.", property)
-                : vscode.l10n.t("There is no trace that contradicts {0}, or it has not been verified.", property);
+                ? vscode.l10n.t("There is no trace that supports {0}, or {0} has not been verified.", property)
+                : vscode.l10n.t("There is no trace that contradicts {0}, or {0} has not been verified.", property);
             void vscode.window.showInformationMessage(text);
             return;
         }

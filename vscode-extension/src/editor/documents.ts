@@ -32,7 +32,7 @@ export class Documents implements vscode.Disposable {
         const { systems } = await this.about(document);
         if (systems.length === 0) {
             const text = vscode.l10n.t(
-                "This file is not part of a system. Open a system file, or a file that one names.",
+                "This file is not part of a system. Open a system file, or a file that a system names.",
             );
             void vscode.window.showInformationMessage(text);
         }

@@ -12,7 +12,7 @@ export async function chooseExpectation(server: LanguageServer, system: string, 
     const of = { textDocument: { uri: system }, property };
     const known = await server.ask(expectations, of);
     if (!known) return false;
-    const title = vscode.l10n.t("What is expected of {0}? It is written into {1}.", property, known.file);
+    const title = vscode.l10n.t("The expected value of {0}, which is written into {1}", property, known.file);
     const expected = await choose(title, known.suggestions, known.current);
     if (expected === undefined) return false;
     const answer = await server.ask(setExpectation, { ...of, expected });
@@ -41,7 +41,7 @@ async function choose(
     const other = { label: vscode.l10n.t("Another value…") };
     const met = vscode.l10n.t("met by the result");
     const items = [...suggestions.map((label) => ({ label, description: met })), other];
-    const placeHolder = current.length > 0 ? vscode.l10n.t("now {0}", current.join(", ")) : undefined;
+    const placeHolder = current.length > 0 ? vscode.l10n.t("currently {0}", current.join(", ")) : undefined;
     const options = placeHolder === undefined ? { title } : { title, placeHolder };
     const picked = suggestions.length > 0 ? await vscode.window.showQuickPick(items, options) : other;
     if (picked !== other) return picked?.label;

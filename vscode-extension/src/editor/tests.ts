@@ -311,7 +311,7 @@ export class PropertyTests implements vscode.Disposable {
                 item.description = `${brief}, ${vscode.l10n.t("{0} met under uniform choices", expected)}`;
             }
             if (outcome.unanimous > 0) {
-                const said = vscode.l10n.t("no trace against it in {0}", outcome.unanimous.toLocaleString("en"));
+                const said = vscode.l10n.t("no trace of {0} contradicts it", outcome.unanimous.toLocaleString("en"));
                 item.description = `${item.description}, ${said}`;
             }
             run.appendOutput(`${sentence}${asked.property}: ${item.description}\r\n${warned}${more}`, undefined, item);
@@ -346,7 +346,7 @@ export class PropertyTests implements vscode.Disposable {
         told.add(system);
         const name = vscode.workspace.asRelativePath(this.uri(system));
         const text = vscode.l10n.t(
-            "{0} gets stuck: its time stands still, because its automata wait for one another.",
+            "{0} gets stuck: its time does not advance, because its automata wait for one another.",
             name,
         );
         const show = vscode.l10n.t("Show Waiting Automata");

@@ -111,7 +111,7 @@ function words(): TimelineWords {
             csv: vscode.l10n.t("Export the selection, or everything, as CSV"),
         },
         help: vscode.l10n.t(
-            "A click goes to a step, left and right arrow keys go one step, + and - zoom, 0 fits, Shift and drag selects.",
+            "A click goes to a step, left and right arrow keys move by one step, + and - zoom, 0 shows the whole run, dragging with Shift selects a part.",
         ),
         nothing: vscode.l10n.t("No run is being debugged."),
     };

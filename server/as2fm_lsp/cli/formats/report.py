@@ -37,7 +37,7 @@ class RelatedEntry(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """A diagnostic in the output: files as given or relative to the working directory."""
+    """A diagnostic in the output. Its paths are as given by the user, or relative to the working directory."""
 
     diagnostic: Diagnostic
     file: str

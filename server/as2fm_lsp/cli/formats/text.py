@@ -50,7 +50,7 @@ def _block(entry: Entry, paint) -> str:  # type: ignore[no-untyped-def]
 
 
 def _excerpt(entry: Entry, paint, color: str) -> list[str]:  # type: ignore[no-untyped-def]
-    """The first line of the range with a caret below each character of it."""
+    """The first line of the range, with a caret below each of its characters that are in the range."""
     place, line = entry.place, entry.line
     start = place.column - 1
     end = place.end_column - 1 if place.end_line == place.line else line.end - line.start

@@ -13,7 +13,7 @@ MAX_SWEEPS = 12
 def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> list[list[int]]:
     """The vertices of each layer from left to right.
 
-    The search begins with the order of the vertices, and changes it only to avoid crossings.
+    The order of the vertices is changed only to avoid crossings.
 
     Args:
         layers: the layer of each vertex.

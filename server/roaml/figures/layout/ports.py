@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The points where lines leave and enter nodes. Lines are as straight as possible, at a distance from each other."""
+"""The points where lines leave and enter nodes. Lines are as straight as possible, with a minimum distance from each
+other."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The places of vertices within their layers: near their neighbours in other layers, at a distance from each other."""
+"""The places of vertices within their layers: near their neighbours in other layers, with a minimum distance from the
+next vertex of the layer."""
 
 from __future__ import annotations
 

@@ -129,8 +129,8 @@ def _pairs(segments: Sequence[_Segment]) -> Iterator[tuple[_Segment, _Segment]]:
 def _split(
     segment: _Segment, chosen: _Segment, segments: Sequence[_Segment], lines: Sequence[tuple[float, float]]
 ) -> Iterator[_Segment]:
-    """The parts of a segment: itself, or two parts if it is the chosen one. The parts meet at a distance from all other
-    lines."""
+    """The parts of a segment: itself, or two parts if it is the chosen one. The place where the parts meet has a
+    minimum distance from all other lines."""
     if segment != chosen:
         yield segment._replace(part=segment.part + (segment.line == chosen.line and segment.part > chosen.part))
         return
