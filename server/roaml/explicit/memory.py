@@ -34,7 +34,8 @@ def flat(typecode: str, count: int, old: Any = None) -> Any:
 
 
 def available() -> int:
-    """The bytes of memory that are currently free for programs; half of 8 GB if the system does not report them."""
+    """The number of bytes of memory that are free for programs. If the system does not report it, the size of the
+    physical memory; 4 GiB if that is unknown, too."""
     try:
         with open("/proc/meminfo", encoding="ascii") as file:
             for line in file:

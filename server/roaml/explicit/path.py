@@ -32,7 +32,8 @@ class Path:
 
 
 def shortest(space: Space, verdict: int) -> Path | None:
-    """The shortest trace with a verdict on the goal; `None` if no trace has it after finitely many steps."""
+    """The shortest trace with the given verdict on the goal; `None` if no trace has this verdict after finitely many
+    steps."""
     state = _first(space, verdict)
     if state is None:
         return None

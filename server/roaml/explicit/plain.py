@@ -14,19 +14,20 @@ import roaml.smc
 
 @cache
 def plain_kernel() -> ModuleType:
-    """The module of the kernel as plain Python, even if it is compiled."""
+    """The module of the kernel as plain Python, even if the kernel is compiled."""
     return _loaded("plain_kernel", Path(roaml.smc.__file__).with_name("kernel.py"))
 
 
 @cache
 def plain_search() -> ModuleType:
-    """The module of the search as plain Python, even if it is compiled."""
+    """The module of the search as plain Python, even if the search is compiled."""
     return _loaded("plain_search", Path(__file__).with_name("search.py"))
 
 
 @cache
 def plain_solver() -> ModuleType:
-    """The module of the solver as plain Python, even if it is compiled. It uses `elimination` as plain Python, too."""
+    """The module of the solver as plain Python, even if the solver is compiled. It uses `elimination` as plain Python,
+    too."""
     module = _loaded("plain_solver", Path(__file__).with_name("solver.py"))
     elimination = _loaded("plain_elimination", Path(__file__).with_name("elimination.py"))
     module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]

@@ -44,10 +44,10 @@ COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES = 0, 1, 2, 3, 4, 5
 undefined operation was executed; one state has too many combinations."""
 
 STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK = 3, 4, 8, 16, 32, 64, 128
-"""The bits of a label. STATUS: FALSE, TRUE or UNKNOWN. LASTS and FAILS are about a path that stays here for ever and on
-which the goal is not decided. LASTS: the goal is true if the lasting condition holds for ever; FAILS: the goal is true
-otherwise. HOLDS: the lasting condition, or the right side of a bounded until, holds. OPEN: the time ends before the
-goal is decided. ENDED: nothing changes any more; GETS_STUCK: because automata wait for one another."""
+"""The bits of a label. STATUS: FALSE, TRUE or UNKNOWN. LASTS and FAILS are about a path that stays in the state for
+ever and on which the goal is not decided. LASTS: the goal is true if the lasting condition holds for ever; FAILS: the
+goal is true otherwise. HOLDS: the lasting condition, or the right side of a bounded until, holds. OPEN: the time ends
+before the goal is decided. ENDED: nothing changes any more; GETS_STUCK: because automata wait for one another."""
 
 
 def compiled() -> bool:
@@ -236,7 +236,8 @@ class StateSearch:
 
     def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
         """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
-        and, for each slot that has an effect, the numbers of the edge among the enabled ones and of the way."""
+        and, for each slot that has an effect, the number of the edge among the enabled edges, and the number of the
+        way."""
         self._visit(state)
         self.label[state] = self._judged()
         for i in range(self.kernel.enabled_count):

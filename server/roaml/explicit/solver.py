@@ -102,12 +102,12 @@ class Solver:
     # ------------------------------------------------------------ public
 
     def probability(self, target: int, bits: int, accepts: int) -> tuple[float, float]:
-        """Bounds of the probability, from the initial state, to reach certain states.
+        """Bounds of the probability that a path from the initial state reaches a target state.
 
         Args:
-            target: states with this STATUS are reached; UNKNOWN for none.
-            bits: states with one of these bits in their label are reached, too.
-            accepts: the paths that stay in an end component and are accepted as well; NOTHING for a minimum.
+            target: the STATUS of target states; UNKNOWN for none.
+            bits: states with one of these bits in their label are target states, too.
+            accepts: the paths that stay in an end component and are added to the probability; NOTHING for a minimum.
         """
         self.accepts = accepts
         for state in range(self.states):
@@ -179,8 +179,8 @@ class Solver:
         """One step backwards for the values in `low`; returns whether a value has changed.
 
         Args:
-            everywhere: whether to compute the states whose right side holds, too, because steps before the lower bound
-                remain.
+            everywhere: whether to compute the values of states in which the right side holds, too, because steps before
+                the lower bound remain.
         """
         if self.has_before == 0:
             self.before = flat("d", self.states)

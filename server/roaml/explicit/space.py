@@ -39,7 +39,8 @@ class StateLimits:
         bytes: the maximum memory in bytes; `None` for half of the free memory.
         combinations: the maximum number of combinations of edges and destinations in one state. With n automata of k
             edges on one action there are kⁿ.
-        transitions: the number of transitions after which the search ends soon; `None` if there is no limit.
+        transitions: the number of transitions; if it is exceeded, the search ends at its next check. `None` if there is
+            no limit.
         work: the maximum number of additions for each value of a question; `None` for the limit of the solver.
     """
 
@@ -146,7 +147,7 @@ def explore(
 
 
 def _bounds(goal: Goal) -> tuple[int, int, int]:
-    """How a search treats the bounds of a goal on steps. Return three numbers: the number of steps that states
+    """How a search treats the step bounds of a goal. Return three numbers: the number of steps that states
     distinguish; the lower bound of a single until, which the solver needs; and the number of steps after which the goal
     is decided, or -1."""
     lower = [bound for bound in goal.lower if bound != AT_END]

@@ -39,7 +39,7 @@ _NAMING_PORTS = {
     ("SkipUnlessUpdated", "entry"): False,
     ("WaitValueUpdate", "entry"): False,
 }
-"""The ports whose value is the name of an entry even without braces, and whether the node writes the entry."""
+"""The ports whose value is the name of an entry even without braces -> whether the node writes the entry."""
 _CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool", "Double", "String"))
 """The ports that take elements from an entry and never add one."""
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)

@@ -181,8 +181,9 @@ class Forest:
 
     @cached_property
     def _described(self) -> Mapping[str, Node]:
-        """The nodes in models. Groot2 also writes models of nodes of libraries. Such a model determines which ports the
-        node has; its behaviour, and types and defaults that the model does not state, are those of the library."""
+        """The nodes in models. Groot2 also writes models of nodes of libraries. A model of this kind determines which
+        ports the node has; the library determines the behaviour of the node, and the types and defaults that the model
+        does not state."""
         described = dict(self.models)
         for known in self.libraries:
             for name, model in self.models.items():

@@ -91,7 +91,7 @@ class Operator(enum.Enum):
 
 
 class UnaryOperator(Operator):
-    """An operator with one operand, `exp`."""
+    """An operator with one operand, which JANI names `exp`."""
 
     NOT = "¬", operator.not_, Signature.LOGICAL, None, "!"
     FLOOR = "floor", math.floor, Signature.ROUNDING
@@ -126,7 +126,7 @@ class UnaryOperator(Operator):
 
 
 class BinaryOperator(Operator):
-    """An operator with two operands, `left` and `right`."""
+    """An operator with two operands, which JANI names `left` and `right`."""
 
     OR = "∨", operator.or_, Signature.LOGICAL, None, "||", "or"
     AND = "∧", operator.and_, Signature.LOGICAL, None, "&&", "and"

@@ -48,6 +48,6 @@ def declared_at(endpoint: ChannelEndpoint, program: TranslatableSystem) -> Locat
 
 
 def handler_place(channel: Channel, program: TranslatableSystem) -> Location:
-    """The place of the declaration that a handler has as its origin: that of the server; without a server, which a rule
-    reports, that of the first client."""
+    """The place of the declaration that is the origin of a handler: the declaration of the server or, without a server,
+    that of the first client. A rule reports a missing server."""
     return declared_at(channel.endpoints[0], program)

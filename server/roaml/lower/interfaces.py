@@ -81,7 +81,8 @@ class ActionEvents:
 
     @property
     def cancel(self) -> ScxmlEvent:
-        """The request to cancel a goal. It is received only while no start of a thread waits (docs/spec/ros.md#cancel).
+        """The request to cancel a goal. It is received only while no event that starts a thread waits
+        (docs/spec/ros.md#cancel).
 
         Its name does not begin like the names of the other events of the action, so it never waits for its receivers
         (docs/spec/jani.md#synchronising-names).

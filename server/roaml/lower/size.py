@@ -222,7 +222,7 @@ class _Counter:
 
     def state(self, state: State, entries: Mapping[str, int], events: int) -> int:
         """The number of parts of the edges of a state. The guard of a transition contains the conditions of the earlier
-        transitions on the same event, and edges discard the other events."""
+        transitions on the same event, and further edges discard the events without a transition."""
         leaving = self.body(state.exit.statements, None) if state.exit else 0
         count = events * _EDGE
         earlier: dict[object, int] = {}

@@ -16,7 +16,7 @@ ALL = "*"
 
 
 class MockError(ValueError):
-    """A mock is not valid; the message says why."""
+    """A mock is not valid; the message states the reason."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ def observe_formula(property_: FormulaProperty) -> Observer:
 
 
 def _value(formula: Formula, builder: Builder, known: dict[Formula, Expression]) -> Expression:
-    """An expression that is true if the formula is, after the registers of the formula have been updated."""
+    """An expression with the value of the formula, after assignments that update the registers of the formula."""
     if formula not in known:
         known[formula] = _computed(formula, builder, known)
     return known[formula]

@@ -97,7 +97,7 @@ class Outputs:
         due: whether an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline
             is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
-        opened: whether a stretch of the scope was judged; `None` if `exercised` says the same.
+        opened: whether a stretch of the scope was judged; `None` if `exercised` has the same value.
     """
 
     violated: Register

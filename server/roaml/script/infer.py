@@ -110,7 +110,7 @@ def created_in(text: str) -> tuple[tuple[str, Type], ...]:
 
 
 def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """The reason why the value of a script cannot be a condition; empty if it can."""
+    """The reason why the value of a script cannot be a condition; empty if it can be one."""
     if script.statements:
         yield from _truth(script.statements[-1], entry)
 

@@ -196,8 +196,8 @@ def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent
 
 
 def client_of(event: str, clients: Collection[str]) -> str:
-    """The automaton of `clients` whose name the name of a service's or action's event ends with; "" if there is none.
-    The client sends or receives this event."""
+    """The client that sends or receives an event of a service or action: the automaton of `clients` whose name is the
+    last part of the name of the event; "" if there is none."""
     _, _, client = event.partition(_CLIENT)
     return client if client in clients else ""
 

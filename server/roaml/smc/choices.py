@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The relation of the result under uniform choices to `Pmin` and `Pmax`: whether all schedulers agree, and if that is
-unknown, the range of the values of sampled schedulers.
+"""The relation of the result under uniform choices to `Pmin` and `Pmax`: whether all schedulers have the same value
+and, if that is unknown, the range of the values of sampled schedulers.
 
 1. A model without nondeterminism has only one scheduler.
 2. If there are few states, the minimum and the maximum are known from all states (`roaml.verification.small`).
@@ -24,7 +24,7 @@ from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
 
 NO_NONDETERMINISM = "the model has no nondeterminism"
-"""The reason why all schedulers of a model of type `dtmc` agree."""
+"""The reason why all schedulers of a model of type `dtmc` have the same value."""
 _RESULT_STEPS_PER_PROBE_STEP = 5
 """The effort for the result, divided by the effort for schedulers."""
 _MIN_STEPS, _MAX_STEPS = 50_000, 400_000

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The forms of properties that sampling can decide, determined from the property alone.
 
-`goal.ask` compiles these forms; the rule `unsupported-property` reports the others before anything is run.
+`goal.compile_property` compiles these forms; the rule `unsupported-property` reports the others before anything is run.
 """
 
 from __future__ import annotations

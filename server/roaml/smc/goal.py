@@ -100,10 +100,10 @@ class Question:
 
 
 class Activity(enum.IntEnum):
-    """How far a trace has exercised a property. The numbers are those of the kernel."""
+    """How far a trace has exercised a property. The kernel uses the same numbers."""
 
     CLOSED = 0
-    """The scope of the property was never evaluated, so the trace says nothing about the property."""
+    """The scope of the property was never evaluated, so the trace does not exercise the property."""
     IDLE = 1
     """The scope was evaluated, but the event that triggers the property, such as a request, never occurred in it."""
     TRIGGERED = 2
@@ -124,7 +124,7 @@ class ObserverOutputs:
     """Expressions over the variables of a property's observer; `None` where it has no such variable.
 
     Attributes:
-        open: (x, e): if e holds at the end of the model's time, `F G x` is undecided.
+        open: pairs (x, e): if e holds at the end of the model's time, `F G x` is undecided.
         triggered: whether the event that triggers the property has occurred.
         opened: whether the scope of the property has been evaluated.
         can_be_late: whether the property fails if the time ends before an event that it still requires.

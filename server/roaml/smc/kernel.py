@@ -31,7 +31,7 @@ MAX_INT64 = 0x7FFFFFFFFFFFFFFF
 MIN_INT64 = -MAX_INT64 - 1
 TO_UNIT = 1.0 / 9007199254740992.0
 MAX_DRAWN_COMBINATIONS = 4096
-"""The maximum number of combinations that one random number of 32 bits decides between: the relative error of each
+"""The maximum number of combinations from which one random number of 32 bits selects: the relative error of each
 probability is then at most one in a million."""
 MASS_UNIT = 2.0**512
 MASS_UNIT_INVERSE = 2.0**-512
@@ -192,7 +192,7 @@ class Kernel:
             scheduler: 0 draws uniformly among the choices; any other number identifies a scheduler, see `lss`.
 
         Returns:
-            The status of the goal there: UNKNOWN if one of the questions is undecided.
+            The status of the goal in the initial state: UNKNOWN if one of the questions is undecided.
         """
         self.key = self._mixed((self._mixed(seed & UINT64_MASK) + (trace & UINT64_MASK) * GOLDEN) & UINT64_MASK)
         self.drawn = 0
@@ -304,7 +304,7 @@ class Kernel:
                 self._set_ready(self.group_slot[group], self._count(group))
 
     def save(self) -> tuple[Any, ...]:
-        """Everything that determines how the trace continues, for `load`."""
+        """All data that determine how the trace continues; `load` restores them."""
         arrays = [list(array) for array in self._changing()]
         counts = (self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved)
         goal = (self.status, self.must_look, self.steps, self.still, self.reward)

@@ -20,7 +20,7 @@ from roaml.smc.shapes import kind_of, larger, shape_of
 
 @dataclass(frozen=True, slots=True)
 class AutomatonInstance:
-    """An automaton as an element of the system. `own` are its own variables."""
+    """An automaton as an element of the system. `own` contains the variables that it declares."""
 
     automaton: Automaton
     names: StorageNames

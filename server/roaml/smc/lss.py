@@ -5,9 +5,9 @@ A scheduler is a number, and its choice in a state is a hash of this number and 
 Four kinds are tried, each with many numbers:
 
 - memoryless schedulers;
-- some with memory of the last step;
-- for each automaton, some that take its edges only if nothing else is possible;
-- for each automaton, some that take its edges whenever possible.
+- schedulers with memory of the last step;
+- for each automaton, schedulers that take its edges only if nothing else is possible;
+- for each automaton, schedulers that take its edges whenever possible.
 
 Smart sampling (D'Argenio, Legay, Sedwards and Traonouez 2015): many schedulers are tried with few traces, then the
 better half with more traces, until one is left. Its probability is then estimated with traces that were not used to

@@ -59,7 +59,7 @@ def has_bounds(path: PathBounds) -> bool:
 
 
 def normal_form(formula: Formula, *, is_negated: bool = False) -> Formula:
-    """The negation normal form, with F, G, U, W, ∧ and ∨; F and G may have bounds on the time."""
+    """The negation normal form of a path formula, with F, G, U, W, ∧ and ∨; F and G may have bounds on the time."""
     match formula:
         case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
             return normal_form(operand, is_negated=not is_negated)

@@ -48,7 +48,7 @@ def product(shape: tuple[int, ...]) -> int:
 
 
 class Label:
-    """A place in the code that is determined later."""
+    """The target of jumps in the code, whose place is determined later."""
 
     def __init__(self) -> None:
         self.at = -1

@@ -68,7 +68,7 @@ def exact_values(
 
 
 def _proof(space: Space, values: GoalValues) -> Proof | None:
-    """What all states prove in addition to a probability of 0 or 1 (see `Exact`)."""
+    """What the exploration of all states proves in addition to a probability of 0 or 1 (see `Exact`)."""
     goal = space.compiled_property.goal
     if space.compiled_property.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
         return None
@@ -89,7 +89,7 @@ def check_exactly(
     """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation.
 
     Args:
-        only_uniform: whether to judge the value under uniform choices instead.
+        only_uniform: whether the value under uniform choices is checked instead.
         width: the difference that `=` allows.
     """
     threshold = expectation.threshold

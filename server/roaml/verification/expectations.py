@@ -33,7 +33,8 @@ NO_EXPECTATION = "no expectation set"
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """A comparison of the value of a property with a number. `is_own` is whether it is part of the property itself."""
+    """A comparison of the value of a property with a number. `is_own` states whether the comparison is part of the
+    property itself."""
 
     name: str
     threshold: Threshold
@@ -71,7 +72,8 @@ class Verdict:
 
     @property
     def unanimous_text(self) -> str:
-        """What the traces say about an expected 0 or 1 that none of them contradicts; "" for other expectations."""
+        """A phrase that states that no trace contradicts an expected 0 or 1; "" if one does, and for other
+        expectations."""
         return f"no trace of {self.unanimous[0]:,} contradicts it" if self.unanimous is not None and self.is_met else ""
 
     def doubt(self, epsilon: float) -> str:

@@ -58,7 +58,7 @@ EXACT_WIDTH = 1e-6
 
 
 class Proof(Enum):
-    """What all states prove about the condition of a property."""
+    """What the exploration of all states proves about the condition of a property."""
 
     ALL = "the condition holds in all states"
     NONE = "the condition holds in no state"

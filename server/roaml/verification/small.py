@@ -33,7 +33,7 @@ def values_if_small(checker: ModelChecker, property_: CompiledProperty) -> Exact
 
 
 def choices_of(exact: Exact, agreement: str = "") -> Choices:
-    """What exact values say about schedulers other than the uniform one.
+    """The facts about schedulers other than the uniform one that follow from exact values.
 
     Args:
         agreement: the reason why all schedulers have the same value, if it is known without the exact values.

@@ -503,7 +503,7 @@ class _Explorer:
         return self.added(f"*{script}*{following}", lambda key: script_steps(key, compiled, following, otherwise))
 
     def added(self, segment: str, steps: Callable[[str], tuple[Step, ...]]) -> Place:
-        """The place at the beginning of a segment. `steps` returns the segment if it does not exist yet."""
+        """The place at the beginning of a segment. If the segment does not exist yet, `steps` creates it."""
         if segment not in self.segments:
             self.segments[segment] = steps(segment)
         return (segment, 0)

@@ -62,7 +62,7 @@ class Board:
     version: Version
 
     def unset(self, name: str) -> str:
-        """A message that says why the entry `name`, which nothing sets, cannot be read."""
+        """A message that states why the entry `name`, which nothing sets, cannot be read."""
         if self.in_system:
             return f"nothing sets the entry `{name}`; a script, a port or a `<SubTree>` of the tree must set it"
         return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
