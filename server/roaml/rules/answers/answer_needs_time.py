@@ -108,8 +108,9 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
     """One phrase for each link of the chain of machines that wait for each other, except the first link."""
     while delay is not None and delay.next is not None:
         then = delay.next
-        cause = _named(system, then.automaton, then.event)
         timed = then.event.part is ProtocolPart.TICK
+        cause = f"its timer `{then.event.name}` fires" if timed else _named(system, then.automaton, then.event)
+        only = f"only {'when' if timed else 'after'} {cause}"
         if delay.promise is not None and delay.server is not None:
             name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
             doing, state = _DOING[delay.event.part], delay.promise.state
@@ -117,9 +118,9 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
                 question = "request for" if delay.promise.duty.kind is DutyKind.REQUEST else "goal for"
                 yield f"`{name}` does not handle the {question} {channel} in its state `{state}` before {cause}"
             else:
-                yield f"`{name}` {doing} {channel} in its state `{state}` only {'at' if timed else 'after'} {cause}"
+                yield f"`{name}` {doing} {channel} in its state `{state}` {only}"
         else:
-            yield f"`{then.automaton.name}` sends it only {'at' if timed else 'after'} {cause}"
+            yield f"`{then.automaton.name}` sends it {only}"
         delay = then
 
 
@@ -130,7 +131,7 @@ _DOING = {
 }
 _WHAT = {
     ProtocolPart.RESPONSE: "the response of",
-    ProtocolPart.GOAL_RESPONSE: "the decision on its goal for",
+    ProtocolPart.GOAL_RESPONSE: "the decision on a goal for",
     ProtocolPart.RESULT: "the result of",
     ProtocolPart.FEEDBACK: "feedback of",
     ProtocolPart.MESSAGE: "a message on",
@@ -149,11 +150,11 @@ def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> 
     """A noun phrase for an event that an automaton waits for."""
     match event.part:
         case ProtocolPart.TICK:
-            return f"its timer `{event.name}`"
+            return f"the timer `{event.name}`"
         case ProtocolPart.EVENT:
             return f"the event `{event.name}`"
         case ProtocolPart.START:
-            return "its start"
+            return f"the start of `{automaton.name}`"
         case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
             return f"the next {event.part.value[3:]} of `{automaton.name}`"
         case ProtocolPart.THREAD_START:

@@ -102,7 +102,7 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
         right = "bt_return_halted" if isinstance(fault.statement, ReturnStatus) else "bt_return_status"
         return f"a {event} is answered with `<{tag}>`, but its parent waits for `<{right}>`; send `<{right}>` instead"
     how = {DutyKind.RESULT: "ended", DutyKind.GOAL: "accepted or rejected"}.get(fault.duty.kind, "answered")
-    tail = f"the second answer is used as the answer to the next {event}; send only one of them"
+    tail = f"the second answer is used as the answer to the next {event}; send only one answer"
     if first is None:
         if _twice(step, fault):
             return f"a {event} is {how} twice on one path: {tail}"

@@ -30,7 +30,7 @@ def _fixes(value: TypedValue) -> Iterator[Fix]:
     if is_number(value.type):
         yield Fix("Compare with 0", (TextEdit(end, " != 0"),), preferred=False)
     elif (is_kind(value.type, ScalarKind.STRING) or isinstance(value.type, Array)) and access_path(tree) is not None:
-        yield Fix("Test whether it is empty", (TextEdit(end, ".length != 0"),), preferred=False)
+        yield Fix("Test whether the value is not empty", (TextEdit(end, ".length != 0"),), preferred=False)
 
 
 RULE = Rule("condition-not-boolean", Severity.ERROR, "A condition is not a boolean.", machine=check)

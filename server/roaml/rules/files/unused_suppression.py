@@ -16,7 +16,8 @@ from roaml.text import Span, TextEdit
 def finding(
     text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
 ) -> Iterator[Finding]:
-    """The finding for a comment that suppresses findings that do not occur; nothing if all its codes are needed.
+    """The finding for a comment that suppresses findings that do not occur; no finding if all codes of the comment are
+    needed.
 
     Args:
         codes: the codes that the comment lists; `None` if it suppresses all rules.
@@ -42,7 +43,8 @@ def finding(
         yield RULE.at(comment, "unused suppression: this comment suppresses no finding", fix, tags=tags)
     else:
         fix = Fix(
-            f"Leave out {listing(superfluous)}", (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),)
+            f"Remove {listing(superfluous)} from the comment",
+            (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),),
         )
         yield RULE.at(comment, f"unused suppression: {listing(superfluous)} is not reported here", fix, tags=tags)
 

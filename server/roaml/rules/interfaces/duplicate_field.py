@@ -34,7 +34,7 @@ def _twice(context: MachineContext, params: tuple[Param, ...], kind: str) -> Ite
             again = "" if before.value == param.name.value else f" (as `{before.value}`)"
             yield RULE.at(
                 param.name.span,
-                f"the {kind} `{param.name.value}` is set twice{again}; remove one of them",
+                f"the {kind} `{param.name.value}` is set twice{again}; set it only once",
                 Fix(f"Remove this {kind}", (removal(context.source.text, param.element.span),), preferred=False),
                 related=(Related(before.span, "set first here"),),
             )

@@ -45,7 +45,7 @@ def _same_handle(context: MachineContext, declaration: Declaration, handle: Name
         return RULE.at(handle.span, message, remove, severity=severity, related=related)
     return RULE.at(
         handle.span,
-        f"`{handle.value}` is declared twice; give one of them another `name`",
+        f"`{handle.value}` is declared twice; give one of the declarations another `name`",
         _rename(context, declaration, handle),
         # If the declarations are of different kinds, each use still has one meaning here; the reference translator
         # uses the first declaration (docs/spec/ros.md#handles).

@@ -74,8 +74,8 @@ def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tupl
 
 
 def _clash(context: MachineContext, mine: str, other: str) -> str:
-    """The part of the message about a field that both message types have with values of different kinds; an empty
-    string if there is no such field."""
+    """The part of the finding about a field whose values have different kinds in the two types; an empty string if the
+    kinds of all common fields agree."""
     messages = [context.interface(INTERFACE_KINDS[SymbolKind.PUBLISHER], type_) for type_ in (mine, other)]
     fields, theirs = ({} if isinstance(m, NotFound) else dict(leaves(m.part("message"))) for m in messages)
     for path, type_ in fields.items():

@@ -59,7 +59,7 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
         if find_handle(context.machine, handler) is declaration
     ]
     edits = tuple(removal(context.source.text, element.span) for element in waiting)
-    return Fix("Remove the handlers that wait for it", edits, preferred=False)
+    return Fix("Remove the handlers that wait for the answer", edits, preferred=False)
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:

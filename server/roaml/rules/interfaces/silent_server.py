@@ -80,7 +80,9 @@ def _action(
             f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `_canceled` or `_aborted` is "
             "missing"
         )
-        yield RULE.at(name_span(declaration), message, related=[Related(waiting[0].symbol, "waits for the result")])
+        yield RULE.at(
+            name_span(declaration), message, related=[Related(waiting[0].symbol, "this client waits for the result")]
+        )
 
 
 def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:

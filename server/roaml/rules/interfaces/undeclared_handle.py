@@ -81,7 +81,7 @@ def _declare(context: MachineContext, name: str, kind: SymbolKind, *, preferred:
         text = f'<{DECLARING_ELEMENTS[kind]} name="{name}" {attribute}="{interface}" type="{type_}" />'
     siblings = [d.element for d in context.machine.declarations if d.element in root.elements]
     edit = after(document, siblings[-1], text) if siblings else first_in(document, root, text)
-    yield Fix(f"Declare it as `<{DECLARING_ELEMENTS[kind]}>`", (edit,), preferred)
+    yield Fix(f"Declare `{name}` as `<{DECLARING_ELEMENTS[kind]}>`", (edit,), preferred)
 
 
 def _elsewhere(context: MachineContext, name: str, kind: SymbolKind) -> tuple[str, str] | None:

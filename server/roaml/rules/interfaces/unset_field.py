@@ -58,8 +58,8 @@ def _check(context: MachineContext, handler: Handler, node: Member, field: str) 
             yield RULE.at(
                 node.name_span,
                 (
-                    f"no machine sets the field `{field}` of `{channel.name}`, so it is always empty; set it in the "
-                    "element that sends it"
+                    f"no machine sets the field `{field}` of `{channel.name}`, so the field is always empty; set it in "
+                    "the sending element"
                 ),
             )
             return

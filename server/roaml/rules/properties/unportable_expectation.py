@@ -21,8 +21,8 @@ _COMPARISONS = (
     BinaryOperator.EQUAL,
 )
 IN_JANI = (
-    "SMC Storm, the model checker of AS2FM, refuses a comparison of the probability with a number; the expectation can "
-    "be written into `[verify.expect]` of as2fm.toml instead"
+    "SMC Storm, the model checker of AS2FM, refuses a comparison of the probability with a number; write the "
+    "expectation into `[verify.expect]` of `as2fm.toml` instead"
 )
 IN_XML = "AS2FM ignores `expect`; only as2fm-lsp compares the result with it"
 

@@ -78,7 +78,7 @@ def _fixes(context: MachineContext, handler: Handler, earlier: Handler) -> Itera
         text = document.text[slice(*element.span)]
         at, indent = earlier.element.span.start, indent_of(document.text, earlier.element)
         edits = (TextEdit(Span(at, at), f"{text}\n{indent}"), removal(document.text, element.span))
-        yield Fix("Move it before the transition without a condition", edits)
+        yield Fix("Move this transition before the one without a condition", edits)
     yield remove(document, element, "Remove this transition")
 
 

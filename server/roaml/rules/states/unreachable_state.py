@@ -25,7 +25,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _remove(context: MachineContext, state: State, sources: list[State]) -> Iterator[Fix]:
-    """A fix that removes a state. There is none if a transition of another unreachable state leads to the state."""
+    """A fix that removes a state. No fix is offered if a transition of another unreachable state leads to the state."""
     if state.id is not None and all(source is state for source in sources):
         yield remove(context.document, state.element, f"Remove the state `{state.id.value}`")
 

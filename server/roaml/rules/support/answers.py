@@ -87,8 +87,8 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
 
 
 def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
-    """The steps after which the answer to a duty is missing, at most one for each handler, each with whether it is
-    missing on all paths.
+    """The steps after which the answer to a duty is missing, at most one for each handler. The flag of a step states
+    whether the answer is missing on all paths.
 
     Steps are left out if another finding explains them: an element that cannot be read may be the answer, and a
     condition that has no effect because of earlier conditions (shadowed-transition) is probably wrong.

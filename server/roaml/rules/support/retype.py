@@ -31,8 +31,8 @@ def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
 
 
 def as_type(context: MachineContext, value: TypedValue, type_: str) -> Iterator[Fix]:
-    """A fix that declares the variable that receives a value with the base type `type_`. There is none if the bounds of
-    the variable are numbers of another kind."""
+    """A fix that declares the variable that receives a value with the base type `type_`. No fix is offered if the
+    bounds of the variable are numbers of another kind."""
     data = declared_for(context, value)
     if data is None or data.id is None or data.type is None or data.type.name is None:
         return

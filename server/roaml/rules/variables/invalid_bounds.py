@@ -53,7 +53,7 @@ def _order(context: MachineContext, data: Data) -> Iterator[Finding]:
         assert data.value is not None
         is_below = low is not None and initial < low
         bound, nearest = (f"below {low}", low) if is_below else (f"above {high}", high)
-        fix = Fix(f"Begin with {nearest}", (TextEdit(data.value.span, str(nearest)),), preferred=False)
+        fix = Fix(f"Change the initial value to {nearest}", (TextEdit(data.value.span, str(nearest)),), preferred=False)
         message = f"the initial value {initial} is outside the bounds of the variable: {bound}"
         # The bounds state the intended values; the translation does not read them (docs/spec/machines.md#data).
         yield RULE.at(data.value.span, message, fix, severity=Severity.WARNING)

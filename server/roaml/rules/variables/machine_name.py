@@ -21,7 +21,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         attribute = context.machine.element.get("name")
         if attribute is not None:
             stem = safe_name(context.source.path.replace("\\", "/").rpartition("/")[2].partition(".")[0])
-            fixes = [Fix(f"Call it `{stem}`", (TextEdit(attribute.span, f'name="{stem}"'),))] if stem else []
+            fixes = [Fix(f"Name the machine `{stem}`", (TextEdit(attribute.span, f'name="{stem}"'),))] if stem else []
             yield RULE.at(attribute.span, "the name of the machine is empty; set `name`", *fixes)
         return
     if SystemSection.BEHAVIOR_TREE in context.listed_as and name.value in builtin_plugins():
