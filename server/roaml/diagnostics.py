@@ -32,7 +32,7 @@ class Severity(enum.IntEnum):
 
 
 class Tag(enum.Enum):
-    """The presentation of the text of a finding in an editor (LSP `DiagnosticTag`)."""
+    """How an editor shows the text of a finding (LSP `DiagnosticTag`)."""
 
     UNNECESSARY = "unnecessary"
     DEPRECATED = "deprecated"
@@ -88,7 +88,7 @@ class Fix:
 class Finding:
     """A problem at a span. Without `severity`, the default severity of the rule applies.
 
-    `facts` are the data for fixes that change other files. The message is for people only.
+    `facts` is the data for fixes that change other files. The message is for people only.
     """
 
     code: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The only module that reads files of the user: models, definitions, configuration, baselines, states.
+"""The only module that reads files of the user: models, definitions, configurations, baselines, saved verifications.
 
 - Only regular files are opened. A device, socket or pipe may block for ever or never end.
 - Nothing larger than the given limit is read.
@@ -21,7 +21,7 @@ MAX_DATA = 512 * MEGABYTE
 
 
 class UnreadableReason(enum.Enum):
-    """Why a path has no readable text."""
+    """The reason why the file at a path cannot be read."""
 
     MISSING = "there is no such file"
     FOLDER = "it is a folder"

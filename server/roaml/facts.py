@@ -2,8 +2,8 @@
 """The facts of a finding: the data that describes it.
 
 Messages are for people. A fix that needs more than the place of a finding reads the facts, never the message. A rule
-with such a fix has a frozen dataclass of facts, which its `Rule` names. The fields are strings, integers, booleans,
-enums, tuples of one of these, or optional values of one of these.
+that offers this kind of fix defines its facts as a frozen dataclass, which its `Rule` names. The fields are strings,
+integers, booleans, enums, tuples of one of these, or optional values of one of these.
 
 Facts are sent through LSP as JSON. A client may send back any JSON: `facts_from_json` validates it.
 """

@@ -41,7 +41,7 @@ def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str) -> str
 
     Args:
         close: the similar names, the most similar first.
-        noun: what the names are, in the singular, such as `state`.
+        noun: a noun in the singular for what the names denote, such as `state`.
 
     Returns:
         A clause such as ``; the states are `a` and `b` ``; "" if there are no names, or more than `MAX_LISTED`.
@@ -55,7 +55,7 @@ def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str) -> str
 
 
 def listing(names: Iterable[str]) -> str:
-    """The names in quotes, as in `a`, `b` and `c`; "none" if there are no names."""
+    """The names in backquotes, as in `a`, `b` and `c`; "none" if there are no names."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"
 
@@ -85,7 +85,7 @@ def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str
 
 
 class _Index:
-    """An index of many names that finds the names similar to a given one without comparing all.
+    """An index of many names that finds the names similar to a given name without comparing all of them.
 
     Attributes:
         by_lower: name in lower case -> name, without names that are too long to be similar to `MAX_LENGTH` letters.

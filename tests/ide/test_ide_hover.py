@@ -146,7 +146,7 @@ Math.p|ow  Math.pow(x, y) : float|x to the power of y.
 "|-Math  -number : int or float|The negative.
 a[0] |% 2  number % number : int or float|The remainder of the division.
 1 |? 2  bool ? x : y|The first value if the condition holds, otherwise the second.
-a.l|ength  length : int|The current number of elements of a. Assigning a smaller number shortens it, 0 empties it.
+a.l|ength  length : int|The current number of elements of a. A smaller number shortens the array, and 0 empties it.
 SUCC|ESS  SUCCESS = 1|The status of a tree node.
 _b|t.status  _bt|  status : int8|The status that the child has returned.
 "|b" t  b : float64|Intended range 0.0 to 9.0 · starts as 0.5|Gets Math.abs(b) + 1|Read 3 times, written once

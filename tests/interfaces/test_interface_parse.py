@@ -392,7 +392,7 @@ string s "abc # def
     """,
     """
 string s "abc" def
-              ^^^^ the string ends before this; inside a string, write \\" for "
+              ^^^^ the string ends before this text; inside a string, write \\" for "
     """,
     """
 string<=2 s abc

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Edits that add, rename and remove elements.
 
-A new element begins on a line of its own, with the indentation of its surroundings. Callers pass its lines with four
-spaces for each level of nesting; the edit contains the indentation of the file instead.
+A new element begins on a new line, with the indentation of its siblings. Callers pass its lines with four spaces for
+each level of nesting; the edit replaces these spaces by the indentation of the file.
 
 `after`, `first_in`, `last_in` and `removal` return a function that computes the edit, which is called when a fix is
 applied.
@@ -24,8 +24,8 @@ _LEVEL = "    "
 
 
 def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]]:
-    """`function` with its computation postponed: the result returns a function without parameters, which computes the
-    edit."""
+    """A variant of `function` that postpones the computation: it returns a function without parameters, which computes
+    the edit."""
 
     @wraps(function)
     def plan(*args: P.args, **kwargs: P.kwargs) -> Callable[[], TextEdit]:
@@ -43,8 +43,8 @@ def indent_of(text: str, element: Element) -> str:
 
 @lru_cache(maxsize=16)
 def level_of(document: Document) -> str:
-    """The indentation of one level of nesting. The first element on a line of its own shows it, relative to its
-    parent."""
+    """The indentation of one level of nesting: that of the first indented element at the beginning of a line, relative
+    to its parent; four spaces if there is none."""
     text = document.text
     for parent in document.root.walk() if document.root else ():
         for child in parent.elements:
@@ -111,7 +111,8 @@ def _inside(document: Document, parent: Element) -> str:
 
 
 def _block(document: Document, indent: str, lines: tuple[str, ...]) -> str:
-    """The lines with `indent` before each and with the document's own indentation for their levels of nesting."""
+    """The lines as text: each begins with `indent`, followed by the indentation of the document for its level of
+    nesting."""
     level = level_of(document)
     new = []
     for line in lines:

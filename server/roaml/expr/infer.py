@@ -125,7 +125,7 @@ class WrongArgumentCount:
 
 @dataclass(frozen=True, slots=True)
 class MixedTypes:
-    """Elements of an array literal, or the values of `?:`, have no common type."""
+    """The elements of an array literal, or both values of `?:`, have no common type."""
 
     span: Span
     first: Type

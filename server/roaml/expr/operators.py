@@ -113,8 +113,8 @@ FUNCTIONS = {
             "random",
             (),
             FunctionResult.REAL,
-            "One of 0.00, 0.01, …, 0.99, each equally probable; `<random_values>` of the system can "
-            "increase their number. Only allowed where a value is stored.",
+            "One of the values 0, 1/n, 2/n, …, (n − 1)/n, each equally probable. n is the parameter `random_values` of "
+            "the system, 100 by default. The function is allowed only in values that are assigned or sent.",
         ),
         Function("sin", ("x",), FunctionResult.REAL, "The sine of x, x in radians."),
     )

@@ -36,7 +36,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array of at most `bound` elements. If it is `None`, the maximum is `max_array_size` of the system."""
+    """An array of at most `bound` elements. If `bound` is `None`, the maximum is `max_array_size` of the system."""
 
     element: Type
     bound: int | None = None
@@ -184,8 +184,8 @@ def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[st
 
 
 def member_type(type_: Type, name: str) -> Type | None:
-    """The type of a member of a struct or, as an array, of the structs in an array; `None` if there is none
-    (docs/spec/types.md#leaves)."""
+    """The type of a member of a struct; for an array of structs, an array of this type. `None` if there is no member
+    with this name (docs/spec/types.md#leaves)."""
     inner, bounds = unwrap(type_)
     member = inner.member(name) if isinstance(inner, Struct) else None
     return None if member is None else wrap(member, bounds)
@@ -248,7 +248,7 @@ def same_kind(left: Type, right: Type) -> bool:
 
 
 def type_of_text(text: str) -> str:
-    """The name of the type that a text suggests, which is written without quotes, such as `float64` for `0.5`."""
+    """The name of the probable type of a value that is written without quotes, such as `float64` for `0.5`."""
     stripped = text.strip()
     if stripped in ("true", "false"):
         return "bool"

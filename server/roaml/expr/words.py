@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reserved words of ECMAScript, which cannot name anything in an expression."""
+"""The reserved words of ECMAScript, which cannot be names in an expression."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Lens:
 
 @dataclass(frozen=True, slots=True)
 class Counted:
-    """The text of a lens, and the places of the uses that it counts."""
+    """The text of a lens, and the places of the uses whose number the text contains."""
 
     title: str
     places: tuple[Location, ...]

@@ -8,7 +8,7 @@ from roaml.project.analysis import Analysis
 from roaml.text import Span
 
 NAME_PATTERN = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
-"""A pattern for names of elements, including unfinished ones, as LSP's `wordPattern`."""
+"""The value of LSP's `wordPattern`: a pattern for names of elements, including unfinished ones."""
 
 
 def linked_names(analysis: Analysis, path: str, offset: int) -> tuple[Span, ...]:

@@ -46,19 +46,20 @@ from roaml.xml_syntax import parse
 
 FILE_NAME = "properties.xml"
 PATTERNS = (Pattern.RESPONSE, Pattern.EXISTENCE, Pattern.ABSENCE, Pattern.PRECEDENCE, Pattern.RECURRENCE)
-"""The patterns of events: no event is sent at every moment."""
+"""The patterns for events. `UNIVERSALITY` is left out, because no event is sent in every step."""
 SCOPES = (ScopeKind.GLOBALLY, ScopeKind.AFTER, ScopeKind.BEFORE, ScopeKind.BETWEEN)
 _LETTERS = {LEFT: "A", RIGHT: "B", OPEN: "C", CLOSE: "D"}
-"""What the conditions are called in a sentence that has no events yet."""
+"""The names of the conditions in a sentence before the user has chosen their events."""
 
 
 @dataclass(frozen=True, slots=True)
 class PropertySentence:
-    """
+    """A sentence for a new property, with letters instead of the conditions.
+
     Attributes:
-        conditions: the names of its conditions, in the order of the sentence's letters A, B, C and D.
-        letters: those letters.
-        needs_time: whether it has no meaning without a bound on the time.
+        conditions: the names of the conditions, in the order in which the sentence uses the letters A, B, C and D.
+        letters: the letter of each condition.
+        needs_time: whether the sentence has no meaning without a bound on the time.
     """
 
     pattern: Pattern
@@ -71,11 +72,12 @@ class PropertySentence:
 
 @dataclass(frozen=True, slots=True)
 class ObservableEvent:
-    """
+    """An event that a port of a property file can listen to.
+
     Attributes:
-        port: the start tag of its port, without the angle brackets.
-        clause: says that it is sent: "a message is published on `/alarm`".
-        id: a name for its variable.
+        port: the start tag of the port, without the angle brackets.
+        clause: the clause that the event is sent, such as "a message is published on `/alarm`".
+        id: a name for the event variable of the port.
     """
 
     port: str
@@ -85,7 +87,7 @@ class ObservableEvent:
 
 @dataclass(frozen=True, slots=True)
 class NewProperty:
-    """`path` is the property file."""
+    """The name of a new property, the path of its property file, and the change that creates it."""
 
     name: str
     path: str
@@ -124,7 +126,8 @@ def observable_events(analysis: Analysis, system: str) -> tuple[ObservableEvent,
 
 
 def port_tags(system: System) -> Iterator[str]:
-    """The start tags of ports that listen to everything that a system can send, without the angle brackets."""
+    """The start tags of ports for all events that a system can send, without the angle brackets. The ports listen to
+    all clients."""
     for kind, symbol_kind in SYMBOL_KINDS.items():
         for channel in system.channels(symbol_kind).values():
             names = (endpoint.automaton.interface_name(endpoint.use) for endpoint in channel.endpoints)
@@ -141,7 +144,7 @@ def port_tags(system: System) -> Iterator[str]:
 
 
 def _tag(kind: PortKind, name: str, event: str = "", type_: str = "") -> str:
-    """The start tag of a port that listens to everybody, without the angle brackets."""
+    """The start tag of a port without the attributes that select clients or servers, without the angle brackets."""
     attributes = [(NAME_ATTRIBUTES[kind], name)]
     attributes += [(key, value) for key, value in (("type", type_), ("event", event)) if value]
     return " ".join((kind.value, *(f"{key}={quoteattr(value)}" for key, value in attributes)))
@@ -162,7 +165,8 @@ def new_property(
     events: Mapping[str, ObservableEvent],
     within: str = "",
 ) -> NewProperty:
-    """
+    """A new property of a system, with the ports for its events.
+
     Args:
         events: condition of the pattern and the scope -> its event.
         within: the upper bound on the time in s; "" for none.
@@ -226,7 +230,7 @@ def lines_of_element(name: str, lines: Sequence[str]) -> list[str]:
 
 
 def _known_ids(file: PropertyFile) -> dict[str, str]:
-    """The event variables of the ports that listen to everybody: start tag as in `ObservableEvent` -> id."""
+    """The event variables of the ports that select no client or server: start tag as in `ObservableEvent` -> id."""
     ids: dict[str, str] = {}
     for port, variable in file.variables:
         if variable.kind is not PortVariableKind.EVENT or variable.id is None or port.name is None:

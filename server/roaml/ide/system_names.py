@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 def system_names(paths: Iterable[str]) -> dict[str, str]:
-    """A short name for each system file: the end of its path, with as many folders as make it unique."""
+    """A short name for each system file: the end of its path, with the fewest folders that make it unique."""
     parts = {path: path.replace("\\", "/").split("/") for path in dict.fromkeys(paths)}
 
     def name(path: str) -> str:

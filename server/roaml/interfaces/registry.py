@@ -202,7 +202,7 @@ def _is_type_name(package: str, name: str) -> bool:
 
 
 def _first(*groups: Iterable[str]) -> tuple[str, ...]:
-    """The first few names of the groups together, without duplicates."""
+    """The first `_MAX_CLOSE` names in the groups, without duplicates."""
     return tuple(dict.fromkeys(name for group in groups for name in group))[:_MAX_CLOSE]
 
 

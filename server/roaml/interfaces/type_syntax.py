@@ -70,7 +70,8 @@ def _array(size: str, span: Span, report: FileFindings) -> tuple[ArrayKind, int 
 
 
 def _limit(written: str, span: Span, forms: str, report: FileFindings) -> int | None:
-    """The N of `<=N`; `None` if it is invalid, which is reported with the sentence `forms` about the valid forms."""
+    """The N of `<=N`; `None` if it is invalid. The message about an invalid N begins with `forms`, a clause about the
+    valid forms."""
     number = written.removeprefix("<=")
     if number != written and _LIMIT.fullmatch(number) and 1 <= int(number) <= _GREATEST_LIMIT:
         return int(number)

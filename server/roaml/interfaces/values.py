@@ -170,7 +170,9 @@ def _string(written: str, span: Span, type_: FieldType, report: FileFindings) ->
             return None
         if quoted.end() < len(written):
             rest = Span(span.start + quoted.end(), span.end)
-            report.add(rest, f"the string ends before this; inside a string, write \\{written[0]} for {written[0]}")
+            report.add(
+                rest, f"the string ends before this text; inside a string, write \\{written[0]} for {written[0]}"
+            )
             return None
         value = _ESCAPE.sub(_unescape, written[1:-1])
     if type_.string_bound is not None and len(value) > type_.string_bound:

@@ -220,7 +220,7 @@ class Grammar:
         return element
 
     def find(self, name: str) -> ElementType | None:
-        """The type of an element with this name, `None` if the grammar has none. A global element takes precedence over
+        """The type of an element with this name; `None` if the grammar has none. A global element takes precedence over
         one that is declared inside another element."""
         return self.elements.get(name) or self._by_name.get(name)
 

@@ -62,8 +62,8 @@ class TooManyElements:
 
 @dataclass(frozen=True, slots=True)
 class MissingElement:
-    """`element` lacks a required child. `names` are the names of the children that it may be; if empty, it may be any
-    child."""
+    """`element` lacks a required child. A child with one of `names` is required; if `names` is empty, any child is
+    sufficient."""
 
     element: Element
     type: ElementType

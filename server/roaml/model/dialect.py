@@ -13,7 +13,8 @@ def dialect_of(machine: Machine, document: Document, in_older_system: bool | Non
     """The dialect of a machine: the dialect of the system that lists it, or the dialect that its root and content show.
 
     Args:
-        in_older_system: whether a system in the older dialect lists the machine; `None` if no system lists it.
+        in_older_system: whether the system that lists the machine is in the older dialect; `None` if no system lists
+            it.
     """
     if in_older_system is not None:
         return Dialect.OLDER if in_older_system else Dialect.CURRENT

@@ -112,7 +112,7 @@ class TreeUse:
     Attributes:
         name: the name of the `<SubTree>`; the ID of the tree if it has none.
         tree: the ID of the tree.
-        outer: the index of the use around it; `None` for the executed tree.
+        outer: the index of the enclosing use; `None` for the executed tree.
         frame: the mapping of the names in this use to blackboard variables.
         scripts: the conditions and scripts of the `<SubTree>`, by attribute.
     """
@@ -361,15 +361,15 @@ class Frame:
 
     Attributes:
         use: the `<SubTree>` node; `None` for the executed tree.
-        name: the name of that node; the ID of the tree if it has none.
-        word, suffix: the last part of `prefix` is `<word><suffix>__`. The word is the name of that node as an
-            identifier, the suffix makes the prefix unique.
+        name: the name of the `<SubTree>`; the ID of the tree if it has none.
+        word, suffix: the last part of `prefix` is `<word><suffix>__`. The word is the name of the `<SubTree>` as an
+            identifier; the suffix makes the prefix unique.
         prefix: the beginning of the full names of the variables of this use.
-        remapped: the names that the attributes of the `<SubTree>` bind, with their values outside.
-        autoremap: whether all other names are bound to the variables of the same name outside.
+        remapped: the names that the attributes of the `<SubTree>` bind, with their values in the enclosing use.
+        autoremap: whether all other names are bound to the variables of the same name in the enclosing use.
         outer: the enclosing use.
         names: the variables that the nodes of the tree refer to.
-        inside: the IDs of this tree and of all enclosing trees.
+        inside: the IDs of the tree and of all enclosing trees.
         scripts: the conditions and scripts of the `<SubTree>`.
         looked_up: a cache of resolved names.
     """

@@ -374,8 +374,8 @@ _PARTS: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
     SymbolKind.ACTION_CLIENT: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
     SymbolKind.ACTION_SERVER: (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
 }
-"""Kind of declaration -> the parts of its interface that have fields in the translation; the other side may use
-them."""
+"""Kind of declaration -> the parts of its interface whose fields exist in the translation, so that the other side may
+use them."""
 
 
 def _kind(type_: ElementType) -> SymbolKind | None:

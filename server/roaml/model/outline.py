@@ -308,9 +308,9 @@ class _Waiting:
     """The events that the states of a chart wait for.
 
     Attributes:
-        states: state -> the declarations that its effective handlers refer to, and the states that they lead to.
-            States without any handler are left out.
-        sole: the declarations that are the only ones for which some state waits.
+        states: state -> the declarations that its effective handlers refer to, and the states that they lead to. States
+            without any handler are left out.
+        sole: each declaration that is the only one for which some state waits.
         is_stuck: whether some state has handlers, but no effective handler.
     """
 
@@ -330,8 +330,8 @@ class _Waiting:
         self.is_stuck = not all(declarations)
 
     def awaits(self, subscriber: Declaration) -> bool:
-        """Whether the chart can reach, without a message of the topic, a state that it leaves only on such a
-        message."""
+        """Whether the chart can reach a state that it leaves only when a message of the topic arrives, and reach this
+        state without a message of the topic."""
         if subscriber not in self.sole and not self.is_stuck:
             return False
         pending, seen = [self.initial], {self.initial}
@@ -411,7 +411,7 @@ def _reads(typed: TypedMachine) -> defaultdict[Handler, set[str]]:
 
 
 def _forwarding(typed: TypedMachine) -> set[Handler]:
-    """The handlers of plain events whose data the types of sent parameters depend on."""
+    """The handlers of plain events on whose data the types of sent parameters depend."""
     return {
         value.place.handler
         for value in typed.values

@@ -167,7 +167,11 @@ class _Linker:
                 name = variable.written.id
                 assert name is not None
                 if variable.id in self.by_id:
-                    self.report(ProblemKind.REPEATED_ID, name.span, f"another variable has the id `{variable.id}`")
+                    self.report(
+                        ProblemKind.REPEATED_ID,
+                        name.span,
+                        f"another variable has the id `{variable.id}`; rename one of them",
+                    )
                 elif not _is_identifier(variable.id):
                     message = f"`{variable.id}` is not an identifier, so conditions cannot use it"
                     self.report(ProblemKind.PORT_VARIABLE, name.span, message)
@@ -190,9 +194,15 @@ class _Linker:
                 continue
             name = written.id.value
             if name in seen:
-                self.report(ProblemKind.REPEATED_ID, written.id.span, f"another property has the id `{name}`")
+                self.report(
+                    ProblemKind.REPEATED_ID,
+                    written.id.span,
+                    f"another property has the id `{name}`; rename one of them",
+                )
             elif name in self.taken:
-                message = f"another property of the system has the id `{name}`, in {self.taken[name]}"
+                message = (
+                    f"another property of the system, in {self.taken[name]}, has the id `{name}`; rename one of them"
+                )
                 self.report(ProblemKind.REPEATED_ID, written.id.span, message)
             seen.add(name)
 
@@ -334,7 +344,7 @@ class _Linker:
 
     def _scope(self, written: WrittenProperty) -> tuple[ScopeKind, dict[str, Expression]] | None:
         if not written.scopes:
-            message = 'the scope is missing: `<scope type="globally"/>` means the whole trace'
+            message = 'the scope is missing; add `<scope type="globally"/>` for the whole trace'
             element = written.element
             self.report(ProblemKind.FORM, element.name_span, message, (), Remedy.ADD_SCOPE, element)
             return None
@@ -444,7 +454,7 @@ def _text(name: WrittenName | None) -> str:
 
 
 def _number(name: WrittenName | None) -> Fraction | None:
-    """The value of `name` as a non-negative number; `None` if it is missing or not such a number."""
+    """The value of `name` as a non-negative number; `None` if it is missing or is not a non-negative number."""
     value = exact_number(name.value) if name is not None else None
     return value if value is not None and value >= 0 else None
 
@@ -474,5 +484,5 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
         case DivisionByZero():
             return "division by zero"
         case RandomUsed():
-            return "a condition cannot be random"
+            return "a condition cannot call `Math.random()`"
     return "the expression cannot be evaluated"

@@ -158,7 +158,7 @@ class PortLinker:
         events = tuple(self._channel_events(port, channel, event))
         if not events and self._is_complete() and len(self.problems) == problems:
             who = _SENDING.get(event, "sends feedback of" if event is ObservedPart.FEEDBACK else "answers")
-            self.report(ProblemKind.UNSENT, name.span, f"nothing {who} `{name.value}`, so this event is never sent")
+            self.report(ProblemKind.UNSENT, name.span, f"no machine {who} `{name.value}`, so this event is never sent")
         if events and port.kind is not PortKind.TOPIC and port.target is None and port.origin is None:
             self._warn_of_clients(port, channel, event)
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
@@ -298,7 +298,7 @@ class PortLinker:
                 if len(paths) > 1:
                     message += f"use the path of one: {', '.join(f'`{path}`' for path in paths)}"
                 else:  # siblings
-                    message, close = f"{message}give each of them a `name` of its own in the tree", ()
+                    message, close = f"{message}give each of them a different `name` in the tree", ()
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             elif self._is_complete():
                 names = (text for node in self.system.instances for text in (node.name, node.plugin))

@@ -281,7 +281,7 @@ class System:
 
     @cached_property
     def partly_read(self) -> frozenset[int]:
-        """The automata (their `id`) that have an unreadable part that may handle or send events."""
+        """The `id()` of each automaton with an unreadable part that may handle or send events."""
         return frozenset(
             id(automaton)
             for automaton in self.automata
@@ -336,7 +336,8 @@ class System:
 
     @cached_property
     def idle_plugins(self) -> frozenset[str]:
-        """The files listed as plugins that are not plugins and that the tree does not use by name."""
+        """The files that are listed as plugins although they take no part in the behavior tree, and that no node of the
+        tree names."""
         if any(gap.act in (GapAct.ANYTHING, GapAct.NODE) for gap in self.gaps):
             return frozenset()
         used = {instance.plugin for instance in self.instances}
@@ -609,7 +610,8 @@ def optional_ports(name: str) -> frozenset[str]:
 
 
 _NAMES_ENTRY = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard")
-"""The nodes with a port that contains the name of a blackboard entry. The port itself neither reads nor writes it."""
+"""The nodes with a port that contains the name of a blackboard entry. The port itself neither reads nor writes the
+entry."""
 
 
 def _library_port(node: str, port: Port) -> PortOutline:

@@ -187,8 +187,8 @@ def _unread(root: Element) -> frozenset[SystemSection]:
 
 
 def _is_parameter(section: Element, element: Element) -> bool:
-    """Whether an element is a parameter in its place. Such an element lists no file; its `src` is an unknown
-    attribute, which is only a warning."""
+    """Whether an element is a parameter in the section of parameters. Such an element lists no file: an attribute `src`
+    of it is only an unknown attribute."""
     known = SYSTEM.find(section.name)
     return known is not None and section_named(section.name) is None and element.name in known.children
 

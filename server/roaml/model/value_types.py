@@ -86,7 +86,7 @@ class ValueUse(enum.Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BranchConditions:
-    """A condition of an enclosing `<if>`, `holds`, and the earlier conditions as a linked list.
+    """A condition of an enclosing `<if>`, whether it holds, and the earlier conditions as a linked list.
 
     Each branch of an `<if>` has the conditions of all branches before it, so earlier conditions are shared in memory.
     """
@@ -407,7 +407,7 @@ _SENT = (ValueUse.PARAMETER, ValueUse.FIELD, ValueUse.OUTPUT)
 
 
 class _Body:
-    """Types one sequence of statements, in the order of their execution."""
+    """Determines the types in one sequence of statements, in the order of their execution."""
 
     def __init__(
         self, typer: _Typer, variables: Mapping[str, Type], known: Mapping[str, Type], place: ValuePlace
@@ -443,7 +443,7 @@ class _Body:
         self.later()
 
     def draws(self, value: Value | None) -> bool:
-        """Whether the last value, which was typed just before, calls `Math.random()`."""
+        """Whether the value whose type was determined last calls `Math.random()`."""
         problems = self.typer.values[-1].problems if isinstance(value, Expression) else ()
         return any(isinstance(problem, RandomUsed) for problem in problems)
 

@@ -90,7 +90,7 @@ NO_STRUCTS = Structs((), {}, complete=True)
 
 
 class _MachineEnvironment:
-    """`roaml.model.value_types.Environment` for one machine."""
+    """An implementation of `roaml.model.value_types.Environment` for one machine."""
 
     def __init__(
         self,
@@ -213,7 +213,8 @@ class Analysis:
         return self._of_document("property file", path, build_property_file)
 
     def linked_properties(self, path: str, system: str) -> LinkedFile | None:
-        """The properties in an XML file, linked to a system that lists the file; `None` if either cannot be read."""
+        """The properties in an XML file, linked to a system that lists the file; `None` if the file or the system
+        cannot be read."""
         file, linked = self.property_file(path), self.system(system)
         if file is None or linked is None:
             return None
@@ -309,7 +310,7 @@ class Analysis:
         return tuple(repeated_types.values())
 
     def _closure(self, definition: Definition) -> list[Definition]:
-        """The definition and those of all nested messages."""
+        """A definition and the definitions of all messages nested in it."""
         definitions = [definition]
         names = {definition.full_name}
         for outer in definitions:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Applies fixes to files, once or repeatedly until there are none left.
+"""Applies fixes to files, once or repeatedly until no fixes are left.
 
-- Overlapping fixes are not applied together: the later one is applied in the next pass, to the result of the first.
+- Overlapping fixes are not applied together: the fix that is later in the text is applied in the next pass.
 - If fixes are applied without a review, fixes that would cause an error, alone or together, are left out.
 """
 

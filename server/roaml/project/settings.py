@@ -260,7 +260,7 @@ def _expectations(path: Path, value: Any, problems: list[SettingProblem]) -> dic
     for name, written in value.items():
         comparison = read_comparison(written) if isinstance(written, str) else None
         if comparison is None:
-            message = f'the expectation of `{name}` must compare with a number, such as ">= 0.95"'
+            message = f'the expectation of `{name}` must compare with a number, such as `">= 0.95"`'
             problems.append(SettingProblem((*path, name), message))
         else:
             comparisons[name] = comparison
@@ -283,7 +283,7 @@ def _libraries(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[
 def _version(path: Path, value: Any, problems: list[SettingProblem]) -> Version | None:
     version = read_version(value) if isinstance(value, str) else None
     if version is None:
-        message = f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as "4.6" or "4.8.2"'
+        message = f'`{path[0]}` must be a version of BehaviorTree.CPP 4, such as `"4.6"` or `"4.8.2"`'
         problems.append(SettingProblem(path, message))
     return version
 

@@ -124,7 +124,8 @@ def _to_xml(analysis: Analysis, path: str, system: str, place: Span) -> Iterator
 
 
 def _parts_of(property_: Property) -> tuple[Formula, str] | None:
-    """The path formula of a minimum probability, and its expectation, "" if there is none; `None` for other forms."""
+    """The path formula of a property that is a minimum probability, and the expectation of the property, "" if there is
+    none; `None` for other properties."""
     match property_.expression:
         case Filter(FilterFunction.VALUES, values, Predicate(StatePredicate.INITIAL)):
             pass
@@ -146,7 +147,8 @@ def _number(number: Expression) -> str:
 
 
 def _known(file: PropertyFile | None) -> dict[NeededVariable, str]:
-    """The variables of the ports of a file, and their ids."""
+    """The variables of the ports of a file -> their ids. An id that is missing in this mapping, because a variable with
+    the same port and attributes precedes it, is added with the port ""."""
     known: dict[NeededVariable, str] = {}
     for port, variable in file.variables if file is not None else ():
         if variable.id is None:

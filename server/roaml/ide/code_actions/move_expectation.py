@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Moves the expectations of a property file to the table `verify.expect` of the configuration, which the reference does
-not read (rule `unportable-expectation`)."""
+"""Moves the expectations of a property file to the table `verify.expect` of the configuration, which the reference
+translator does not read (rule `unportable-expectation`)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ _RELATIONS = {
     BinaryOperator.GREATER_EQUAL: (">=", "<="),
     BinaryOperator.EQUAL: ("==", "=="),
 }
-"""Operator -> the relation of the value to the number, if the value is the left operand, and if it is the right one."""
+"""Comparison operator -> the relation of the value to the number: first if the value is the left operand, then if it is
+the right operand."""
 _JUDGING = (FilterFunction.FORALL, FilterFunction.EXISTS)
 """Functions of filters whose values are comparisons. Their results differ only if there are several initial states."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mocks for leaves that have no plugin: plugins which then belong to the user (docs/spec/mocks.md#generated)."""
+"""Creates mocks for leaves that have no plugin: plugins that the user can change (docs/spec/mocks.md#generated)."""
 
 from __future__ import annotations
 
@@ -26,16 +26,17 @@ from roaml.text import TextEdit, apply_edits
 from roaml.xml_syntax.escapes import escape
 
 DEFAULT = Mock(ALL, 0.9, Fraction(1000))
-"""The mock of every leaf, which the user then changes."""
+"""The mock that is created for every leaf, and that the user can change."""
 MAX_TIME_S = 600
 TICK_RATE = 10
 
 
 def actions(snapshot: Snapshot, path: str, node: TreeNode | None, is_top: bool) -> Iterator[CodeAction]:
-    """Mocks for the leaf at the caret, for all leaves of the system, or a system for a tree without one.
+    """Actions that create mocks for the leaf at the caret or for all leaves of the system, or a system for a tree
+    without one.
 
     Args:
-        node: at the caret.
+        node: the node at the caret; `None` if there is none.
         is_top: whether the caret is in the start tag of the file's root or of a tree.
     """
     analysis = snapshot.analysis
@@ -70,7 +71,7 @@ def _in_systems(
 
 
 def _defaults(analysis: Analysis, system: System, planned: Iterable[PlannedMock]) -> dict[str, tuple[TextEdit, ...]]:
-    """The edit that gives ports which not all nodes set a default."""
+    """An edit of the tree file that declares a default for each port that some nodes do not set."""
     path = system.tree_paths[0] if system.tree_paths else ""
     tree = analysis.tree(path)
     edit = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None

@@ -19,8 +19,8 @@ from roaml.scxml.names import safe_name
 
 
 def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[str, Callable[[], WorkspaceEdit]]]:
-    """The title of the action and its change. There is none for a node with several children, which the generated
-    plugin cannot tick."""
+    """The title and the change of the action that creates a plugin for a node. There is no action for a node with
+    several children, because the generated plugin could not tick them."""
     systems = analysis.memberships.get(path, ())
     if (
         not systems

@@ -134,7 +134,7 @@ def _tags(request: Request, place: Content) -> list[CompletionItem]:
 
 
 def _tag(item: CompletionItem) -> str:
-    """The text of an item with its `<`, which skeletons of several elements already include."""
+    """The text of an item with its `<`. The text of an item that inserts several elements already begins with `<`."""
     return item.snippet if item.snippet.startswith("<") else f"<{item.snippet}"
 
 

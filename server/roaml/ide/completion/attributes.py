@@ -22,7 +22,7 @@ def attributes(request: Request, parents: tuple[Typed, ...], typed: Typed, *, ba
     """The attributes that may be inserted in a start tag.
 
     Args:
-        bare: whether nothing of the attribute follows the caret, so that the name is inserted with `=` and a value.
+        bare: whether no part of the attribute follows the caret, so that the name is inserted with `=` and a value.
             Otherwise, only the name is inserted.
     """
     element, type_ = typed

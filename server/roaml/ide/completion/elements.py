@@ -31,8 +31,8 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     """The elements that are allowed inside the last of `parents`.
 
     Args:
-        bare: whether nothing of the tag follows the caret, so that the element is inserted with attributes and end tag.
-            Otherwise, only its name is inserted.
+        bare: whether no part of the tag follows the caret, so that the element is inserted with attributes and an end
+            tag. Otherwise, only its name is inserted.
     """
     if not parents:
         for name in request.file.grammar.roots:
@@ -78,7 +78,7 @@ def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool
 
 
 def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) -> str:
-    """A complete element in snippet syntax: its name, its usual attributes, and its end."""
+    """A complete element in snippet syntax: its name, its usual attributes, and its end tag or `/>`."""
     made = Snippet().text(type_.name)
     subject = CompletionSubject(None, type_, parents)
     for attribute in type_.attributes.values():

@@ -46,11 +46,12 @@ def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionIt
 
 
 _MUST_BE_PLUGIN = {SystemSection.BEHAVIOR_TREE: True, SystemSection.NODE_MODELS: False}
-"""The sections of machines, and whether these are plugins."""
+"""Section of a system file -> whether the machines that it lists are plugins."""
 
 
 def _expected_kinds(subject: CompletionSubject) -> tuple[tuple[FileKind, ...], bool | None]:
-    """The expected kinds of the file, and whether a machine must be a plugin; `None` if it may be a plugin or not."""
+    """The expected kinds of the file, and whether a machine must be a plugin (true), must not be one (false), or may be
+    one (`None`)."""
     if subject.type.name == "include":
         return (FileKind.TREE,), None
     section = section_named(subject.parents[-1].element.name) if subject.parents else None

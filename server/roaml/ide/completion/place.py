@@ -23,7 +23,7 @@ _TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StartTag:
-    """The name of a start tag; `span` may be empty. `bare` is true if nothing of the tag follows the name."""
+    """The name of a start tag; `span` may be empty. `bare` is true if no other part of the tag follows the name."""
 
     parents: tuple[Typed, ...]
     span: Span

@@ -132,7 +132,9 @@ def _variables(request: Request, key: str, port: SettablePort | None) -> Iterato
     if main is not None and main[1] is not tree:
         for name in dict.fromkeys(names_in(main[1])):
             if is_variable_name(name) and not name.startswith("@"):
-                yield CompletionItem(f"{{@{name}}}", ItemKind.VARIABLE, detail="of the main tree", rank=Rank.LATE)
+                yield CompletionItem(
+                    f"{{@{name}}}", ItemKind.VARIABLE, detail="variable of the main tree", rank=Rank.LATE
+                )
 
 
 def _around(element: Element, offset: int) -> bool:

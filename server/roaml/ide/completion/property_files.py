@@ -63,8 +63,8 @@ def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[Completi
 
 
 def _properties() -> Iterator[CompletionItem]:
-    """Items that insert properties: for each pattern one with its name as label, and one with its sentence as label for
-    each scope, with and without a time."""
+    """Items that insert properties. For each pattern, the label of one item is the name of the pattern, and the labels
+    of the others are its sentences: one for each scope, with and without a bound on the time."""
     texts = {choice.value: choice.documentation for choice in _attribute("property", "pattern").simple.choices}
     for pattern in Pattern:
         insert = _property(pattern, ScopeKind.GLOBALLY, is_timed=pattern is Pattern.RECURRENCE)

@@ -23,8 +23,8 @@ from roaml.xml_syntax import Element
 
 
 class CompletionSubject(NamedTuple):
-    """The element whose attribute or content is completed. `element` is `None` if a completion that inserts the element
-    is being prepared."""
+    """The element whose attribute or content is completed. `element` is `None` if it does not exist yet, because the
+    completion inserts it."""
 
     element: Element | None
     type: ElementType
@@ -32,7 +32,8 @@ class CompletionSubject(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The path of the element in symbols of attributes, which `roaml.ide.completion.document` reads."""
+        """The name of the parent, `/`, and the name of the element: the `path` of symbols of attributes, which
+        `roaml.ide.completion.document` reads."""
         return f"{self.parents[-1].element.name if self.parents else ''}/{self.type.name}"
 
 

@@ -19,8 +19,9 @@ def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
     """The description of a symbol; "" if there is none.
 
     Args:
-        symbol: as in occurrences (`roaml.ide.names.occurrence`).
-        written: its spelling at the requested place, if it may differ from the name: a topic may begin with a slash.
+        symbol: the symbol of an occurrence (`roaml.ide.names.occurrence`).
+        written: the spelling of the name at the requested place, if it may differ: a topic may be written with a slash
+            at its beginning.
     """
     match symbol.kind:
         case SymbolKind.VARIABLE:

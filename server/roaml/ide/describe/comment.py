@@ -15,9 +15,9 @@ _LICENCE = re.compile(r"SPDX-|Copyright|Licen[cs]ed under", re.IGNORECASE)
 def remark(document: Document, element: Element) -> str:
     """The text of the comment about `element`; "" if it has none.
 
-    A comment after the element on the same line is about the element. Otherwise, this is the comment directly before
-    the element, without an empty line in between, if no other text precedes the comment on its line. Types in comments
-    (`TYPE level:int16`) and licences are not included.
+    This is the comment after the element on the same line. If there is none, it is the comment directly before the
+    element, without an empty line in between, if nothing else precedes that comment on its line. Types in comments
+    (`TYPE level:int16`) and licences are left out.
     """
     around = document.path_at(element.span.start + 1)
     siblings: Sequence[Node] = around[-2].nodes if len(around) > 1 else document.nodes

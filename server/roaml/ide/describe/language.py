@@ -18,7 +18,7 @@ from roaml.roles import NodeKind, ValueRole
 _VALUE_PHRASES = {
     ValueRole.EXPRESSION: "an expression",
     ValueRole.CONSTANT: "a constant expression",
-    ValueRole.LOCATION: "the target that is written",
+    ValueRole.LOCATION: "a location expression",
 }
 _ROS = {"msg": "a message type", "srv": "a service type", "action": "an action type"}
 
@@ -39,7 +39,7 @@ def element(type_: ElementType) -> str:
 def builtin_node(type_: ElementType) -> str:
     """The description of a node of BehaviorTree.CPP: its ports and its behavior."""
     ports = "".join(f"\n  {port(setting.name, setting.port)}" for setting in type_.ports if setting.port)
-    cannot = "" if type_.translated else "It cannot be translated."
+    cannot = "" if type_.translated else "This node cannot be translated."
     kind = "node" if type_.node in (None, NodeKind.SUBTREE) else f"{type_.node} node"
     return paragraphs(
         code(f"{kind} {type_.name}{ports}"),
@@ -79,7 +79,7 @@ def attribute(type_: AttributeType) -> str:
 
 
 def _value_phrase(type_: AttributeType) -> str:
-    """A phrase for the value of an attribute."""
+    """A noun phrase for the values that an attribute accepts; "" if there is none."""
     if type_.value is ValueRole.ROS_TYPE:
         return _ROS.get(type_.value_type, "")
     phrase = _VALUE_PHRASES.get(type_.value, "") if type_.value else ""
@@ -194,7 +194,7 @@ def length(of: str) -> str:
     """The description of the member `length` of the array `of`."""
     return paragraphs(
         code("length : int"),
-        f"The current number of elements of {name(of)}. Assigning a smaller number shortens it, 0 empties it.",
+        f"The current number of elements of {name(of)}. A smaller number shortens the array, and 0 empties it.",
     )
 
 

@@ -171,7 +171,7 @@ def _bounds(data: Data | None) -> str:
 
 
 def _gets(typed: TypedMachine, symbol: Symbol) -> str:
-    """The values that are assigned to a variable or to a part of it."""
+    """A line that lists the values that are assigned to a variable or to a part of it; "" if there are none."""
     sources: dict[str, None] = {}
     target: Expression | None = None
     for value in typed.values:

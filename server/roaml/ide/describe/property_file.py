@@ -47,16 +47,16 @@ _SAYS: Mapping[str, str] = {
     "F": "`exp` holds at some time.",
     "G": "`exp` holds always.",
     "X": "`exp` holds after the next step.",
-    "U": "`right` holds at some time and `left` until then.",
-    "W": "`right` holds at some time and `left` until then, or `left` holds for ever.",
-    "R": "`right` holds up to and including the time at which `left` does, or for ever.",
+    "U": "`right` holds at some time, and `left` holds until then.",
+    "W": "`right` holds at some time, and `left` holds until then; or `left` holds for ever.",
+    "R": "`right` holds up to and including the time at which `left` holds, or for ever.",
     "Pmin": "The minimum probability of the paths that `exp` describes, over all schedulers.",
     "Pmax": "The maximum probability of the paths that `exp` describes, over all schedulers.",
     "initial": "Holds in the initial states.",
     "deadlock": "Holds where no step is possible.",
     "timelock": "Holds where time cannot pass.",
 }
-"""The descriptions of operators that have no description of their own in the schema."""
+"""The descriptions of the operators for which the schema has no description."""
 
 
 def operator(symbol: str) -> str:

@@ -29,7 +29,7 @@ _NODE = re.compile(r"bt_(\d{1,9})_")
 
 
 def node_of(system: System, variable: str) -> SystemAutomaton | None:
-    """The node of the tree whose event a global variable belongs to; `None` if it belongs to another event."""
+    """The node of the tree to whose event a global variable belongs; `None` if the event is not that of a node."""
     number = _NODE.match(variable)
     return system.by_instance.get(int(number[1])) if number else None
 
@@ -40,7 +40,7 @@ def _system(analysis: Analysis, symbol: Symbol) -> System | None:
 
 
 def _who(automata: Iterable[SystemAutomaton]) -> str:
-    """The names of automata: for a node of the tree the name of its plugin, for others their own name."""
+    """The names of automata. For a node of the tree, the name of its plugin is used."""
     return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
 
 

@@ -71,7 +71,7 @@ class Wording:
         return _TRIGGERS.get(part, f"{{}} {part.value.replace('-', ' ')}").format(subject).strip()
 
     def actions(self, body: Sequence[Statement]) -> tuple[str, ...]:
-        """The texts for the statements that have an effect, one for each."""
+        """The texts for the statements that have an effect, one for each statement."""
         return tuple(text for statement in body for text in self._statement(statement))
 
     def _statement(self, statement: Statement) -> Iterator[str]:

@@ -50,7 +50,7 @@ def _frame(thread: Thread, path: str) -> DiagramNode:
 
 
 class _Chart:
-    """The nodes and edges of a chart. If several states have the same name, only the first is drawn, and all
+    """Collects the nodes and edges of a chart. If several states have the same name, only the first is drawn, and all
     transitions to this name lead to it."""
 
     def __init__(self, machine: Machine, chart: Chart, frame: str, path: str) -> None:

@@ -37,5 +37,6 @@ def system_picture(analysis: Analysis, path: str) -> Picture | None:
 
 
 def id_in_system(path: str, node: str) -> str:
-    """The id of a node of a machine; that of its frame if `node` is ""."""
+    """The id that the node `node` of a machine has in the diagram of the system; the id of the frame of the machine if
+    `node` is ""."""
     return f"{path}#{node}"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The layout of XML.
 
-- Comments, instructions and CDATA sections are not changed. Of an element with character data or with
+- Comments, instructions and CDATA sections are not changed. In an element with character data or with
   `xml:space="preserve"`, only the tags are formatted, not the content.
 - Each child has its own line, with two exceptions: an element that is written on one line and has one child stays on
   one line, and a comment at the end of a line stays there. Several blank lines become one.
@@ -53,7 +53,7 @@ class _Formatter:
             last = item
 
     def before(self, end: int, item: Node, depth: int) -> Spacing:
-        """The gap between `end` and a child."""
+        """The gap between the offset `end`, at which the previous sibling or tag ends, and `item`."""
         space = Span(end, item.span.start)
         written = self.text[space.start : space.end]
         if isinstance(item, Comment) and not breaks(written):

@@ -74,7 +74,8 @@ def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
 
 
 def _is_message(symbol: Symbol) -> bool:
-    """Whether an item is an event, topic, service or action. The place of its calls is its name."""
+    """Whether the symbol of an item is an event, topic, service or action. The calls of these items have the place of
+    their name."""
     return symbol.kind is SymbolKind.EVENT or symbol.kind in _INTERFACES
 
 

@@ -56,8 +56,8 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
 
 
 def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:
-    """The descriptions for a place. At a name, the description of its symbol comes first. Others follow only if they
-    add to it."""
+    """The descriptions for a place. At a name, the description of its symbol comes first; other descriptions follow
+    only if they add information."""
     if (name := _named(place)) is not None:
         yield name
     if place.kind in _JSON:

@@ -223,8 +223,8 @@ class Trees:
     # ------------------------------------------------------------- variables
 
     def variable(self, path: str, tree: str, name: str) -> Symbol:
-        """The symbol of the blackboard variable to which `{name}` refers in a tree. Variables that are equal because of
-        `{=}` or automatic remapping have the same symbol."""
+        """The symbol of the blackboard variable to which `{name}` refers in a tree. Names that refer to one variable
+        because of `{=}` or automatic remapping have the same symbol."""
         if name.startswith("@"):
             name = name[1:]
             if self.main is not None:
@@ -239,7 +239,7 @@ class Trees:
 
     @cached_property
     def _shared(self) -> Mapping[tuple[str, str, str], tuple[str, str, str]]:
-        """A union-find structure: variable -> an equal variable, by `{=}` or automatic remapping."""
+        """A union-find structure: variable -> a variable that is the same because of `{=}` or automatic remapping."""
         above: dict[tuple[str, str, str], tuple[str, str, str]] = {}
 
         def root(key: tuple[str, str, str]) -> tuple[str, str, str]:
@@ -257,7 +257,7 @@ class Trees:
         return above
 
     def is_taken(self, symbol: Symbol, new: str) -> bool:
-        """Whether the variable of `symbol` would become equal to another one if its name were `new`."""
+        """Whether the variable of `symbol` would become the same as another variable if it were renamed to `new`."""
         for path, file in self.files.items():
             for tree in file.trees:
                 key = path, tree.id.value if tree.id else ""
@@ -289,7 +289,8 @@ class Trees:
         return by_name
 
     def constant(self, number: int, key: str) -> Setting | None:
-        """The place of the constant that the port `key` of the node with this number has; `None` if it has none."""
+        """The place of the constant to which the port `key` of the node `number` is set; `None` if the port is not set
+        to a constant."""
         frame, node = self.nodes.get(number, (None, None))
         if frame is None or node is None:
             return None

@@ -60,7 +60,7 @@ def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:
 
 
 def is_implicit(declaration: Declaration) -> bool:
-    """Whether a declaration has no handle of its own, so that the name of the interface is used as the handle."""
+    """Whether a declaration lacks the attribute `name`, so that the name of the interface is used as the handle."""
     return declaration.handle is not None and declaration.handle is declaration.interface
 
 

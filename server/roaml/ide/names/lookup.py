@@ -74,7 +74,7 @@ def symbol_group_at(analysis: Analysis, path: str, offset: int) -> SymbolGroup |
 
 
 def symbol_group(analysis: Analysis, symbols: Iterable[Symbol]) -> SymbolGroup:
-    """The group of some symbols: all their uses, and all uses of the symbols that share a place with one of them."""
+    """The group of `symbols`: all their uses, and all uses of the symbols that share a place with one of them."""
     seen = dict.fromkeys(symbols)
     todo = list(seen)
     uses_by_place: dict[tuple[str, Span], SymbolUse] = {}

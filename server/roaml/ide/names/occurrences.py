@@ -22,7 +22,7 @@ from roaml.text import Span
 
 @dataclass(frozen=True, eq=False)
 class Uses:
-    """The uses of names in one file: all in the order of the text, by symbol, and by span."""
+    """The uses of names in one file: as a sequence in the order of the text, by symbol, and by span."""
 
     all: tuple[Occurrence, ...]
     by_symbol: Mapping[Symbol, tuple[Occurrence, ...]]

@@ -40,7 +40,7 @@ from roaml.smc.normal_form import (
 _SECOND = 1_000_000_000
 """The number of nanoseconds in a second."""
 _FROM_START = (ScopeKind.GLOBALLY, ScopeKind.BEFORE, ScopeKind.UNTIL)
-"""The scopes whose only stretch begins with the trace."""
+"""The scopes with only one stretch, which begins at the start of the trace (docs/spec/xml-properties.md#scopes)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +52,11 @@ class PatternForm:
 
 
 def needs_first(property_: PatternProperty, name: str) -> bool:
-    """Whether a property depends only on the first time at which the condition `name` holds. For universality, this is
-    the negation of the condition.
+    """Whether a property depends only on the first time at which the condition `name` holds or, for universality, at
+    which the condition does not hold.
 
-    At this time, a message that was ever sent is just sent: a condition may use the flag of an event.
+    If so, a condition may use the flag of an event: the flag is true for the first time in the step in which the event
+    is sent for the first time.
     """
     if name == OPEN:
         return not property_.scope.has_until
@@ -176,7 +177,8 @@ def _without(condition: Expression, excluded: Expression) -> Expression:
 
 
 def operands(condition: Expression, operator: BinaryOperator) -> Iterator[Expression]:
-    """The operands of a conjunction or disjunction; `condition` itself if it is none."""
+    """The operands of a conjunction or disjunction, as `operator` selects; `condition` itself if it is another
+    expression."""
     waiting = [condition]
     while waiting:
         part = waiting.pop()

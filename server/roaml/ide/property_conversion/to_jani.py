@@ -94,7 +94,8 @@ class _Conditions:
         return False
 
     def first(self, tree: Expr) -> Expression:
-        """A condition that holds for the first time when `tree` does. The flag of an event replaces its variable."""
+        """A condition that becomes true for the first time in the same step as `tree`. The flag of an event replaces
+        the variable of the event."""
         if not self.has_events(tree):
             return self.value(tree)
         match tree:
@@ -109,7 +110,8 @@ class _Conditions:
         raise NotConvertibleError
 
     def sent_with(self, tree: Binary) -> Expression:
-        """A conjunction of an event with conditions on its own data, which change only when it is sent."""
+        """A conjunction of the flag of an event with conditions on the data of this event, which changes only when the
+        event is sent."""
         parts = _conjuncts(tree)
         events = [part for part in parts if self.has_events(part)]
         (event, *more) = events
@@ -129,7 +131,7 @@ class _Conditions:
         return result
 
     def flag(self, port: LinkedPort) -> Expression:
-        """Whether an event of a port was ever sent."""
+        """The condition that one of the events of a port has been sent at least once."""
         result: Expression | None = None
         for event in port.events:
             name = flag_of(event.name)
@@ -142,7 +144,7 @@ class _Conditions:
         return result
 
     def value(self, tree: Expr, *, is_sent: bool = False) -> Expression:
-        """An expression without events. `is_sent` means that the events of its variables were sent."""
+        """An expression without event variables. `is_sent` means that the events of its variables have been sent."""
         match tree:
             case Number():
                 return jani.Real(float(tree.value)) if tree.is_real else jani.Integer(int(tree.value))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property in JANI as a property in XML, with the ports that it needs."""
+"""Converts a property in JANI to a property in XML, with the ports whose variables it uses."""
 
 from __future__ import annotations
 
@@ -59,10 +59,11 @@ class NeededVariable:
 
 @dataclass(slots=True)
 class XmlProperty:
-    """
+    """A property in XML.
+
     Attributes:
-        lines: the element.
-        variables: the variables of ports, by their ids.
+        lines: the lines of the element.
+        variables: the variables of ports that the property uses, by their ids.
     """
 
     lines: list[str] = field(default_factory=list)
@@ -112,7 +113,7 @@ def _interval(window: Window, step: int) -> str:
 
 
 class EventPorts:
-    """The ports of a system that denote all messages of one event of the translation."""
+    """The ports of a system that listen to every sending of one event of the translation."""
 
     def __init__(self, system: System, find: FindInterface, variables: Mapping[str, GlobalVariable]) -> None:
         self.variables = variables
@@ -152,10 +153,10 @@ class EventPorts:
         return NeededVariable(self._tag(event), PortVariableKind.EVENT.value)
 
     def parameter(self, name: str, initial: str) -> NeededVariable:
-        """The variable with the value of a global variable.
+        """The variable of a port that has the value of a global variable.
 
         Args:
-            initial: the value before the first event; "" for that of the global variable.
+            initial: the value before the first event; "" for the initial value of the global variable.
         """
         variable = self.variables.get(name)
         if variable is None or variable.parameter == "valid" or f"{name}.d1_len" in self.variables or ".d" in name:
@@ -192,7 +193,7 @@ class _Conditions:
 
     Attributes:
         needed: the variables of ports that the conditions read, by their ids.
-        pattern: the pattern, if it is not that of the form.
+        pattern: the pattern of the property in XML; `None` if it is that of the form.
     """
 
     def __init__(self, ports: EventPorts, taken: dict[NeededVariable, str]) -> None:
@@ -229,7 +230,7 @@ class _Conditions:
         return False
 
     def first(self, condition: Expression) -> Expr:
-        """A condition that holds when `condition` holds for the first time."""
+        """A condition that becomes true for the first time in the same step as `condition`."""
         if not self.has_flags(condition):
             return self.value(condition)
         match condition:
@@ -246,7 +247,7 @@ class _Conditions:
         raise NotConvertibleError
 
     def sent_with(self, parts: Sequence[Expression]) -> Expr:
-        """A conjunction of the flag of an event with conditions on its own data."""
+        """A conjunction of the variable of an event with conditions on the data of this event."""
         flags = [part for part in parts if self.has_flags(part)]
         (flag, *more) = flags
         if more or not isinstance(flag, jani.Name):

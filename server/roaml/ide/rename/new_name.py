@@ -77,7 +77,7 @@ def _in_property_files(analysis: Analysis, group: SymbolGroup, symbol: Symbol, n
         names = {name for node in system.instances for name in (node.name, node.plugin)} if system else set()
         names |= {name for use in system.tree_uses for name in (use.name, use.tree)} if system else set()
         if new in names or "/" in new:
-            return f"properties refer to nodes of the tree by their names, and another node is called `{new}`"
+            return f"properties refer to nodes of the tree by their names, and another node or tree is called `{new}`"
     return ""
 
 
@@ -116,7 +116,7 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
         case SymbolKind.EVENT:
             right = EVENT.match(new) and not new.endswith((".valid", "_"))
             if right and (is_synchronising(new) or is_reserved_name(new)):
-                return f"{cannot}: the translation uses it for its own events"
+                return f"{cannot}: the translation uses this name for an event that it generates"
         case SymbolKind.PARAMETER:
             right = all(VARIABLE.match(part) for part in new.split(".")) and not new.endswith("_")
         case SymbolKind.MEMBER:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the paths on which a machine does not give exactly one answer: the answer is never sent, or only after an event
-that cannot occur.
+"""Finds the paths on which a machine never sends a required answer, or sends it only after an event that cannot occur.
 
 All functions are pure functions of a graph (`Behavior`). Their argument `possible` returns whether a step can be taken;
 without it, every step can.
@@ -33,7 +32,7 @@ _FOLLOWING = (
     ProtocolPart.CHILD_STATUS,
     ProtocolPart.CHILD_HALTED,
 )
-"""Events that answer something that was sent; other events come spontaneously."""
+"""Events that are answers to an event that the machine has sent. Other events arrive without a cause in the machine."""
 
 
 def always(_: BehaviorStep) -> bool:
@@ -41,7 +40,8 @@ def always(_: BehaviorStep) -> bool:
 
 
 def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
-    """The configurations that owe the answer to `duty` and from which no sequence of possible steps leads to it."""
+    """The configurations that owe the answer to `duty` and from which no sequence of possible steps leads to this
+    answer."""
     owing = frozenset(n for n, c in enumerate(behavior.configurations) if _is_due(c, duty))
     steps = [step for step in behavior.steps if step.source in owing and possible(step)]
     answered = _back({step.source for step in steps if step.target not in owing}, steps)
@@ -49,8 +49,8 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
 
 
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
-    """Whether a configuration owes the answer to `duty`. It is false if there are several goals at once, because it is
-    unknown to which of them an answer belongs."""
+    """Whether a configuration owes the answer to `duty`. The result is false if there are several goals at once,
+    because it is unknown to which of them an answer belongs."""
     if configuration.state == UNKNOWN_STATE or configuration.answering(duty) is Phase.SEVERAL:
         return False
     return configuration.owes(duty)
@@ -59,8 +59,9 @@ def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
 def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> frozenset[int]:
     """The configurations in which the machine never handles the event of `duty`: a tick, halt, request or goal.
 
-    The event may arrive in each of them, but no sequence of possible steps leads from it to a handler for the event.
-    Steps that handle a tick or halt are left out, because the tree sends neither until it has the answer.
+    The event may arrive in each of these configurations, but no sequence of possible steps leads from there to a
+    handler for the event. Steps that handle a tick or halt are left out of the sequences, because the tree sends
+    neither until it has received the answer to the previous one.
     """
     waiting = frozenset(
         n
@@ -96,9 +97,9 @@ def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
 def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
     """The steps after which the answer never comes.
 
-    If the answer was omitted early, but a further event was still expected (the response to a request that was sent),
-    the last step is reported, because the answer is missing there. But if the machine waits for the event in a state
-    that handles the next tick, the answer is missing in the first step.
+    If a further event was expected after the step that makes the answer impossible, such as the response to a request,
+    the last step is returned, because the answer is missing there. But if the machine waits for that event in a state
+    that handles the next tick, the first step is returned.
     """
     lost = unfinished(behavior, duty)
     inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
@@ -122,7 +123,8 @@ def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
 
 
 def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[int]:
-    """The configurations that can be reached with and after `step` and that owe an answer that is never sent."""
+    """The configurations that owe an answer to `duty` that is never sent, and that are the target of `step` or can be
+    reached from it."""
     lost = unfinished(behavior, duty)
     return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
 
@@ -151,8 +153,8 @@ def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[Beh
 
 
 def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, int]:
-    """For each configuration of a set, the least number of steps that lead out of the set. The configurations outside
-    the set that are reached in this way have the number 0."""
+    """Configuration -> the least number of steps that lead from it out of the set `configurations`; only for
+    configurations from which a path leads out. The first configurations outside the set have the number 0."""
     incoming: dict[int, list[int]] = {}
     for step in behavior.steps:
         if step.source in configurations:
@@ -168,12 +170,12 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
 
 
 def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations from which some of `steps` lead to `goals`, including `goals`."""
+    """`goals`, and the configurations from which a path of `steps` leads to one of them."""
     return _reached(goals, ((step.target, step.source) for step in steps))
 
 
 def _forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
-    """The configurations to which some of `steps` lead from `first`, including `first`."""
+    """`first`, and the configurations to which a path of `steps` leads from one of them."""
     return _reached(first, ((step.source, step.target) for step in steps))
 
 

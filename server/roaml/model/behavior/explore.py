@@ -82,7 +82,7 @@ class FaultKind(Vocabulary):
     OTHER = "other"
     """The id of a goal of another action."""
     EARLIER = "earlier"
-    """The id of an earlier goal instead of the goal that has just arrived."""
+    """The id of an earlier goal instead of that of the goal that has just arrived."""
     REJECTED = "rejected"
     """A result for a goal that was rejected."""
     UNDECIDED = "undecided"
@@ -95,10 +95,11 @@ class FaultKind(Vocabulary):
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A statement that must not be executed at this point of a path, such as a second answer to one request.
+    """A statement on a path that must not be executed after the previous steps of the path, such as a second answer to
+    one request.
 
     Attributes:
-        duty: the duty that is answered.
+        duty: the duty that the statement answers.
         statement: the statement that sends the answer.
         certain: whether the fault occurs whatever the conditions in the bodies are.
         source: for `FOREIGN`, the expression that was assigned to the variable; for `EARLIER`, a variable that holds
@@ -148,7 +149,8 @@ class ChartConfiguration:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BehaviorStep:
-    """
+    """A step from one configuration to another.
+
     Attributes:
         source, target: configurations, as indexes.
         event: the received event; `None` for a transition without event.
@@ -270,7 +272,8 @@ class _Path(NamedTuple):
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
-    """The base types of the scalar variables of a chart, the names of the integers, and those of the booleans."""
+    """The base types of the scalar variables of a chart, the names of its integer variables, and the names of its
+    boolean variables."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
     integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
@@ -426,7 +429,7 @@ class _Explorer:
 
     def _counts_down(self) -> bool:
         """Whether the chart changes a thread number when a thread becomes free. The graph does not contain the number
-        of running threads, so this thread number could decrease without end in it."""
+        of running threads, so in the graph this thread number could decrease without end."""
         numbers = set(self._counted())
         while True:
             values = [
@@ -664,7 +667,7 @@ class _Explorer:
     def _choose(self, group: _Group, handlers: tuple[Handler, ...], taken: _Path) -> None:
         """Add the reactions of the first handler whose condition holds (docs/spec/machines.md#selection).
 
-        If several conditions may hold first, the reactions of each of these handlers are added.
+        If it is unknown which handler this is, the reactions of all handlers that may be the first are added.
         """
         facts, event = self.facts, group.event
         ways = [taken.knowledge]
@@ -953,7 +956,7 @@ class _Explorer:
         return path.at(subject, handle, Phase.SEVERAL if path.phase(subject, handle) else Phase.AWAITED)
 
     def _checked_id(self, statement: RosSend, path: _Path, duty: Duty, goals: tuple[GoalStatus, ...]) -> _Path:
-        """The path with a fault if the statement does not name a goal by the id with which the goal arrived.
+        """The path, with a fault if the statement does not name a goal by the id with which the goal arrived.
 
         Args:
             duty: the duty that the statement answers.

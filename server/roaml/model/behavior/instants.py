@@ -2,9 +2,9 @@
 """The events that can occur in a system without the passing of time, and those that need time
 (docs/spec/semantics.md#time).
 
-No time passes during a tick of the behavior tree: the next tick waits for the answer to this one, and the clock waits
-for the next tick. So during a tick a plugin receives only events that it causes itself, for example by its request, or
-by the requests that the server then sends.
+No time passes during a tick of the behavior tree: the clock waits for the next tick, which waits for the answer to the
+current tick. So during a tick a plugin receives only events that it causes itself, for example by its request, or by
+the requests that the server then sends.
 
 An event is assumed to arrive at once if an unreadable part of the system might send it, or if its sender is a machine
 with an unreadable part that handles or sends events.
@@ -64,7 +64,7 @@ _Fact = tuple[int, ProtocolEvent]
 
 @dataclass(frozen=True, slots=True)
 class EventDelay:
-    """Why an event takes time.
+    """The reason why an event takes time.
 
     Attributes:
         automaton: the automaton that waits for the event.
@@ -72,7 +72,7 @@ class EventDelay:
         server: the server that sends the event; `None` if the event is not an answer of a server.
         promise: the delayed answer of `server`.
         next: the delay of the event after which this event is sent; `None` if this event does not depend on another
-            one, as that of a timer.
+            event, such as the event of a timer.
     """
 
     automaton: SystemAutomaton
@@ -117,7 +117,8 @@ class _Solver:
     def senders(
         self, automaton: SystemAutomaton, event: ProtocolEvent
     ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
-        """The automata that may send the event that `automaton` receives as `event`, and that event as they name it."""
+        """The automata that may send the event that `automaton` receives as `event`, each with the event as this
+        automaton names it."""
         if event.part is ProtocolPart.EVENT:
             known = self.system.events.get(event.name)
             for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
@@ -206,8 +207,8 @@ class Instants:
         return False
 
     def _kept(self, server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
-        """The promises that the plugin may depend on. If the server has only one client, promises that are given while
-        the server is busy with an earlier goal are left out."""
+        """The delayed answers of a server that the plugin may depend on. If the server has only one client, answers for
+        which the server is still busy with an earlier goal are left out."""
         channel = self.system.channel(server.automaton, server.use)
         alone = channel is not None and len(channel.users) == 1
         return (promise for promise in promises(server, event) if not (alone and promise.busy))

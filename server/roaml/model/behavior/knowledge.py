@@ -57,7 +57,7 @@ class Domain:
 
     @property
     def value(self) -> Constant | None:
-        """The only value, if there is exactly one."""
+        """The value that the term must have; `None` if several values are possible."""
         return next(iter(self.only)) if self.only is not None and len(self.only) == 1 else None
 
     def admits(self, value: Constant) -> bool:
@@ -328,7 +328,7 @@ class ConditionFacts:
         return (after if domain == Domain() else after._with(root, frozenset((root,)), domain),)
 
     def know(self, knowledge: Knowledge, term: str, domain: Domain) -> Knowledge:
-        """The knowledge with a domain for a variable or for `_event` data."""
+        """The knowledge, extended by a domain of a variable or of a field of `_event.data`."""
         return knowledge._with(term, frozenset((term.partition(".")[0],)), domain)
 
     def _is_logical(self, expr: Expr) -> bool:

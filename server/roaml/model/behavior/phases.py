@@ -44,7 +44,7 @@ TICK, HALT = Duty(DutyKind.TICK, ""), Duty(DutyKind.HALT, "")
 
 
 class Subject(Vocabulary):
-    """The subject to which a phase applies."""
+    """A part of the protocol that has a phase: the plugin, its children, or a kind of answer."""
 
     TREE = "tree"
     """The plugin itself, as a node of the tree."""
@@ -62,7 +62,7 @@ class Subject(Vocabulary):
 
 
 class Phase(Vocabulary):
-    """The phase of a subject; a subject without a phase is idle, and a tree without one was never ticked."""
+    """The phase of a subject. A subject without a phase is idle; a `TREE` without a phase has never been ticked."""
 
     TICKED = "ticked"
     HALTING = "halting"
@@ -85,7 +85,7 @@ class GoalStatus(Vocabulary):
     ASKED = "asked"
     ACCEPTED = "accepted"
     EARLIER = "earlier"
-    """An accepted goal, while a later goal is decided on."""
+    """An accepted goal during the step that handles the arrival of a later goal."""
     REJECTED = "rejected"
     FINISHED = "finished"
     FOREIGN = "foreign"

@@ -17,8 +17,8 @@ from roaml.model.machine import Chart, Machine
 from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
-"""Alternative sets of events. The events of any one set are sufficient together. If there is no set, nothing is
-sufficient."""
+"""Alternative sets of events. It is sufficient that all events of one of the sets occur. If there is no set, no events
+are sufficient."""
 
 AT_ONCE: frozenset[ProtocolEvent] = frozenset()
 START = ProtocolEvent(ProtocolPart.START, "")
@@ -66,7 +66,8 @@ class Promise:
 
 @dataclass(frozen=True, slots=True)
 class ChartOutline:
-    """
+    """The summary of the graph of a chart.
+
     Attributes:
         promises: the delayed answers, one for each configuration that owes an answer.
         reactions: pairs of events: after receiving the first, the machine sends the second in some state.
@@ -212,8 +213,8 @@ def _incoming(edges: Iterable[_Edge]) -> dict[int, list[_Edge]]:
 
 
 def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge]) -> dict[int, tuple[int, ...]]:
-    """For each configuration from which edges lead to an edge of `reaching`, the smallest sets of events on such
-    paths, including the last edge."""
+    """Configuration -> the smallest sets of events on the paths from it to an edge of `reaching`, including this edge.
+    Configurations without a path to one of these edges are left out."""
     goals = set(reaching)
     needs: dict[int, tuple[int, ...]] = {}
     waiting: dict[int, None] = {}

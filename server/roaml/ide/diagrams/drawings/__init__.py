@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drawings of diagrams: the position and the style of each part.
 
-The editor and the command line use the same drawings. A drawing has one of two directions, for an area that is wider
-than high, or higher than wide.
+The editor and the command line use the same drawings. A drawing has one of two directions: for an area that is wider
+than it is high, or higher than it is wide.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def draw(kind: DiagramKind, picture: Picture, direction: LayoutDirection) -> Dra
 
 
 def draw_for(kind: DiagramKind, picture: Picture, width: float, height: float) -> Drawing:
-    """The drawing that needs to be reduced least to fit into an area of this size. If both directions need the same
-    factor, the drawing with the smaller area is returned."""
+    """The drawing, in the direction that needs the smaller reduction, for an area of this size. If both directions need
+    the same factor, the drawing with the smaller area is returned."""
     drawings = [draw(kind, picture, direction) for direction in LayoutDirection]
     return max(drawings, key=lambda drawing: (scale(drawing, width, height), -drawing.size.width * drawing.size.height))
 

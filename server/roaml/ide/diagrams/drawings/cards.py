@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cards: rows of text below each other, their size, and the items to draw at a position."""
+"""Cards, which consist of rows of text: their size, and the items to draw at a position."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """Rows below each other. `ruled` is true if a line separates the first row from the others. `side` is the free
-    width on the left of the first row, for a badge."""
+    """A column of rows. `ruled` is true if a line separates the first row from the others. `side` is the free width on
+    the left of the first row, for a badge."""
 
     rows: tuple[Row, ...]
     ruled: bool = False
@@ -122,7 +122,7 @@ def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
 
 
 def title(text: str, width: float) -> tuple[TextLine, ...]:
-    """The lines of a title."""
+    """The lines of a title in bold letters, wrapped to a width; at most 3 lines."""
     return tuple(TextLine(line, MEDIUM, "title", bold=True) for line in wrap(text, MEDIUM, width, bold=True, limit=3))
 
 

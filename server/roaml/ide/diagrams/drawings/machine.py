@@ -4,7 +4,7 @@
 - A state is a card with its entry and exit actions. Transitions from a state to itself are rows of its card.
 - All transitions from one state to another share a line; its label has a row for each of them.
 - A choice is a small junction. If all its targets are the state from which it comes, it is a row of the state's card.
-- An action thread is a drawing of its own in a frame.
+- Each action thread is drawn separately, in a frame.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing
 
 
 class _Chart:
-    """The chart of the machine, or that of one thread."""
+    """Draws one chart: that of the machine, or that of an action thread."""
 
     def __init__(self, picture: Picture, frame: str) -> None:
         self._picture = picture

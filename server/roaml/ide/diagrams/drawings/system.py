@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drawing of all machines of a system: those of `machine`, each in a frame with its name."""
+"""The drawing of all machines of a system, each in a frame with its name. `machine` draws the machines."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _frames(picture: Picture) -> Iterator[int]:
 
 
 def _framed(picture: Picture, frame: int, direction: LayoutDirection) -> Drawing:
-    """A machine in its frame; its nodes follow the frame in the picture."""
+    """A machine in its frame. In the picture, the nodes of the machine follow the node `frame`."""
     name = picture.nodes[frame]
     end = next((index for index in _frames(picture) if index > frame), len(picture.nodes))
     own = [_inside(node, name.id) for node in picture.nodes[frame + 1 : end]]
@@ -58,7 +58,12 @@ def _inside(node: DiagramNode, frame: str) -> DiagramNode:
 
 
 def _renumbered(group: Group, first: int, edges: list[int]) -> Group:
-    """The group with the indexes of the whole picture."""
+    """A group of the drawing of one machine, with the indexes that its nodes and edges have in the whole picture.
+
+    Args:
+        first: the index of the first node of the machine.
+        edges: the indexes of the edges of the machine.
+    """
     items = tuple(_renumbered(item, first, edges) if isinstance(item, Group) else item for item in group.items)
     node = None if group.node is None else group.node + first
     return replace(group, items=items, node=node, edges=tuple(edges[index] for index in group.edges))
