@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator, Sequence
 MAX_LENGTH = 80
 """The maximum number of characters of an unknown name that are compared."""
 _MIN_SIMILARITY = 0.6
-"""The minimum similarity after `difflib`, between 0 and 1."""
+"""The minimum similarity as computed by `difflib`, between 0 and 1."""
 MAX_COMPARED = 40
 """The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are selected
 first."""
@@ -104,7 +104,7 @@ class _Index:
                     same.append(name)
 
     def likely(self, name: str) -> list[str]:
-        """At most `6 * _NEIGHBOURS` names that may be similar. Names that differ in one letter come first."""
+        """At most `6 * _NEIGHBOURS` names that may be similar to `name`. Names that differ in one letter come first."""
         one_letter_away = (match for shorter in _shortened(name) for match in self._shortened.get(shorter, ()))
         matches = dict.fromkeys(itertools.islice(one_letter_away, 2 * _NEIGHBOURS))
         matches |= dict.fromkeys(_around(name, self._forward))

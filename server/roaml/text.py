@@ -103,11 +103,11 @@ class Decoded:
     sources: tuple[int, ...] | None = None
 
     def offset(self, index: int) -> int:
-        """Source offset at which character `index` begins; `len(text)` gives the end."""
+        """The source offset at which the character `index` begins; `len(text)` gives the end."""
         return self.base + index if self.sources is None else self.sources[index]
 
     def span(self, start: int, end: int) -> Span:
-        """Source span of `text[start:end]`."""
+        """The source span of `text[start:end]`."""
         if self.sources is None:
             return span_of((self.base + start, self.base + end))
         return span_of((self.sources[start], self.sources[end]))

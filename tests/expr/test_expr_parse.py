@@ -140,12 +140,12 @@ a ** b
 """,
     """
 a & b
-  ^ `&` is not supported: write `&&` for a logical and
+  ^ `&` is not supported: write `&&` for a logical AND
 => _<a b>
 """,
     """
 a | b == c
-  ^ `|` is not supported: write `||` for a logical or
+  ^ `|` is not supported: write `||` for a logical OR
 => _<a (== b c)>
 """,
     """
@@ -213,7 +213,7 @@ a; b
     """
 v[i++] == (b & c)
    ^^ `++` is not supported; use `<assign>` to change a variable
-             ^ `&` is not supported: write `&&` for a logical and
+             ^ `&` is not supported: write `&&` for a logical AND
 => (== v[_<i>] _<b c>)
 """,
     """
@@ -407,7 +407,7 @@ a b
 """,
     """
 a ? b
-    ^ `:` and the other value of `?` is missing after `b`
+    ^ `:` with the second value of `?` is missing after `b`
 => (? a b _)
 """,
     """

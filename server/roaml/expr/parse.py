@@ -97,8 +97,8 @@ _BITS = "bit operations are not supported"
 _STORE = "use `<assign>` to store a value"
 _FOREIGN_OPERATORS = {
     "**": "use `Math.pow(x, y)`",
-    "&": "write `&&` for a logical and",
-    "|": "write `||` for a logical or",
+    "&": "write `&&` for a logical AND",
+    "|": "write `||` for a logical OR",
     "^": _BITS,
     "<<": _BITS,
     ">>": _BITS,
@@ -279,7 +279,7 @@ class _Parser:
 
     def conditional(self, test: Expr, first: int) -> Expr:
         then = self.expression(0)
-        otherwise = self.expression(0) if self.accept(":") else self.missing("`:` and the other value of `?`")
+        otherwise = self.expression(0) if self.accept(":") else self.missing("`:` with the second value of `?`")
         return Conditional(self.since(first), test, then, otherwise)
 
     def operand(self) -> Expr:

@@ -278,7 +278,7 @@ def _entries(folder: str, *, folders: bool) -> list[str]:
 
 
 def _identity(folder: str) -> tuple[int, int] | None:
-    """An identity that is equal for two paths to the same folder; `None` if the folder does not exist."""
+    """A value that is equal for all paths to the same folder; `None` if the folder does not exist."""
     try:
         status = os.stat(folder)
     except OSError:

@@ -3,7 +3,7 @@
 
 - Everything is frozen and hashable: definitions are part of memo keys.
 - Equality ignores spans, comments and the spelling of values: a definition stays equal to itself when comments or white
-  space of its file change. It compares the path.
+  space of its file change. The paths of definitions are compared.
 - A nested type is known by name only (`package/Name`); `roaml.interfaces.registry` resolves it.
 """
 

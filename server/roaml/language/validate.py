@@ -328,7 +328,7 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
 
 
 _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
-"""Cached, because a document repeats the same few names."""
+"""The result is cached, because a document repeats a few names many times."""
 
 
 def _new(parent: Any, element: Element) -> Any:

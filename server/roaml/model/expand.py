@@ -271,7 +271,7 @@ MAX_NODES = 10_000
 """The maximum number of nodes of an executed tree; a larger one is not expanded."""
 
 MAX_SUBTREES = 1_000
-"""The maximum number of nested subtrees; names of blackboard variables grow with it."""
+"""The maximum number of nested subtrees. The length of the names of blackboard variables grows with this number."""
 
 
 @dataclass(frozen=True, slots=True)

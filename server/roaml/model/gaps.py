@@ -30,7 +30,7 @@ from roaml.xml_syntax import Element
 
 
 class GapAct(Vocabulary):
-    """An act of an unreadable part that does not use a ROS interface."""
+    """What an unreadable part may do or be, without using a ROS interface."""
 
     ANYTHING = "anything"
     SENDS = "event-sender"

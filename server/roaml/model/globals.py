@@ -119,7 +119,7 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
 
 
 def _sent(use: InterfaceUse, part: ProtocolPart) -> list[tuple[str, Type]]:
-    """The fields of a part as parameters, with the types of the values that are sent."""
+    """The fields of a part of an interface as parameters of its event, with the types of the values that are sent."""
     return [_field(field) for field in dict(use.fields).get(part, ())]
 
 
@@ -128,7 +128,7 @@ def _field(field: SentField) -> tuple[str, Type]:
 
 
 def _declared(use: InterfaceUse, part: str, interface: FindInterface) -> list[tuple[str, Type]]:
-    """The fields of a part as parameters, with the types of the ROS definition."""
+    """The fields of a part of an interface as parameters of its event, with the types of the ROS definition."""
     interface_type = interface(INTERFACE_KINDS[use.kind], use.type)
     if interface_type is None:
         return []

@@ -82,7 +82,7 @@ class InterfaceUse:
 
 @dataclass(frozen=True, slots=True)
 class EventSent:
-    """A `<send>`. A struct is one parameter."""
+    """A `<send>`. A parameter whose value is a struct is listed once, without its members."""
 
     event: str
     params: tuple[SentField, ...]

@@ -95,7 +95,7 @@ class SystemAutomaton:
 
 @dataclass(frozen=True, slots=True)
 class ChannelEndpoint:
-    """One side of a topic, service or action."""
+    """An automaton that uses a topic, service or action, with its declaration."""
 
     automaton: SystemAutomaton
     use: InterfaceUse

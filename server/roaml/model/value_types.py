@@ -501,7 +501,8 @@ class _Body:
         self.late_value(ValueUse.OUTPUT, statement.value, required, statement.element, target)
 
     def choice(self, statement: If) -> None:
-        """Determine the types in an `<if>`. Even its first condition is evaluated in a separate step, so it is late."""
+        """Determine the types in an `<if>`. Even its first condition is evaluated in a separate step, so the condition
+        is late (see `ValuePlace`)."""
         before = self.place
         self.later()
         outer = known = self.place.branch_conditions

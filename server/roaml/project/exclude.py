@@ -40,7 +40,7 @@ class Exclude:
         return self._covers(path, root, "")
 
     def covers_folder(self, path: str, root: str) -> bool:
-        """Whether everything in the folder `path` is excluded. The folder is `root` itself or below `root`."""
+        """Whether all files in the folder `path` are excluded. The folder is `root` itself or below `root`."""
         return self._covers(path, root, "/")
 
     def _covers(self, path: str, root: str, end: str) -> bool:

@@ -130,7 +130,7 @@ class Workspace:
         self._registry.search_path.refresh()
 
     def configure(self, settings: Settings, roots: Iterable[str] | None = None) -> None:
-        """Set new settings or folders. Everything is checked again."""
+        """Set new settings or folders. All files are checked again."""
         self.settings = settings
         if roots is not None:
             self.roots = tuple(os.path.abspath(root) for root in roots)

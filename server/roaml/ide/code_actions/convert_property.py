@@ -68,7 +68,7 @@ def actions(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
 
 
 def _file_of(analysis: Analysis, system: str, kind: FileKind) -> str | None:
-    """The first property file of a kind that belongs only to the system and that can be extended."""
+    """The first property file of the kind `kind` that no other system lists and to which a property can be added."""
     for listed in analysis.listed(system):
         if not listed.usable or listed.required_kind is not kind or analysis.kind(listed.path) is not kind:
             continue

@@ -101,7 +101,7 @@ def _input(source: str) -> str:
 
 
 def _new_system(snapshot: Snapshot, path: str) -> WorkspaceEdit:
-    """A system for a tree, with mocks and first properties."""
+    """Creates a system for a tree, with mocks of its leaves and a property file."""
     analysis = snapshot.analysis
     folder, stem = folder_of(path), split_name(name_of(path))[0]
     main = free_path(analysis, folder, f"{stem}_system.xml")
@@ -147,7 +147,8 @@ def _system_text(tree: str, properties: str, plugins: Iterable[str]) -> str:
 
 
 def _properties_text(system: System, leaves: Set[str]) -> str:
-    """The tree succeeds, and each leaf is reached. `leaves` are the types of the leaves."""
+    """A property file that requires that the tree succeeds and that each leaf is reached. `leaves` are the types of the
+    leaves."""
     ports: list[str] = []
     guarantees: list[str] = []
     for number, text in short_paths(system).items():

@@ -68,7 +68,7 @@ def _item(request: Request, subject: CompletionSubject, attribute: AttributeType
 
 
 def _remappings(request: Request, subject: CompletionSubject, given: set[str]) -> Iterator[CompletionItem]:
-    """Attributes that remap the variables of a subtree, for a node that executes it."""
+    """Attributes that remap variables of a subtree, for the start tag of a node that executes the subtree."""
     id_ = subject.element.get("ID") if subject.element else None
     path, tree = request.trees.trees.get(id_.value if id_ else "", ("", None))
     if tree is None or id_ is None:

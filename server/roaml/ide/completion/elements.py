@@ -67,7 +67,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
 
 
 def _has_effect(request: Request, parents: tuple[Typed, ...], name: str) -> bool:
-    """Whether the rules `tree-element-in-node` and `thread-element-outside-thread` allow the element, which the schema
+    """Whether the rules `tree-element-in-node` and `thread-element-outside-thread` allow an element that the schema
     allows."""
     if name.startswith("bt_"):
         sections = request.sections
@@ -142,7 +142,7 @@ def _item(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, b
 
 
 def _has_no_handle(request: Request, type_: ElementType) -> bool:
-    """Whether an element uses a kind of ROS interface, or a timer, that the machine does not declare."""
+    """Whether an element requires a ROS interface or a timer, and the machine declares none of the required kind."""
     name = type_.attributes.get("name")
     required_kinds = set(name.refers) & HANDLES if name else set()
     declared = {declaration.kind for declaration in request.machine.declarations} if request.machine else set()
@@ -153,7 +153,7 @@ def _has_no_handle(request: Request, type_: ElementType) -> bool:
 
 
 def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
-    """Plugins of the system, nodes of BehaviorTree.CPP and subtrees."""
+    """Items for the plugins of the system, the nodes of BehaviorTree.CPP, and subtrees."""
     grammar = request.file.grammar
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)

@@ -236,7 +236,7 @@ _ALIASES = {
     "<=": "≤",
     ">=": "≥",
 }
-"""Alternative spellings of operators -> the spelling in JANI."""
+"""Alternative spelling of an operator -> its spelling in JANI."""
 
 _SELDOM = frozenset(
     (

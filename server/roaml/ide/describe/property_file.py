@@ -140,7 +140,7 @@ def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
         return _formula(parts.get(key), depth + 1)
 
     def inner(key: str) -> str:
-        """The text of an operand, in parentheses if its operator binds less tightly."""
+        """The text of an operand, in parentheses if its operator binds less tightly than the enclosing operator."""
         value = parts.get(key)
         has_two = isinstance(value, JsonObject) and value.get("left") is not None
         text = part(key)

@@ -13,7 +13,7 @@ from roaml.text import Span
 
 
 class DocumentLink(NamedTuple):
-    """The path at `span` refers to the existing file `target`."""
+    """A path at `span` that refers to the existing file `target`."""
 
     span: Span
     target: str

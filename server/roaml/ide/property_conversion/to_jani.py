@@ -25,7 +25,7 @@ from roaml.scxml.names import flag_of
 from roaml.to_jani.values import BINARY_OPERATORS
 
 _CONVERTIBLE = BINARY_OPERATORS.keys() - {Operator.DIVIDE}
-"""The operators of conditions that both languages evaluate alike."""
+"""The operators that have the same meaning in conditions in XML and in JANI."""
 _RELATIONS = {">=": "≥", "<=": "≤", ">": ">", "<": "<", "==": "="}
 _ZEROS = (jani.Boolean(False), jani.Integer(0), jani.Real(0.0))
 """The initial values of the global variables of the translation."""

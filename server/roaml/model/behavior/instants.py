@@ -240,7 +240,7 @@ class Instants:
         return EventDelay(automaton, event)
 
     def _first(self, automaton: SystemAutomaton, needs: Needs) -> ProtocolEvent:
-        """The first event that does not arrive, from the alternative of `needs` with the fewest events."""
+        """The first event that does not arrive in the smallest set of `needs`."""
         number = self.solver.number(automaton)
         least = min(needs, key=lambda events: (len(events), sorted(events)))
         return next(event for event in sorted(least) if not self.solver.read(number, event))

@@ -204,7 +204,7 @@ class _Summary:
 
 
 def _incoming(edges: Iterable[_Edge]) -> dict[int, list[_Edge]]:
-    """The edges that lead to each configuration from another one."""
+    """Configuration -> the edges that lead to it from other configurations."""
     incoming: dict[int, list[_Edge]] = {}
     for edge in edges:
         if edge.source != edge.target:

@@ -83,7 +83,7 @@ class _Chart:
         }
 
     def _inlined_choices(self) -> frozenset[str]:
-        """The choices whose targets are all the state from which they come."""
+        """The choices whose only target is the state from which they come."""
         origin = {edge.target: edge.source for _, edge in self._edges if not edge.probabilistic}
         choices = {
             name for name, index in self._index.items() if self._picture.nodes[index].kind is DiagramNodeKind.CHOICE
