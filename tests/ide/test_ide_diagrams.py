@@ -13,6 +13,7 @@ from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
 from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, machine_picture, ros_picture, tree_picture
+from roaml.ide.picture_edits import PictureAction
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -228,8 +229,11 @@ def _is_sound(analysis: Analysis, picture: Picture) -> bool:
     return len(set(ids)) == len(ids) and {*ends, *(n.parent for n in picture.nodes if n.parent)} <= set(ids) and texts
 
 
-@pytest.mark.parametrize(("name", "kinds"), [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind)])
-def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind]) -> None:
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [("NODE_KINDS", DiagramNodeKind), ("EDGE_KINDS", EdgeKind), ("PICTURE_ACTIONS", PictureAction)],
+)
+def test_contract(name: str, kinds: type[DiagramNodeKind] | type[EdgeKind] | type[PictureAction]) -> None:
     """The extension and the library use the same words."""
     match = re.search(rf"{name} = \[([^\]]*)\]", CONTRACT.read_text(encoding="utf-8"))
     assert match is not None

@@ -79,6 +79,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "parent": "",
         "initial": True,
         "place": {"uri": uri, "range": {"start": {"line": 12, "character": 4}, "end": {"line": 22, "character": 12}}},
+        "actions": ["addState", "addTransition", "rename", "deleteTransition", "delete"],
     }
     assert machine["edges"][1] == {
         "source": "/driving",
@@ -87,6 +88,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "labels": ["/dock", "/ docked := _msg.data"],
         "probabilistic": False,
         "place": {"uri": uri, "range": {"start": {"line": 19, "character": 8}, "end": {"line": 21, "character": 29}}},
+        "actions": ["delete"],
     }
     assert [drawing["scene"].count("data-node=") for drawing in machine["drawings"]] == [2, 2]
     assert all(box["width"] > 0 for drawing in machine["drawings"] for box in drawing["nodes"])
@@ -96,6 +98,24 @@ async def test_pictures(tmp_path: Path) -> None:
     assert "/hand_over" in [node["label"] for node in ros["nodes"]]
     assert none is None
     assert await asked(tmp_path, "as2fm/picture", "main.xml", kind="cake") == [None]
+
+
+async def test_picture_edits(tmp_path: Path) -> None:
+    write_example(tmp_path)
+    name, uri = "nodes/battery.ascxml", (tmp_path / "nodes/battery.ascxml").as_uri()
+    (machine,) = await asked(tmp_path, "as2fm/picture", name, kind="machine")
+    part = {"range": machine["nodes"][0]["place"]["range"], "action": "rename"}
+    (question,) = await asked(tmp_path, "as2fm/pictureEdit", name, **part, answers=[])
+    asks = {"text": "The new name of `driving`", "options": [], "proposal": "driving"}
+    assert question == {"edit": None, "question": asks, "problem": ""}
+    (answer,) = await asked(tmp_path, "as2fm/pictureEdit", name, **part, answers=["going"])
+    assert {edit["newText"] for edit in answer["edit"]["changes"][uri]} == {"going"}
+    (refused,) = await asked(tmp_path, "as2fm/pictureEdit", name, **part, answers=["charging"])
+    assert refused == {"edit": None, "question": None, "problem": "A state `charging` already exists."}
+    (whole,) = await asked(tmp_path, "as2fm/pictureEdit", name, action="addState", answers=["third"])
+    assert '<state id="third" />' in whole["edit"]["changes"][uri][0]["newText"]
+    (gone,) = await asked(tmp_path, "as2fm/pictureEdit", "none.ascxml", action="addState", answers=[])
+    assert gone["problem"] == "The file does not exist any more."
 
 
 async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

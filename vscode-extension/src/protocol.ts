@@ -3,7 +3,7 @@
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
-import type { Direction, Picture, PictureKind, Place, Theme } from "./pictures/contract";
+import type { Direction, Picture, PictureAction, PictureKind, Place, Theme } from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
@@ -31,6 +31,27 @@ export interface PictureFileParams extends PictureParams {
 /** The text of an SVG file. */
 export interface PictureFile {
     readonly svg: string;
+}
+
+/** `range` is the place of a part, null for the whole file; `answers` are those of the previous questions. */
+export interface PictureEditParams extends DocumentParams {
+    readonly range: Range | null;
+    readonly action: PictureAction;
+    readonly answers: readonly string[];
+}
+
+/** A question to the user: a choice if there are options, otherwise a text, which begins with the proposal. */
+export interface PictureQuestion {
+    readonly text: string;
+    readonly options: readonly { readonly label: string; readonly answer: string }[];
+    readonly proposal: string;
+}
+
+/** One of the three; `problem` is the reason why there is no edit, otherwise empty. */
+export interface PictureEdit {
+    readonly edit: WorkspaceEdit | null;
+    readonly question: PictureQuestion | null;
+    readonly problem: string;
 }
 
 /** A line of the plain form, and the place in the models from which it was generated. */
@@ -95,6 +116,7 @@ export const newPropertyEdit = new RequestType<NewPropertyParams, NewProperty, v
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
 export const pictureFile = new RequestType<PictureFileParams, PictureFile | null, void>("as2fm/pictureFile");
+export const pictureEdit = new RequestType<PictureEditParams, PictureEdit, void>("as2fm/pictureEdit");
 export const plainScxml = new RequestType<DocumentParams, PlainScxml, void>("as2fm/plainScxml");
 export const janiView = new RequestType<DocumentParams, JaniText, void>("as2fm/janiView");
 export const migrate = new RequestType<DocumentParams, Migration, void>("as2fm/migrate");

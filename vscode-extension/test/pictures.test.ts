@@ -17,11 +17,11 @@ function place(startLine: number, startColumn: number, endLine: number, endColum
 }
 
 function node(id: string, more: Partial<PictureNode> = {}): PictureNode {
-    return { id, kind: "state", label: id, details: [], parent: "", initial: false, place: null, ...more };
+    return { id, kind: "state", label: id, details: [], parent: "", initial: false, place: null, actions: [], ...more };
 }
 
 function edge(source: string, target: string, more: Partial<PictureEdge> = {}): PictureEdge {
-    return { source, target, kind: "event", labels: [], probabilistic: false, place: null, ...more };
+    return { source, target, kind: "event", labels: [], probabilistic: false, place: null, actions: [], ...more };
 }
 
 const MACHINE: Picture = {

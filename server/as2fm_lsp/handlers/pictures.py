@@ -12,6 +12,7 @@ from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
 from roaml.ide.diagrams import DiagramKind, Picture, draw, picture_of
+from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -36,6 +37,7 @@ def register(context: Context) -> None:
         }
 
     def convert(analysis: Analysis, kind: DiagramKind, picture: Picture) -> dict[str, object]:
+        parts = PictureParts(analysis)
         return {
             "kind": kind.value,
             "title": picture.title,
@@ -48,6 +50,7 @@ def register(context: Context) -> None:
                     "parent": node.parent,
                     "initial": node.initial,
                     "place": place(analysis, node.place),
+                    "actions": [action.value for action in parts.actions(node.place)],
                 }
                 for node in picture.nodes
             ],
@@ -59,6 +62,7 @@ def register(context: Context) -> None:
                     "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
                     "probabilistic": edge.probabilistic,
                     "place": place(analysis, edge.place),
+                    "actions": [action.value for action in parts.actions(edge.place)],
                 }
                 for edge in picture.edges
             ],

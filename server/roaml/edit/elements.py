@@ -10,17 +10,19 @@ applied.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache, partial, wraps
 from typing import ParamSpec
 
 from roaml.diagnostics import Fix
 from roaml.text import Edit, Span, TextEdit
-from roaml.xml_syntax import Document, Element
+from roaml.xml_syntax import Attribute, Comment, Document, Element, Node, Text
 
 P = ParamSpec("P")
 
 _LEVEL = "    "
+_LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]]:
@@ -130,6 +132,68 @@ def removal(text: str, span: Span) -> TextEdit:
     if text[start - 1 : start] == "\n":
         start -= 2 if text[start - 2 : start - 1] == "\r" else 1
     return TextEdit(Span(start, span.end), "")
+
+
+def removals(document: Document, elements: Iterable[Element]) -> Iterator[Edit]:
+    """Edits that remove elements, which do not contain each other, with the comments directly above them. A parent that
+    becomes empty becomes self-closing. The root of the document is never removed."""
+    unwanted = set(map(id, elements))
+    for parent in document.root.walk() if document.root else ():
+        children = [child for child in parent.elements if id(child) in unwanted]
+        spans = [Span(_with_comments(parent, child), child.span.end) for child in children]
+        if not children:
+            continue
+        if parent.complete and all(
+            _is_blank(node) or any(_contains(s, node.span) for s in spans) for node in parent.nodes
+        ):
+            end_of_tag = parent.open_span.end - 1
+            yield TextEdit(Span(end_of_tag, parent.span.end), " />")
+        else:
+            yield from (removal(document.text, span) for span in spans)
+
+
+def _with_comments(parent: Element, child: Element) -> int:
+    """The beginning of the comments directly above a child element, on lines of their own; of the child if there are
+    none."""
+    start = child.span.start
+    index = parent.nodes.index(child)
+    while index >= 2:
+        between, comment = parent.nodes[index - 1], parent.nodes[index - 2]
+        before = parent.nodes[index - 3] if index >= 3 else None
+        starts_line = before is None or (isinstance(before, Text) and _LINE_END.search(before.value) is not None)
+        is_adjacent = _is_blank(between) and isinstance(between, Text) and len(_LINE_END.findall(between.value)) == 1
+        if not isinstance(comment, Comment) or not starts_line or not is_adjacent:
+            break
+        start = comment.span.start
+        index -= 2
+    return start
+
+
+def _is_blank(node: Node) -> bool:
+    return isinstance(node, Text) and not node.value.strip()
+
+
+def _contains(span: Span, other: Span) -> bool:
+    return span.start <= other.start and other.end <= span.end
+
+
+def set_attribute(element: Element, name: str, value: str) -> TextEdit:
+    """An edit that gives an attribute a value without special characters; a new attribute is the first one."""
+    attribute = element.get(name)
+    if attribute is not None and attribute.has_value:
+        return TextEdit(attribute.value_span, value)
+    if attribute is not None:
+        return TextEdit(attribute.span, f'{name}="{value}"')
+    at = element.name_span.end
+    return TextEdit(Span(at, at), f' {name}="{value}"')
+
+
+def without_attribute(text: str, attribute: Attribute) -> TextEdit:
+    """An edit that removes an attribute and the white space before it."""
+    start = attribute.span.start
+    while text[start - 1].isspace():
+        start -= 1
+    return TextEdit(Span(start, attribute.span.end), "")
 
 
 def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:

@@ -63,6 +63,7 @@ REQUESTS = (
     "as2fm/plainScxml",
     "as2fm/picture",
     "as2fm/pictureFile",
+    "as2fm/pictureEdit",
     "as2fm/migrate",
     "as2fm/counterexample",
 )

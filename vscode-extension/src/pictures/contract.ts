@@ -54,6 +54,17 @@ export const EDGE_KINDS = [
 
 export type EdgeKind = (typeof EDGE_KINDS)[number];
 
+/** The actions that change the text, in the order of the menu. */
+export const PICTURE_ACTIONS = [
+    "addState",
+    "addTransition",
+    "rename",
+    "setInitial",
+    "deleteTransition",
+    "delete",
+] as const;
+export type PictureAction = (typeof PICTURE_ACTIONS)[number];
+
 export interface Point {
     readonly x: number;
     readonly y: number;
@@ -89,6 +100,8 @@ export interface PictureNode {
     readonly parent: string;
     readonly initial: boolean;
     readonly place: Place | null;
+    /** The actions that the place allows. */
+    readonly actions: readonly PictureAction[];
 }
 
 export interface PictureEdge {
@@ -98,6 +111,7 @@ export interface PictureEdge {
     readonly labels: readonly string[];
     readonly probabilistic: boolean;
     readonly place: Place | null;
+    readonly actions: readonly PictureAction[];
 }
 
 export interface Picture {
@@ -117,6 +131,20 @@ export type Theme = (typeof THEMES)[number];
 
 /** A node or an edge by its index in the picture. */
 export type Part = { readonly node: number } | { readonly edge: number };
+
+/** A part as the commands of the context menu receive it. Transitions that share a line are several parts. */
+export interface MenuPart {
+    readonly label: string;
+    readonly place: Place;
+    readonly actions: readonly PictureAction[];
+}
+
+/** The data of the context menu, which VS Code reads from the elements of the page. Its keys are context keys. */
+export type MenuContext = {
+    readonly preventDefaultContextMenuItems: true;
+    readonly as2fmParts: readonly MenuPart[];
+    readonly as2fmGoTo: boolean;
+} & Readonly<Record<`as2fm_${PictureAction}`, boolean>>;
 
 /** The texts of the view, in the language of the user. */
 export interface Words {

@@ -68,7 +68,7 @@ class Wording:
         if part is ProtocolPart.EVENT:
             return handler.event.value if handler.event else ""
         subject = self._interface(handler.handle) or (handler.child.value if handler.child else "")
-        return _TRIGGERS.get(part, f"{{}} {part.value.replace('-', ' ')}").format(subject).strip()
+        return trigger_text(part, subject)
 
     def actions(self, body: Sequence[Statement]) -> tuple[str, ...]:
         """The texts for the statements that have an effect, one for each statement."""
@@ -109,6 +109,11 @@ class Wording:
 
     def _interface(self, handle: Name | None) -> str:
         return self._interfaces.get(handle.value, handle.value) if handle else ""
+
+
+def trigger_text(part: ProtocolPart, subject: str) -> str:
+    """The text for the reception of a part of an interface, a timer or a child, whose name is `subject`."""
+    return _TRIGGERS.get(part, f"{{}} {part.value.replace('-', ' ')}").format(subject).strip()
 
 
 def guard(handler: Handler) -> str:

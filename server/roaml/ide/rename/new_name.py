@@ -57,6 +57,15 @@ def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
     return ""
 
 
+def state_problem(name: str) -> str:
+    """Why a new state cannot have a name, as a clause; "" if it can."""
+    return "" if _is_word(name) else f"`{name}` cannot name a state"
+
+
+def _is_word(name: str) -> bool:
+    return _WORD.match(name) is not None and name not in STATUSES
+
+
 _OF_NODES = (SymbolKind.TREE_NODE, SymbolKind.MACHINE, SymbolKind.PLUGIN, SymbolKind.TREE)
 """Kinds of symbols that may occur in the paths of nodes in property files."""
 
@@ -139,7 +148,7 @@ def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
             if new in BEHAVIOR_TREE.elements:
                 return f"`{new}` is the name of a node of BehaviorTree.CPP"
         case _:
-            right = _WORD.match(new) and new not in STATUSES
+            right = _is_word(new)
     return "" if right else cannot
 
 

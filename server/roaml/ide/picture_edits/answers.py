@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an action of a picture returns: an edit, a question to the user, or a refusal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.ide.code_actions.action import WorkspaceEdit
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """An answer to choose: its text for the user, and the answer itself."""
+
+    label: str
+    answer: str
+
+
+@dataclass(frozen=True, slots=True)
+class UserQuestion:
+    """A question whose answer the action needs.
+
+    Attributes:
+        text: a noun phrase.
+        options: the answers to choose from; without any, the answer is a text.
+        proposal: the text that the user edits.
+    """
+
+    text: str
+    options: tuple[Option, ...] = ()
+    proposal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ActionRefusal:
+    """An action that is not possible. `reason` is a clause for the user."""
+
+    reason: str
+
+
+Answer: TypeAlias = WorkspaceEdit | UserQuestion | ActionRefusal

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of files that pictures show: what the element at a span is in the model of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roaml.model.machine import Chart, Declaration, Handler, Machine, State, Target
+from roaml.model.syntax import Name
+from roaml.model.tree import PortSetting, Tree, TreeNode, nodes
+from roaml.project.analysis import Analysis
+from roaml.text import Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChartPart:
+    """A machine, or one of its action threads."""
+
+    machine: Machine
+    chart: Chart
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StatePart:
+    machine: Machine
+    chart: Chart
+    state: State
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandlerPart:
+    """A transition, or one of the `<target>` elements of a transition if `target` is not `None`."""
+
+    handler: Handler
+    target: Target | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DeclarationPart:
+    declaration: Declaration
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreePart:
+    tree: Tree
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TreeNodePart:
+    """A node of a tree; `is_root` says whether it is the root of its tree."""
+
+    node: TreeNode
+    is_root: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PortPart:
+    setting: PortSetting
+
+
+Part: TypeAlias = ChartPart | StatePart | HandlerPart | DeclarationPart | TreePart | TreeNodePart | PortPart
+
+
+def parts_of(analysis: Analysis, path: str) -> Mapping[Span, Part]:
+    """The parts of a file, by the spans that pictures use as their places."""
+    machine, file = analysis.machine(path), analysis.tree(path)
+    if machine is not None:
+        return dict(_of_machine(machine))
+    return dict(_of_trees(file.trees)) if file is not None else {}
+
+
+def _of_machine(machine: Machine) -> Iterator[tuple[Span, Part]]:
+    for declaration in machine.declarations:
+        yield declaration.element.span, DeclarationPart(declaration)
+    elements = [machine.element, *(thread.element for thread in machine.threads)]
+    for element, chart in zip(elements, machine.charts, strict=True):
+        yield element.span, ChartPart(machine, chart)
+        for state in chart.states:
+            yield state.element.span, StatePart(machine, chart, state)
+            for handler in state.handlers:
+                yield handler.element.span, HandlerPart(handler)
+                for target in handler.targets:
+                    if target.element is not None:
+                        yield target.element.span, HandlerPart(handler, target)
+
+
+def _of_trees(trees: tuple[Tree, ...]) -> Iterator[tuple[Span, Part]]:
+    for tree in trees:
+        yield tree.element.span, TreePart(tree)
+        for node in nodes(tree):
+            yield node.element.span, TreeNodePart(node, node in tree.roots)
+            for setting in node.ports:
+                yield setting.attribute.span, PortPart(setting)
+
+
+def name_offset(part: Part) -> int | None:
+    """A position in the name that a picture shows for a part; `None` if it shows no name of the file."""
+    match part:
+        case ChartPart(machine, chart):
+            name = machine.name if chart is machine.chart else None
+        case StatePart():
+            name = part.state.id
+        case DeclarationPart(declaration):
+            name = declaration.interface if isinstance(declaration.interface, Name) else None
+        case TreePart(tree):
+            name = tree.id
+        case TreeNodePart(node):
+            name = node.name or node.plugin
+        case PortPart(setting):
+            # A reference to the blackboard begins with a brace.
+            return setting.attribute.value_span.start + 1 if setting.variable is not None else None
+        case HandlerPart():
+            return None
+    return name.span.start if name is not None else None
