@@ -24,7 +24,7 @@ from as2fm_lsp.cli.main import run
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 TUTORIAL, TREES = DOCS / "tutorial.md", DOCS / "nav2-tree.md"
-FILES = ("xml", "json", "toml")
+FILES = ("xml", "json", "toml", "text")
 
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"\*\*`([^`]+)`\*\*")
@@ -81,6 +81,7 @@ class Reader:
                 self.file.write_text(patched(self.file.read_text("utf-8"), block.content), "utf-8")
             case language if language in FILES:
                 assert block.before.endswith(f"\n**`{self.file}`**\n\n"), "the block does not say which file it is"
+                self.file.parent.mkdir(parents=True, exist_ok=True)
                 self.file.write_text(block.content, "utf-8")
             case _:
                 assert block.language == "sh", f"nothing is known of blocks of {block.language or 'no language'}"
@@ -111,7 +112,7 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
             reader.take(block)
         except AssertionError as error:
             raise AssertionError(f"{TUTORIAL.name}:{block.line}: {error}") from error
-    assert Path.cwd() == tmp_path / "patrol"
+    assert Path.cwd() == tmp_path / "stop_button"
 
 
 def test_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
