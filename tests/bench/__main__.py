@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, observers, requests, scan, storm, translate, trees, verify
+from bench import check, debug, growth, observers, requests, scan, sharing, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -17,6 +17,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **observers.BENCHMARKS,
     **requests.BENCHMARKS,
     **scan.BENCHMARKS,
+    **sharing.BENCHMARKS,
     **translate.BENCHMARKS,
     **storm.BENCHMARKS,
     **trees.BENCHMARKS,

@@ -30,9 +30,11 @@ SYSTEMS = (
     "different_rate_senders/main.xml",
     "array_of_data_structs/main.xml",
     "array_model_multi_dim/main.xml",
+    "data_structs/main_xml_def.xml",
     "string_comparison/main.xml",
     "array_of_strings/main.xml",
     "ros_add_int_srv_example/main.xml",
+    "set_float_srv_example/main.xml",
     "blackboard_test/main.xml",
     "bt_test_models/main_test_sequence.xml",
     "bt_test_models/main_test_fallback.xml",
@@ -42,7 +44,8 @@ SYSTEMS = (
     "bt_test_models/main_test_parallel_failure.xml",
     "bt_test_models/main_test_reactive_sequence.xml",
 )
-"""The conformance systems with at most 2,000,000 states whose translation Storm reads: it reads no reals."""
+"""The conformance systems with at most 2,000,000 states. `array_model_basic` is left out: an operation in one of its
+states is undefined, so neither Storm nor the search answers. All other systems have more states."""
 
 
 def observers(max_states: int = MAX_STATES) -> list[Row]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
@@ -46,23 +46,31 @@ class ListeningPort:
     values: tuple[tuple[str, Scalar], ...]
 
 
-def with_properties(path: Path, interfaces: Iterable[str], count: int) -> api.LoadedSystem:
-    """A system with generated properties instead of its own; its files do not change."""
+def with_properties(
+    path: Path, interfaces: Iterable[str], count: int, chosen: Container[str] | None = None
+) -> api.LoadedSystem:
+    """A system with generated properties beside its own; its files do not change.
+
+    Args:
+        count, chosen: see `property_file`.
+    """
     plain = api.load(str(path), interfaces)
     analysis = plain.analysis
     added = str(path.with_name(FILE_NAME))
     edits = add_input(analysis, plain.path, SystemSection.PROPERTIES, "xml", added)
     source = analysis.source(plain.path)
     assert source is not None
-    texts = {plain.path: apply_edits(source.text, edits), added: property_file(plain, path.parent.name, count)}
+    texts = {plain.path: apply_edits(source.text, edits), added: property_file(plain, path.parent.name, count, chosen)}
     return api.load(str(path), interfaces, texts=texts)
 
 
-def property_file(source: api.LoadedSystem, label: str, count: int) -> str:
-    """
+def property_file(source: api.LoadedSystem, label: str, count: int, chosen: Container[str] | None = None) -> str:
+    """The text of a file with properties `g0`, `g1`, …
+
     Args:
         label: determines the choice.
         count: the number of properties.
+        chosen: the names of the properties that the file contains; `None` for all.
     """
     system = source.analysis.system(source.path)
     assert system is not None
@@ -70,7 +78,7 @@ def property_file(source: api.LoadedSystem, label: str, count: int) -> str:
     ports = [*_ports(source.analysis, system)]
     random_.shuffle(ports)
     step = clock_step(system)
-    guarantees = []
+    guarantees: dict[str, str] = {}
     patterns = [pattern for pattern in Pattern if pattern is not Pattern.RECURRENCE or step is not None]
     scopes = list(ScopeKind)
     random_.shuffle(scopes)
@@ -79,16 +87,16 @@ def property_file(source: api.LoadedSystem, label: str, count: int) -> str:
         if i == count - 1:
             formula = random_.choice(FORMULAS if step is None else TIMED_FORMULAS)
             text = formula.format(*conditions[:2], random_.randint(1, 3))
-            guarantees.append(f'<property id="g{i}" logic="pmtl" expr={quoteattr(text)} />')
+            guarantees[f"g{i}"] = f'<property id="g{i}" logic="pmtl" expr={quoteattr(text)} />'
             continue
         pattern = patterns[i % len(patterns)]
         if pattern is Pattern.UNIVERSALITY:
             conditions[0] = f"!({conditions[0]})"  # events are not true at the start
-        guarantees.append(_property(random_, f"g{i}", pattern, scopes[i % len(scopes)], conditions, step))
+        guarantees[f"g{i}"] = _property(random_, f"g{i}", pattern, scopes[i % len(scopes)], conditions, step)
     texts = "\n".join(port.text for port in ports)
     return (
         f"<properties>\n<ports>\n{texts}\n</ports>\n<guarantees>\n"
-        + "\n".join(guarantees)
+        + "\n".join(text for name, text in guarantees.items() if chosen is None or name in chosen)
         + ("\n</guarantees>\n</properties>\n")
     )
 

@@ -7,6 +7,7 @@ import json
 from typing import NamedTuple
 
 import stormpy
+from fixed_point import in_fixed_point
 
 from roaml.jani.model import Model
 from roaml.jani.writer import write
@@ -29,7 +30,11 @@ def read(model: Model) -> stormpy.JaniModel:
 
 
 def exact(model: Model, name: str) -> Exact:
-    """The probability of one property, computed by Storm's sparse engine."""
+    """The probability of one property, computed by Storm's sparse engine.
+
+    Raises:
+        NotExactError: the model has real variables that integers cannot represent (`fixed_point`).
+    """
     (least, states), (greatest, _) = (_checked(model, name, operator) for operator in ("Pmin", "Pmax"))
     return Exact(least, greatest, states)
 
@@ -40,7 +45,7 @@ def _checked(model: Model, name: str, operator: str) -> tuple[float, int]:
     (property_,) = (p for p in document["properties"] if p["name"] == name)
     property_["expression"]["values"]["op"] = operator
     document["properties"] = [property_]
-    parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(document))
+    parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(in_fixed_point(document)))
     built = stormpy.build_model(parsed, properties)
     result = stormpy.model_checking(built, properties[0], only_initial_states=True)
     return result.get_value(built.initial_states[0]), built.nr_states

@@ -10,7 +10,12 @@ from three_answers import answers
 
 import conformance
 
-SYSTEMS = ("different_rate_senders/main.xml", "ros_add_int_srv_example/main.xml", "bt_test_models/main_test_repeat.xml")
+SYSTEMS = (
+    "different_rate_senders/main.xml",
+    "ros_add_int_srv_example/main.xml",
+    "bt_test_models/main_test_repeat.xml",
+    "set_float_srv_example/main.xml",
+)
 PROPERTIES = 8
 
 
