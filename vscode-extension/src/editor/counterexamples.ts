@@ -72,7 +72,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         await this.showStep(last);
     }
 
-    /** Go some steps on or back, from the selected one. */
+    /** Select the step `by` steps after the selected step; before it if `by` is negative. */
     private async move(by: number): Promise<void> {
         const steps = this.shown?.steps ?? [];
         const selected = this.view.selection[0];

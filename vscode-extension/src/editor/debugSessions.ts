@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The runs that are debugged: events when one stops or ends, for the views that show where it is. */
+/** The runs that are debugged: events when one stops or ends, for the views that show its state. */
 
 import * as vscode from "vscode";
 import { DEBUG_TYPE } from "./debugging";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Lets the user choose what is expected of a property, and writes it beside the property or into the configuration. */
+/** Lets the user choose the expectation of a property, and writes it beside the property or into the configuration. */
 
 import * as vscode from "vscode";
 import { expectations, setExpectation } from "../protocol";

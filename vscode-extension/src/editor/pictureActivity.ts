@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** While a run is stopped, the open pictures show where it is. A command shows all of them side by side. */
+/** While a run is stopped, the open pictures show its activity. A command shows all of them side by side. */
 
 import * as vscode from "vscode";
 import type { Activity } from "../pictures/contract";

@@ -64,7 +64,7 @@ export class PicturePanels implements vscode.Disposable {
             await panel.highlight(highlights.find((highlight) => highlight.kind === kind));
     }
 
-    /** Show what a run does in all open pictures and in those that are opened later, instead of what was shown. */
+    /** Show the activity of a run in all open pictures and in those that are opened later. It replaces earlier activity. */
     showActivity(nodes: readonly ActiveNode[], edges: Activity["edges"]): void {
         this.activeNodes = nodes;
         this.activeEdges = edges;
@@ -89,7 +89,7 @@ export class PicturePanels implements vscode.Disposable {
     }
 }
 
-/** A node of a picture that a run lights; `path` is the file of the picture. */
+/** A node of a picture that is active in a run; `path` is the file of the picture. */
 export interface ActiveNode {
     readonly kind: PictureKind;
     readonly path: string;

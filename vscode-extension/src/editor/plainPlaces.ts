@@ -14,7 +14,7 @@ export function lineOf(lines: readonly PlainLine[], uri: string, position: Posit
     return around.reduce((best, line) => (height(line) < height(best) ? line : best)).line;
 }
 
-/** The place in the source from which a line of the plain form comes. A line without one has that of a line above. */
+/** The place in the source of a line of the plain form. A line without a place has that of the nearest line above it. */
 export function placeOf(lines: readonly PlainLine[], line: number): PlainLine | undefined {
     return lines.filter((place) => place.line <= line).at(-1);
 }

@@ -35,7 +35,7 @@ export class PropertyTests implements vscode.Disposable {
     private readonly controller: vscode.TestController;
     private readonly subscriptions: { dispose(): unknown }[];
     private readonly askedBy = new WeakMap<vscode.TestItem, Asked>();
-    /** What is expected of the results that are shown, by the id of the test. */
+    /** The expectations of the shown results, by the id of the test. */
     private readonly judged = new Map<string, string>();
     private readonly running = new Set<string>();
     private readonly stale = new Set<string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The view beside a counterexample with the whole state of the system at its step. What has changed is marked. */
+/** The view beside a counterexample with the whole state of the system at its step. Changed values are marked. */
 
 import * as vscode from "vscode";
 import type { StateRow } from "../protocol";

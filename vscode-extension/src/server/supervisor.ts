@@ -4,7 +4,7 @@
  *
  * - There is one state at a time, and each change is reported; the user sees nothing else.
  * - A server that crashes is restarted with a message; one that crashes repeatedly is not.
- * - A new request makes older ones irrelevant: their results change nothing any more.
+ * - A new request makes older ones irrelevant: their results are ignored.
  */
 
 import { isDeepStrictEqual } from "node:util";

@@ -16,7 +16,7 @@ export type Outcome =
           readonly unanimous: number;
           /** Why the number is doubtful, or is not the value that the property asks for. */
           readonly warning?: string;
-          /** Which automaton waits for which, if the system gets stuck. */
+          /** The automata that wait for one another, if the system gets stuck. */
           readonly stuck?: string;
       }
     | {
