@@ -104,7 +104,7 @@ def test_tree(tmp_path: Path) -> None:
         assert shown(picture) == [
             "control | Sequence | initial",
             "action | Walk | goal = {g} | out = {g} | topic =  /a/b ",
-            "subtree | Sub",
+            "subtree | Sub | t = /c | g = {g} | _autoremap",
             "action | w : Walk | goal = {g} | out = {Sub__own} | topic = /c",
             "variable | g",
             "variable | Sub__own",
@@ -145,6 +145,21 @@ def test_tree_alone(tmp_path: Path) -> None:
         "Loop -> Wait | child",
         "level -> Full | reads | level",
         "level -> Fill | reads | to",
+    ]
+
+
+def test_conditions_and_what_subtrees_are_given(tmp_path: Path) -> None:
+    tree = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence _post="n += 1">
+        <SubTree ID="S" name="one" box="{=}" at="{place}" force="3" _skipIf="n &gt; 1"/><SubTree ID="S"/>
+        </Sequence></BehaviorTree><BehaviorTree ID="S"><Grasp _while="true" at="{at}"/></BehaviorTree></root>"""
+    picture = tree_picture(load(tmp_path, {"tree.xml": tree}), str(tmp_path / "tree.xml"))
+    assert picture is not None
+    assert [" | ".join((node.label, *node.details)) for node in picture.nodes if node.id[0] != "{"] == [
+        "Sequence | _post = n += 1",
+        "one : S | box = {box} | at = {place} | force = 3 | _skipIf = n > 1",
+        "Grasp | _while = true | at = {place}",
+        "S",
+        "Grasp | _while = true | at = {S__at}",
     ]
 
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
+from roaml.forest.entries import entry_of, is_autoremapped
+from roaml.forest.ports import ports_of as node_ports
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
-from roaml.model.expand import Instance, Reference, TreeUse, expand, node_at, tree_called
+from roaml.model.expand import Frame, Instance, Reference, TreeUse, expand, node_at, tree_called
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
 from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
@@ -19,6 +21,8 @@ from roaml.roles import Direction
 from roaml.text import Location
 from roaml.views.tree import ports_of, title_of
 
+AUTOREMAPPED = "_autoremap"
+"""The line of a subtree whose other names are those of the surrounding tree."""
 _KINDS: Mapping[str, DiagramNodeKind] = {
     "control": DiagramNodeKind.CONTROL,
     "decorator": DiagramNodeKind.DECORATOR,
@@ -92,6 +96,7 @@ class _Tree:
         return entered[::-1]
 
     def subtree(self, use: int) -> DiagramNode:
+        """The card of a subtree: the entries and constants that it is given, and its conditions and scripts."""
         name, tree = self.uses[use].name, self.uses[use].tree
         places = (
             Location(path, written.element.span)
@@ -99,7 +104,21 @@ class _Tree:
             if (written := tree_called(file, tree)) is not None
         )
         label = name if name == tree else f"{name} : {tree}"
-        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, place=next(places, None))
+        scripts = (f"{attribute} = {text}" for attribute, text in self.uses[use].scripts)
+        details = (*self.given(self.uses[use].frame), *scripts)
+        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, details, place=next(places, None))
+
+    def given(self, frame: Frame) -> Iterator[str]:
+        """What the `<SubTree>` of a frame gives to the subtree, one line for each name."""
+        file = self.files.get(frame.use.path) if frame.use is not None else None
+        node = node_at(file, frame.use) if file is not None and frame.use is not None else None
+        if node is None:
+            return
+        for setting in node_ports(node):
+            entry = entry_of(setting)
+            yield f"{setting.attribute.name} = {setting.value.value if entry is None else f'{{{entry}}}'}"
+        if is_autoremapped(node):
+            yield AUTOREMAPPED
 
     def edges(self) -> Iterator[DiagramEdge]:
         for instance in self.instances:

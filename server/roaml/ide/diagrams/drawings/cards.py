@@ -103,6 +103,8 @@ class Card:
             drawn = _row(row, x, y)
             if row.edges:
                 items.append(Group("edge", row.tone, drawn, row.kind, edges=row.edges, hint=row.hint))
+            elif row.has_bar or row.hint:
+                items.append(Group("row", row.tone, drawn, row.kind, hint=row.hint))
             else:
                 items += drawn
             y += row.size.height

@@ -2,7 +2,8 @@
 """The drawing of a behavior tree.
 
 A node is a card with the symbol and the color of its kind, its name, its plugin, its number and its ports. Ports that
-are bound to the blackboard are rows of the card; the entries of the blackboard are listed below the tree.
+are bound to the blackboard are rows of the card, and so are its conditions and scripts; the entries of the blackboard
+are listed below the tree.
 """
 
 from __future__ import annotations
@@ -97,17 +98,22 @@ def _card(picture: Picture, node: DiagramNode) -> Card:
 
 
 def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
-    """The rows of the ports. The row of a port that is bound to the blackboard represents an edge."""
+    """The rows of the ports, conditions and scripts. The row of a port that is bound to the blackboard represents an
+    edge."""
     bound: dict[str, list[int]] = {}
     for number, edge in enumerate(picture.edges):
         if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
             bound.setdefault(edge.labels[0], []).append(number)
     for text in node.details:
-        edges = tuple(bound.get(text.partition(" = ")[0], ()))
-        lines = paragraph(text, PORT_WIDTH, "text" if edges else "muted", limit=MAX_PORT_LINES)
+        name, _, value = text.partition(" = ")
+        edges = tuple(bound.get(name, ()))
+        is_script = name.startswith("_")  # names of ports begin with a letter
+        is_bound = bool(edges) or (node.kind is DiagramNodeKind.SUBTREE and value.startswith("{"))
+        lines = paragraph(text, PORT_WIDTH, "text" if is_bound or is_script else "muted", limit=MAX_PORT_LINES)
         hint = text if is_shortened(lines, text) else ""
         kind = " ".join(picture.edges[number].kind.value for number in edges)
-        yield Row(lines, Tone.BLACKBOARD, kind, edges, has_bar=bool(edges), hint=hint)
+        tone = Tone.CONDITION if is_script else Tone.BLACKBOARD
+        yield Row(lines, tone, kind, edges, has_bar=is_bound or is_script, hint=hint)
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
