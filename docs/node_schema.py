@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from xml.sax.saxutils import escape, quoteattr
 
 from roaml.libraries import BEHAVIORTREE_CPP, Absent, Library, Node, Port, library
+from roaml.record import replace
 from roaml.roles import UNBOUNDED, Direction
 
 BEGIN = "  <!-- Nodes: written by docs/build.py from server/roaml/libraries/behaviortree_cpp.xml -->\n"

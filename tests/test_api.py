@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import ast
 import builtins
-import dataclasses
 import inspect
 import subprocess
 import sys
@@ -67,12 +66,18 @@ def test_signatures_name_what_can_be_imported(name: str) -> None:
 
 @pytest.mark.parametrize("kind", ANSWERS, ids=lambda kind: kind.__name__)
 def test_answers_name_what_can_be_imported(kind: type) -> None:
-    names = {name for field in dataclasses.fields(kind) for name in names_of(str(field.type))}
+    names = {name for annotation in annotations(kind) for name in names_of(annotation)}
     for name, member in vars(kind).items():
         function = member.fget if isinstance(member, property) else member
         if not name.startswith("_") and inspect.isfunction(function):
             names |= named_in(function)
     assert names <= set(api.__all__)
+
+
+def annotations(kind: type) -> list[str]:
+    """The annotations of all fields of a class of records."""
+    hints = {name: str(hint) for base in kind.__mro__ for name, hint in vars(base).get("__annotations__", {}).items()}
+    return [hints[field] for field in kind.__struct_fields__]  # type: ignore[attr-defined]
 
 
 def named_in(function: object) -> set[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from as2fm_lsp.client import Client
@@ -16,6 +15,7 @@ from as2fm_lsp.requests import Requests
 from as2fm_lsp.session import Session
 from as2fm_lsp.trust import Trust
 from as2fm_lsp.verification.known_results import KnownResults
+from roaml.record import Record
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
 Command = TypeVar("Command", bound=Callable[..., Awaitable[Any]])
@@ -29,8 +29,7 @@ class Dispatcher(Protocol):
     def on_command(self, name: str, handler: Callable[..., Awaitable[Any]]) -> None: ...
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(Record, frozen=True):
     """One session with a client.
 
     Attributes:

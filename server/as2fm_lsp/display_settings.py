@@ -9,15 +9,14 @@ Instead of an object, each section may also be `true` or `false`. Missing and in
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.ide.inlay_hints import HintKind
+from roaml.record import Record
 
 OFF_BY_DEFAULT = frozenset([HintKind.PORTS])
 
 
-@dataclass(frozen=True, slots=True)
-class DisplaySettings:
+class DisplaySettings(Record, frozen=True):
     """`references`: whether lenses show numbers of uses; `results`: whether hints show results of properties."""
 
     hints: frozenset[HintKind]

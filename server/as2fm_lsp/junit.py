@@ -6,8 +6,8 @@ from __future__ import annotations
 import enum
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.xml_syntax.escapes import replace_forbidden
 
 
@@ -20,8 +20,7 @@ class CaseOutcome(enum.Enum):
     SKIPPED = "skipped"
 
 
-@dataclass(frozen=True, slots=True)
-class Case:
+class Case(Record, frozen=True):
     """A test.
 
     Attributes:

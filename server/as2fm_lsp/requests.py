@@ -14,17 +14,16 @@ import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from typing import Any
 
 from pygls.exceptions import JsonRpcContentModified, JsonRpcRequestCancelled
 
 from as2fm_lsp.inbox import Inbox
 from roaml.project.memo import Interrupted
+from roaml.record import Record
 
 
-@dataclass
-class _Request:
+class _Request(Record):
     """A request that is being handled.
 
     Attributes:

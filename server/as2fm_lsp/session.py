@@ -13,7 +13,6 @@ import logging
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from lsprotocol import types
@@ -25,6 +24,7 @@ from roaml.project.memo import go_on
 from roaml.project.paths import is_below, is_on_disk
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, settings_from
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.record import replace
 
 log = logging.getLogger(__name__)
 

@@ -22,7 +22,6 @@ import stat
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
 from io import BufferedReader
 from typing import Any, BinaryIO
 
@@ -30,6 +29,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
 
 from as2fm_lsp.json_rpc import error_response
+from roaml.record import Record
 
 log = logging.getLogger(__name__)
 
@@ -55,8 +55,7 @@ class InUseError(OSError):
     """Another server uses the socket file, or the file is not a socket. The message states what to do."""
 
 
-@dataclass(frozen=True)
-class Connection:
+class Connection(Record, frozen=True):
     """The connection of an accepted client.
 
     Attributes:

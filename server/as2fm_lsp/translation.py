@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
+from roaml.record import replace
 from roaml.smc.forms import BOUNDS, bounds_in
 
 

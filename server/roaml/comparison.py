@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+
+from roaml.record import Record
 
 _SPELLINGS = {">=": ">=", "≥": ">=", "<=": "<=", "≤": "<=", ">": ">", "<": "<", "==": "==", "=": "=="}
 _FORM = re.compile(r"\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Record, frozen=True):
     """A comparison with `number`. `relation` is one of `>=`, `<=`, `>`, `<` and `==`."""
 
     relation: str

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.facts import Facts
+from roaml.record import PartlyCompared, Record
 from roaml.roles import SymbolKind
 from roaml.text import Edit, Location, Span, TextEdit, computed
 
@@ -51,16 +51,14 @@ class Symbol(NamedTuple):
     scope: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Related:
+class Related(Record, frozen=True):
     """A further place that explains a finding: a span in the same file, or a symbol in any file."""
 
     place: Span | Symbol
     message: str
 
 
-@dataclass(frozen=True, slots=True)
-class Fix:
+class Fix(PartlyCompared, frozen=True):
     """A change of the finding's own file that removes the finding. New lines are written with `\\n`.
 
     A check creates many fixes, of which few are applied, so expensive edits are computed only when they are read.
@@ -74,8 +72,10 @@ class Fix:
             a review.
     """
 
+    UNCOMPARED = frozenset({"plan"})
+
     title: str
-    plan: tuple[Edit, ...] | Callable[[], tuple[TextEdit, ...]] = field(compare=False)
+    plan: tuple[Edit, ...] | Callable[[], tuple[TextEdit, ...]]
     preferred: bool = True
     safe: bool = False
 
@@ -84,8 +84,7 @@ class Fix:
         return computed(self.plan) if isinstance(self.plan, tuple) else self.plan()
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Record, frozen=True):
     """A problem at a span. Without `severity`, the default severity of the rule applies.
 
     `facts` is the data for fixes that change other files. The message is for people only.
@@ -101,16 +100,14 @@ class Finding:
     facts: Facts | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class RelatedPlace:
+class RelatedPlace(Record, frozen=True):
     """A `Related` whose place has been resolved to a location in a file."""
 
     location: Location
     message: str
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(Record, frozen=True):
     """A published finding: with its file, its final severity and all places resolved."""
 
     path: str

@@ -2,7 +2,7 @@
 """The facts of a finding: the data that describes it.
 
 Messages are for people. A fix that needs more than the place of a finding reads the facts, never the message. A rule
-that offers this kind of fix defines its facts as a frozen dataclass, which its `Rule` names. The fields are strings,
+that offers this kind of fix defines its facts as a frozen record, which its `Rule` names. The fields are strings,
 integers, booleans, enums, tuples of one of these, or optional values of one of these.
 
 Facts are sent through LSP as JSON. A client may send back any JSON: `facts_from_json` validates it.
@@ -13,16 +13,15 @@ from __future__ import annotations
 import enum
 import types
 import typing
-from dataclasses import fields
 from typing import Any, TypeVar
+
+from roaml.record import Record
 
 T = TypeVar("T", bound="Facts")
 
 
-class Facts:
+class Facts(Record, frozen=True):
     """The base class of the facts of all rules."""
-
-    __slots__ = ()
 
 
 def facts_to_json(facts: Facts) -> dict[str, Any]:
@@ -46,9 +45,9 @@ class _MismatchError(Exception):
 
 
 def _hints(type_: Any) -> dict[str, Any]:
-    """The types of the fields of a dataclass, by their names."""
+    """The types of the fields of a record, by their names."""
     hints = typing.get_type_hints(type_)
-    return {field.name: hints[field.name] for field in fields(type_)}
+    return {name: hints[name] for name in type_.__struct_fields__}
 
 
 def _to_json(value: object) -> object:

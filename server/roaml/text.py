@@ -18,10 +18,11 @@ import codecs
 import hashlib
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
+
+from roaml.record import PartlyCompared, Record
 
 
 class Span(NamedTuple):
@@ -90,8 +91,7 @@ def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:
     return "".join(parts)
 
 
-@dataclass(frozen=True, slots=True)
-class Decoded:
+class Decoded(Record, frozen=True):
     """A piece of source text with its escapes resolved, and the mapping back to the source.
 
     `text` is the resolved text. Character `i` of it begins at source offset `sources[i]`; without escapes `sources` is
@@ -181,8 +181,7 @@ def _ends(text: str) -> Iterable[int]:
     return accumulate(len(line) + 1 for line in lines)
 
 
-@dataclass(frozen=True)
-class SourceFile:
+class SourceFile(PartlyCompared, frozen=True, dict=True):
     """The text of one file at one moment. Two files with the same `digest` have the same text.
 
     `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; invalid
@@ -190,11 +189,13 @@ class SourceFile:
     `ignored_encoding` is the place of the encoding in the XML declaration if the file was read with another one.
     """
 
+    UNCOMPARED = frozenset({"encoding", "mark"})
+
     path: str
     text: str
     undecodable: Span | None = None
-    encoding: str = field(default="utf-8", compare=False)
-    mark: bytes = field(default=b"", compare=False)
+    encoding: str = "utf-8"
+    mark: bytes = b""
     ignored_encoding: Span | None = None
 
     @cached_property

@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from roaml.record import Record
 from roaml.text import LineIndex, Position, Span
 
 if sys.version_info >= (3, 11):
@@ -24,8 +24,7 @@ Path: TypeAlias = "tuple[str | int, ...]"
 """Keys of tables and indices of arrays, from the outermost to the innermost."""
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
+class Places(Record, frozen=True):
     """The positions of the keys and values of a document. For a table with a header, `values` has the span of the
     header."""
 

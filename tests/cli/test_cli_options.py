@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
 import pytest
@@ -13,6 +12,7 @@ import clock
 import roaml.project.checking
 from as2fm_lsp.cli.main import COMMANDS
 from roaml import __version__, api
+from roaml.record import replace
 from roaml.rules import RULES
 
 
@@ -196,7 +196,7 @@ def test_a_crashing_rule_is_an_internal_error_whatever_is_shown(
 ) -> None:
     """The other rules continue, and no option hides the internal error."""
     clock.write(tmp_path, clock=clock.WRONG_CLOCK)
-    rules = [dataclasses.replace(r, machine=crash) if r.code == "undefined-state" else r for r in RULES]
+    rules = [replace(r, machine=crash) if r.code == "undefined-state" else r for r in RULES]
     monkeypatch.setattr(roaml.project.checking, "RULES", rules)
     done = check("clock.ascxml")
     assert done.status == 3

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import fields
 
 import pytest
 from expr_cases import tree_of
@@ -232,7 +231,7 @@ def test_several_problems(text: str, expected: list[str]) -> None:
 
 
 def description(problem: Problem) -> str:
-    values = {field.name: getattr(problem, field.name) for field in fields(problem) if field.name != "span"}
+    values = {name: getattr(problem, name) for name in problem.__struct_fields__ if name != "span"}
     shown = (f"{k}={v!r}" if isinstance(v, (str, bool, int)) else f"{k}={v}" for k, v in values.items())
     return f"{type(problem).__name__}({' '.join(shown)})"
 

@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from roaml.figures.svg import svg_file
 from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, picture_of
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings
+from roaml.record import replace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GOLDEN = Path(__file__).parents[2] / "docs/pictures"

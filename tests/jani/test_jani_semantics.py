@@ -28,7 +28,7 @@ from roaml.jani.expressions import (
 from roaml.jani.infer import TypeScope
 from roaml.jani.model import Function, Parameter
 from roaml.jani.operators import BinaryOperator, UnaryOperator
-from roaml.jani.semantics import EvaluationError, Record, Some, Value, evaluate
+from roaml.jani.semantics import DatatypeInstance, EvaluationError, Some, Value, evaluate
 from roaml.jani.typecheck import expression_type
 from roaml.jani.types import (
     BOOL,
@@ -98,7 +98,7 @@ VALUES: list[tuple[str, Value]] = [
     ),
     (
         "{'op': 'dv', 'type': 'point', 'values': [{'member': 'x', 'value': 1}]}",
-        Record("point", {"x": 1}),
+        DatatypeInstance("point", {"x": 1}),
     ),
     (
         "{'op': 'da', 'member': 'x', 'exp': {'op': 'dv', 'type': 'point', 'values': [{'member': 'x', 'value': 1}]}}",
@@ -284,7 +284,7 @@ def is_of(value: Value, type_: Type) -> bool:
         case OptionType(content):
             return value is None or (isinstance(value, Some) and is_of(value.content, content))
         case DatatypeType(name):
-            return isinstance(value, Record) and value.datatype == name
+            return isinstance(value, DatatypeInstance) and value.datatype == name
         case UnknownType():
             return True
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -45,6 +44,7 @@ from roaml.jani.types import BOOL, INT, ArrayType, BoundedType
 from roaml.jani.write_formulas import FormulaWriter
 from roaml.jani.writer import write, write_properties
 from roaml.json_syntax import parse
+from roaml.record import replace
 
 
 def written(model: Model) -> str:

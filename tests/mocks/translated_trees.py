@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from random_trees import WORLD_CONTROLS, WORLD_DECORATORS
@@ -16,6 +16,7 @@ from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.mocks.mock import Mock
 from roaml.mocks.network import MockedTree, MockOptions, mocked
 from roaml.model.tree import build_tree_file
+from roaml.record import replace
 from roaml.scxml.names import sent_by
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording

@@ -6,7 +6,6 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 
 from random_trees import ENTRIES, Drawn, as_xml, is_program_leaf
@@ -17,6 +16,7 @@ from roaml.jani.model import Model
 from roaml.jani.typecheck import check_model
 from roaml.mocks.mock import Mock
 from roaml.mocks.plugin import mock_plugin
+from roaml.record import replace
 from roaml.scxml.names import sent_by
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from both_kernels import plain_kernel
 from explorer import Explorer
+from roaml.record import replace
 from roaml.smc import kernel
 from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described

@@ -10,13 +10,13 @@ from __future__ import annotations
 import itertools
 import random
 import re
-from dataclasses import replace
 
 import explore
 import plain
 from bt_model import Status, Step
 
 from roaml.jani.model import Model
+from roaml.record import replace
 from roaml.scxml.model import Network
 
 _EVENT = re.compile(r"bt_(\d+)_(tick|response|halt|halt_response)")

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from translating import lowered
 
 from roaml import api
 from roaml.jani.writer import write
+from roaml.record import replace
 from roaml.scxml.events import EventRole, ScxmlEvent
 from roaml.scxml.model import Body, If, Network, Send, bodies, statements
 from roaml.scxml.names import automaton_role, is_synchronising, role_of

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 
 import pytest
@@ -17,6 +16,7 @@ from roaml.model.expand import MAX_NODES, MAX_SUBTREES
 from roaml.model.size import Limits, total
 from roaml.project.settings import Settings
 from roaml.project.translation import size_of_translation
+from roaml.record import Record
 
 BY_NAME = {dimension.name: dimension for dimension in DIMENSIONS}
 MAIN = os.path.join(NOWHERE, "main.xml")
@@ -67,9 +67,9 @@ def parts(model: JaniModel) -> int:
         part = stack.pop()
         if isinstance(part, tuple):
             stack += part
-        elif dataclasses.is_dataclass(part):
+        elif isinstance(part, Record):
             count += 1
-            stack += (getattr(part, field.name) for field in dataclasses.fields(part) if field.name != "origin")
+            stack += (getattr(part, name) for name in part.__struct_fields__ if name != "origin")
     return count
 
 

@@ -9,7 +9,6 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
@@ -23,6 +22,7 @@ from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import SEVERITIES, ament_prefixes
+from roaml.record import replace
 from roaml.rules import BY_CODE
 from roaml.rules.files import internal_error
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
-from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
@@ -22,6 +21,7 @@ from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
+from roaml.record import replace
 from roaml.suggest import close_names, did_you_mean, listing
 
 STANDARD_OUTPUT = "-"

@@ -7,7 +7,6 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.formats import CheckReport
@@ -22,6 +21,7 @@ from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings, ament_prefixes
+from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.text import SourceFile
 from roaml.verification.target import VerificationTarget

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 from types import TracebackType
 
 from as2fm_lsp.cli.status_line import StatusLine
+from roaml.record import replace
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search
 from roaml.smc.run import Options, Tally, bounds_of, trace_count

@@ -8,7 +8,6 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
@@ -26,6 +25,7 @@ from roaml.jani.writer import write as jani_text
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
+from roaml.record import replace
 from roaml.scxml.lowered_properties import FILE_NAME, NOBODY_TEXT, lowered_properties
 from roaml.scxml.model import Network
 from roaml.scxml.writer import NOBODY

@@ -10,7 +10,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
@@ -45,6 +44,7 @@ from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
+from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from roaml import api
@@ -18,6 +17,7 @@ from roaml.language.grammar import XML_GRAMMARS
 from roaml.model.parameters import Overrides, duration
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
+from roaml.record import Record, replace
 from roaml.simulation import RunError, SavedSession
 from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceVerdict
@@ -27,8 +27,7 @@ MAX_SAVED = 1 << 26
 """The maximum size of a saved session in bytes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Launch:
+class Launch(Record, frozen=True):
     """The arguments of `launch`.
 
     Attributes:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import urllib.parse
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -18,6 +17,7 @@ from roaml.debugging.debugger import Debugger, Stop, StopReason
 from roaml.debugging.frames import Frame
 from roaml.disk import is_valid_path
 from roaml.jani.node import Origin
+from roaml.record import Record
 
 Body = Mapping[str, Any] | None
 Handler = Callable[[Arguments], Body]
@@ -42,8 +42,7 @@ class MessageWriter:
         return isinstance(error, (BrokenPipeError, ConnectionError)) or self._output.closed
 
 
-@dataclass(frozen=True, slots=True)
-class ClientFormat:
+class ClientFormat(Record, frozen=True):
     """How the client counts lines and columns and writes paths.
 
     Attributes:

@@ -5,16 +5,15 @@ the run is stopped."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.scopes import ScopeEntry
 from roaml.debugging.values import SEPARATOR, Value, shown, type_of
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class Shown:
+class Shown(Record, frozen=True):
     """A variable with its value at the previous stop, which is `None` if it had no value there."""
 
     entry: ScopeEntry

@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.convert import Converter
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
+from roaml.record import Record
 from roaml.text import SourceFile, Span
 
 
-@dataclass(frozen=True)
-class RequestedDocument:
+class RequestedDocument(Record, frozen=True):
     """A file, with the state of the workspace at the time of the request."""
 
     path: str

@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -27,6 +26,7 @@ from roaml.diagnostics import Diagnostic
 from roaml.ide.verifiable import Texts, expected_beside, fingerprint
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
+from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty
 from roaml.smc.pool import WorkersLostError

@@ -8,10 +8,10 @@ import os
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TypeVar
 
 from roaml.project.memo import Interrupted
+from roaml.record import replace
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.pool import Pool
 from roaml.smc.run import Tally

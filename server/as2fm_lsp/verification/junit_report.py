@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from as2fm_lsp import junit
@@ -12,6 +11,7 @@ from as2fm_lsp.junit import Case, CaseOutcome
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.report import one_as_text, warning
 from as2fm_lsp.verification.stuck_report import NOT_STUCK
+from roaml.record import replace
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.results import Result
 from roaml.verification.stuck import StuckLevel, StuckResult

@@ -9,21 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
 
 from as2fm_lsp.verification.settings import verification_settings
 from roaml.comparison import Comparison
 from roaml.ide.verifiable import Texts, expected_beside, fingerprint
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
+from roaml.record import Record, field, replace
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import with_expectations
 
 
-@dataclass(frozen=True, slots=True)
-class KnownResult:
+class KnownResult(Record, frozen=True):
     """A result, with the model and the texts for which it was computed. `options` are the options of the call, as the
     client sent them."""
 
@@ -33,8 +32,7 @@ class KnownResult:
     options: object = None
 
 
-@dataclass(frozen=True, slots=True)
-class ExpectedNow:
+class ExpectedNow(Record, frozen=True):
     """The expected values of the properties of a system, except those in the options of calls.
 
     Attributes:
@@ -61,8 +59,7 @@ def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> Ex
     return ExpectedNow(client_settings, beside, snapshot.checker.settings.expectations)
 
 
-@dataclass(slots=True)
-class KnownResults:
+class KnownResults(Record):
     """The known results: system -> property -> result. `changes` is the number of results that were added."""
 
     changes: int = 0

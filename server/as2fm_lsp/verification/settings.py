@@ -12,9 +12,9 @@ is reported, and the default is used.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from roaml.record import Record
 from roaml.smc.run import MIN_EPSILON, Options
 from roaml.verification.expectations import Expectation, parse
 from roaml.verification.stuck import StuckLevel
@@ -23,8 +23,7 @@ TRACE_OPTIONS = frozenset({"confidence", "epsilon", "maxSteps", "seed"})
 """The options of a call that have an effect only on traces."""
 
 
-@dataclass(frozen=True, slots=True)
-class VerificationSettings:
+class VerificationSettings(Record, frozen=True):
     """The settings of one call.
 
     Attributes:

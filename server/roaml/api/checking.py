@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 
 from roaml.api.jani_files import PathError
 from roaml.diagnostics import Diagnostic
@@ -17,11 +16,11 @@ from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.paths import is_below
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.record import Record, replace
 from roaml.text import SourceFile
 
 
-@dataclass(frozen=True, slots=True)
-class CheckResult:
+class CheckResult(Record, frozen=True):
     """The result of `check`.
 
     Attributes:

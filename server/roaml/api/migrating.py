@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 from roaml.api.checking import check
 from roaml.api.jani_files import PathError
@@ -15,6 +14,7 @@ from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
 from roaml.project.settings import Settings, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.record import replace
 
 
 class SharedFileError(ValueError):

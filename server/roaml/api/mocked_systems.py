@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -13,14 +12,14 @@ from roaml.api.checking import check
 from roaml.api.jani_files import PathError
 from roaml.model.kinds import FileKind
 from roaml.project.settings import Settings
+from roaml.record import Record
 
 if TYPE_CHECKING:
     from roaml.mocks.mock import Mock
     from roaml.mocks.system_mocks import PlannedMock
 
 
-@dataclass(frozen=True, slots=True)
-class SystemMocks:
+class SystemMocks(Record, frozen=True):
     """The mocks for a system.
 
     Attributes:

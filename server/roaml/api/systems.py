@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 
 from roaml.api.checking import CheckResult, check
 from roaml.api.jani_files import PathError
@@ -22,6 +21,7 @@ from roaml.project.source_map import SourceMap
 from roaml.project.source_map import source_map as _source_map
 from roaml.project.translation import observed_properties_of, program_of, properties_of
 from roaml.project.workspace import Snapshot
+from roaml.record import Record, replace
 from roaml.scxml.model import Network
 from roaml.scxml.observed import ObservedProperty
 from roaml.to_jani import translate
@@ -37,8 +37,7 @@ class ModelError(ValueError):
         self.result = result
 
 
-@dataclass(frozen=True, slots=True)
-class LoadedSystem:
+class LoadedSystem(Record, frozen=True):
     """A system without errors, in the state of its files at the time of loading.
 
     Attributes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from roaml.api.checking import check
@@ -14,6 +13,7 @@ from roaml.api.systems import ModelError
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.kinds import FileKind
 from roaml.project.settings import Settings
+from roaml.record import Record, replace
 
 if TYPE_CHECKING:
     from roaml.mocks.network import MockedTree, MockOptions
@@ -24,8 +24,7 @@ UNTRANSLATABLE = "untranslatable-tree"
 """The code of the diagnostic that states why a tree without errors cannot be translated."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LoadedTree:
+class LoadedTree(Record, frozen=True, eq=False):
     """A tree with mocks, and the model of both. The properties of the model are `succeeds` and `fails`."""
 
     mocked: MockedTree

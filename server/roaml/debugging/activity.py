@@ -5,7 +5,6 @@ sent and have not been received yet."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.debugging.debugger import Debugger
 from roaml.ide.diagrams import DiagramKind, DiagramNodeKind
@@ -16,6 +15,7 @@ from roaml.jani.node import Origin
 from roaml.model.machine import Chart
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.scxml.names import InterfaceEventKind, read_interface_event, received_by, safe_name, sanitise
 from roaml.simulation.state import MachineState, SystemState
 
@@ -24,8 +24,7 @@ ACTIVE, NEXT, MESSAGE = "active", "next", "message"
 The look of a tree node is its status in lower case."""
 
 
-@dataclass(frozen=True, slots=True)
-class ActiveNode:
+class ActiveNode(Record, frozen=True):
     """An active node of a picture.
 
     Attributes:
@@ -40,8 +39,7 @@ class ActiveNode:
     look: str
 
 
-@dataclass(frozen=True, slots=True)
-class ActiveEdge:
+class ActiveEdge(Record, frozen=True):
     """An edge of the ROS graph between the sender or receiver of a message and its topic, service or action."""
 
     source: str

@@ -10,7 +10,6 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.debugging.evaluate import Scope, WatchError, condition, evaluate, parsed
@@ -19,6 +18,7 @@ from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
 from roaml.jani.expressions import Integer, Name
 from roaml.jani.node import Origin
+from roaml.record import Record, field
 from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
@@ -51,8 +51,7 @@ class WatchedVariable(NamedTuple):
     name: str
 
 
-@dataclass(eq=False, slots=True)
-class Breakpoint:
+class Breakpoint(Record, eq=False):
     """A breakpoint of any kind.
 
     Attributes:
@@ -134,8 +133,7 @@ def logged(message: str, scope: Scope) -> str:
     return _BRACES.sub(value, message)
 
 
-@dataclass(slots=True)
-class Breakpoints:
+class Breakpoints(Record):
     """The breakpoints that are set, by the kind of their place."""
 
     lines: dict[str, list[tuple[int, Breakpoint]]] = field(default_factory=dict)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from roaml.debugging.breakpoints import WatchedVariable
@@ -14,6 +13,7 @@ from roaml.debugging.evaluate import WatchError
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, shown, type_of
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, leaves
+from roaml.record import Record
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
     BLACKBOARD_REQUEST,
@@ -31,8 +31,7 @@ from roaml.suggest import alternatives, close_names
 from roaml.views.event_words import event_phrase, interface_name
 
 
-@dataclass(frozen=True, slots=True)
-class Sendable:
+class Sendable(Record, frozen=True):
     """An event that the user can send. Attributes:
     name: the topic, service or action; for a plain event, its name.
     text: a description such as "a message on the topic `/level`".

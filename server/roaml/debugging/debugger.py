@@ -10,7 +10,6 @@ from __future__ import annotations
 import enum
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
@@ -19,6 +18,7 @@ from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, S
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
 from roaml.simulation.choices import Choice, Outcome
 from roaml.simulation.intervention import Intervention
@@ -57,8 +57,7 @@ class StopReason(enum.Enum):
     END = "end of the run"
 
 
-@dataclass(frozen=True, slots=True)
-class Stop:
+class Stop(Record, frozen=True):
     """A stop of a run.
 
     Attributes:
@@ -75,8 +74,7 @@ class Stop:
     filter: str = ""
 
 
-@dataclass(slots=True)
-class _Movement:
+class _Movement(Record):
     unit: Unit
     forwards: bool
     position: int

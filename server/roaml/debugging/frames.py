@@ -9,11 +9,11 @@ nodes that are being ticked.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
 from roaml.debugging.sources import Sources
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.scxml.names import NODE_AUTOMATON, received_by
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, NodeState, NodeStatus, SystemState
@@ -25,8 +25,7 @@ TREE_THREAD = 1
 FIRST_MACHINE_THREAD = 2
 
 
-@dataclass(frozen=True, slots=True)
-class DebugThread:
+class DebugThread(Record, frozen=True):
     """A machine, or the tree; `instance` is -1 for the tree."""
 
     number: int
@@ -43,8 +42,7 @@ class FrameRole(Enum):
     NODE = "node of the tree"
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(Record, frozen=True):
     """A frame of a stack.
 
     Attributes:

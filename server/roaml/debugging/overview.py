@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.debugging.scopes import ScopeEntry, Values
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import shown
+from roaml.record import Record
 from roaml.simulation.session import Session
 
 
-@dataclass(frozen=True, slots=True)
-class StateRow:
+class StateRow(Record, frozen=True):
     """A value of the state.
 
     Attributes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.evaluate import Scope
@@ -13,6 +12,7 @@ from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.exhaustive import Vocabulary
 from roaml.model.expand import PortConstant
+from roaml.record import Record
 from roaml.scxml.names import (
     BLACKBOARD,
     FIELD_PREFIX,
@@ -30,8 +30,7 @@ from roaml.simulation.words import STATUS_NAMES
 from roaml.smc.record import Plain, TraceStep, TraceVerdict
 
 
-@dataclass(frozen=True, slots=True)
-class ScopeEntry:
+class ScopeEntry(Record, frozen=True):
     """A named value of a scope.
 
     Attributes:
@@ -54,8 +53,7 @@ class ScopeHint(Vocabulary):
     ARGUMENTS = "arguments"
 
 
-@dataclass(frozen=True, slots=True)
-class ScopeEntries:
+class ScopeEntries(Record, frozen=True):
     """A scope of a frame. `hint` is its kind; `None` for a scope that all frames have."""
 
     name: str

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.expr.types import Type, leaves
@@ -14,6 +13,7 @@ from roaml.model.expand import Instance, node_at
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.scxml.names import (
     FIELD_PREFIX,
     InterfaceEvent,
@@ -26,8 +26,7 @@ from roaml.text import Location
 from roaml.verification.target import LineColumn, VerificationTarget
 
 
-@dataclass(frozen=True)
-class Sources:
+class Sources(Record, frozen=True, dict=True):
     """The sources of a model.
 
     Attributes:

@@ -5,10 +5,10 @@ property."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from roaml.debugging.debugger import Debugger, Log
 from roaml.debugging.sources import Sources
+from roaml.record import Record
 from roaml.simulation.session import SavedSession, Session
 from roaml.simulation.verdicts import Verdicts
 from roaml.smc.goal import CompiledProperty
@@ -25,8 +25,7 @@ class StartError(ValueError):
     """The run does not exist; the message contains the reason."""
 
 
-@dataclass(frozen=True, slots=True)
-class Start:
+class Start(Record, frozen=True):
     """The run that is debugged.
 
     Attributes:

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from roaml.explicit import codes
 from roaml.explicit.space import Space
+from roaml.record import Record
 from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import Recorder, Recording, TraceStep
@@ -22,8 +22,7 @@ class PathStep(NamedTuple):
     ways: list[int]
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(Record, frozen=True):
     """The steps to a state, and the status of the goal there."""
 
     state: int

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from roaml.explicit import codes
 from roaml.explicit import search as engine
 from roaml.explicit.memory import available
 from roaml.explicit.tables import tables_of
+from roaml.record import Record
 from roaml.smc import kernel
 from roaml.smc.batch import TraceProblem
 from roaml.smc.goal import CompiledProperty
@@ -30,8 +30,7 @@ MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state. Exploring this many takes some seconds."""
 
 
-@dataclass(frozen=True, slots=True)
-class StateLimits:
+class StateLimits(Record, frozen=True):
     """The limits of a search.
 
     Attributes:
@@ -65,8 +64,7 @@ class LimitError(Exception):
         self.why = why
 
 
-@dataclass(frozen=True, slots=True)
-class Space:
+class Space(Record, frozen=True):
     """All states of a model that are reached before a goal is decided.
 
     Attributes:

@@ -9,18 +9,17 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.model import Assignment
+from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import REAL, product
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Tables:
+class Tables(Record, frozen=True, eq=False):
     """The tables about one program.
 
     Attributes:

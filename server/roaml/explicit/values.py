@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from roaml.explicit import codes, solver
 from roaml.explicit.space import Space
+from roaml.record import Record
 from roaml.smc.goal import NOT
 from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
 from roaml.smc.statistics import Bounds
@@ -24,8 +24,7 @@ class NoValueError(Exception):
     """A question has no value; the message contains the reason."""
 
 
-@dataclass(frozen=True, slots=True)
-class GoalValues:
+class GoalValues(Record, frozen=True):
     """The values of a question, enclosed by bounds.
 
     Attributes:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -51,20 +50,19 @@ from roaml.expr.types import (
     member_type,
     unwrap,
 )
+from roaml.record import Record
 from roaml.text import Span
 
 Scope: TypeAlias = Callable[[str], Type | None]
 """The type of a name that may begin an access path; `None` if there is no such name."""
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownName:
+class UnknownName(Record, frozen=True):
     span: Span
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownMember:
+class UnknownMember(Record, frozen=True):
     """`owner` has no member `name`; `owner` may be a scalar, which has no members."""
 
     span: Span
@@ -72,8 +70,7 @@ class UnknownMember:
     owner: Type
 
 
-@dataclass(frozen=True, slots=True)
-class BadIndex:
+class BadIndex(Record, frozen=True):
     """Either `indexed` is not an array, or the index (of type `index`) is not an integer."""
 
     span: Span
@@ -81,15 +78,13 @@ class BadIndex:
     index: Type
 
 
-@dataclass(frozen=True, slots=True)
-class IndexOutOfBounds:
+class IndexOutOfBounds(Record, frozen=True):
     span: Span
     index: int
     array: Array
 
 
-@dataclass(frozen=True, slots=True)
-class BadOperand:
+class BadOperand(Record, frozen=True):
     """`operator` does not take an operand of type `given`; it takes `required`, BOOL or REAL."""
 
     span: Span
@@ -98,16 +93,14 @@ class BadOperand:
     required: Type
 
 
-@dataclass(frozen=True, slots=True)
-class BadComparison:
+class BadComparison(Record, frozen=True):
     span: Span
     operator: str
     left: Type
     right: Type
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownFunction:
+class UnknownFunction(Record, frozen=True):
     """A name that is called or read, but is not a function or constant of the language. `name` is as written, including
     `Math.`."""
 
@@ -116,15 +109,13 @@ class UnknownFunction:
     called: bool
 
 
-@dataclass(frozen=True, slots=True)
-class WrongArgumentCount:
+class WrongArgumentCount(Record, frozen=True):
     span: Span
     function: str
     given: int
 
 
-@dataclass(frozen=True, slots=True)
-class MixedTypes:
+class MixedTypes(Record, frozen=True):
     """The elements of an array literal, or both values of `?:`, have no common type."""
 
     span: Span
@@ -132,40 +123,34 @@ class MixedTypes:
     other: Type
 
 
-@dataclass(frozen=True, slots=True)
-class DivisionByZero:
+class DivisionByZero(Record, frozen=True):
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class IntegerDivision:
+class IntegerDivision(Record, frozen=True):
     """`/` divides two ints. The result is real (docs/spec/expressions.md#operators)."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class RandomUsed:
+class RandomUsed(Record, frozen=True):
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class LengthOfStruct:
+class LengthOfStruct(Record, frozen=True):
     """`.length` is read from a struct, which is not an array (docs/spec/types.md#leaves)."""
 
     span: Span
     struct: Struct
 
 
-@dataclass(frozen=True, slots=True)
-class ObjectUsed:
+class ObjectUsed(Record, frozen=True):
     """An object literal that is not an initial value (docs/spec/types.md#initial-values)."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ElementComputed:
+class ElementComputed(Record, frozen=True):
     """An array literal has an element that is not a literal (docs/spec/expressions.md#grammar)."""
 
     span: Span

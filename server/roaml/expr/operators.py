@@ -8,9 +8,9 @@ This is the only list of them: parser, typing, completion, signature help and tr
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record
 
 
 class OperatorKind(Vocabulary):
@@ -71,8 +71,7 @@ class FunctionResult(Vocabulary):
     """Real if any argument is real, otherwise int."""
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
+class Function(Record, frozen=True):
     """A function of `Math`.
 
     Attributes:

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import re
 import sys
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -38,6 +37,7 @@ from roaml.expr.tree import (
     placed,
 )
 from roaml.expr.words import PREFIXES, STATEMENTS
+from roaml.record import replace
 from roaml.text import Decoded, Span, TextEdit
 
 MAX_DEPTH = 150

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from roaml.expr.tree import (
     ArrayLiteral,
@@ -18,6 +17,7 @@ from roaml.expr.tree import (
     ObjectLiteral,
     Unary,
 )
+from roaml.record import replace
 
 
 def map_children(expr: Expr, change: Callable[[Expr], Expr]) -> Expr:

@@ -8,18 +8,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.operators import Operator, UnaryOperator
+from roaml.record import Record
 from roaml.text import Decoded, Span
 
 MAX_INTEGER = (1 << 63) - 1
 """The greatest integer of a translated model."""
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Record, frozen=True):
     """A number. `is_real` is true if it is written with a point or is not a whole number
     (docs/spec/expressions.md#number-literals)."""
 
@@ -33,28 +32,24 @@ class Number:
         return self.value == int(self.value) and abs(self.value) <= MAX_INTEGER
 
 
-@dataclass(frozen=True, slots=True)
-class String:
+class String(Record, frozen=True):
     """A string. `value` has its ECMAScript escapes resolved."""
 
     span: Span
     value: str
 
 
-@dataclass(frozen=True, slots=True)
-class Boolean:
+class Boolean(Record, frozen=True):
     span: Span
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Record, frozen=True):
     span: Span
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(Record, frozen=True):
     """A member access `object.name`. `name` is empty if it has not been typed yet."""
 
     span: Span
@@ -63,8 +58,7 @@ class Member:
     name_span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Index:
+class Index(Record, frozen=True):
     """An access `object[index]` to an element of an array."""
 
     span: Span
@@ -72,22 +66,19 @@ class Index:
     index: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(Record, frozen=True):
     span: Span
     function: Expr
     arguments: tuple[Expr, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(Record, frozen=True):
     span: Span
     operator: UnaryOperator
     operand: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(Record, frozen=True):
     span: Span
     operator: Operator
     operator_span: Span
@@ -95,8 +86,7 @@ class Binary:
     right: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Conditional:
+class Conditional(Record, frozen=True):
     """A conditional expression `test ? then : otherwise`."""
 
     span: Span
@@ -105,27 +95,23 @@ class Conditional:
     otherwise: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayLiteral:
+class ArrayLiteral(Record, frozen=True):
     span: Span
     elements: tuple[Expr, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ObjectMember:
+class ObjectMember(Record, frozen=True):
     key: str
     key_span: Span
     value: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class ObjectLiteral:
+class ObjectLiteral(Record, frozen=True):
     span: Span
     members: tuple[ObjectMember, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ErrorExpr:
+class ErrorExpr(Record, frozen=True):
     """A part that is not valid; a finding contains the reason. `parts` are the expressions in it that could be
     parsed."""
 

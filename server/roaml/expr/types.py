@@ -10,10 +10,10 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record
 
 
 class ScalarKind(Vocabulary):
@@ -23,8 +23,7 @@ class ScalarKind(Vocabulary):
     STRING = "string"
 
 
-@dataclass(frozen=True, slots=True)
-class Scalar:
+class Scalar(Record, frozen=True):
     """A base type; `name` is its spelling, "" for the type of a literal."""
 
     kind: ScalarKind
@@ -34,8 +33,7 @@ class Scalar:
         return self.name or ("float" if self.kind is ScalarKind.REAL else str(self.kind))
 
 
-@dataclass(frozen=True, slots=True)
-class Array:
+class Array(Record, frozen=True):
     """An array of at most `bound` elements. If `bound` is `None`, the maximum is `max_array_size` of the system."""
 
     element: Type
@@ -59,8 +57,7 @@ class StructKind(enum.Enum):
     """The data that a handler provides in addition to a message or event, such as the status of a child."""
 
 
-@dataclass(frozen=True, slots=True)
-class Struct:
+class Struct(Record, frozen=True):
     """Named members in order.
 
     Attributes:
@@ -84,16 +81,14 @@ class Struct:
         return None
 
 
-@dataclass(frozen=True, slots=True)
-class EmptyArray:
+class EmptyArray(Record, frozen=True):
     """The type of `[]`, which fits every array."""
 
     def __str__(self) -> str:
         return "[]"
 
 
-@dataclass(frozen=True, slots=True)
-class Unknown:
+class Unknown(Record, frozen=True):
     """The type of an expression with a reported error. It fits every type, so that each error is reported only once."""
 
     def __str__(self) -> str:
@@ -125,8 +120,7 @@ BASE_TYPES: dict[str, Scalar] = {
 _TYPE = re.compile(r"([A-Za-z_]\w*)((?:\[\d*\])*)\Z", re.ASCII)
 
 
-@dataclass(frozen=True, slots=True)
-class TypeName:
+class TypeName(Record, frozen=True):
     """A type as it is written: the name of a base type or struct, and the dimensions of an array, outermost first. A
     dimension without a bound is `None`."""
 

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from roaml.exhaustive import assert_never
 from roaml.figures.drawing import Glyph, Group, Item, Polyline, Shape, TextItem
 from roaml.figures.geometry import Point
+from roaml.record import replace
 
 
 def moved(group: Group, dx: float, dy: float) -> Group:

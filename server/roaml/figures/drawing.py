@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import text_width
+from roaml.record import Record
 
 
 class Tone(enum.Enum):
@@ -50,15 +50,13 @@ class Outline(enum.Enum):
     DOUBLE = "double"
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(Record, frozen=True):
     box: Box
     outline: Outline
     role: str
 
 
-@dataclass(frozen=True, slots=True)
-class TextItem:
+class TextItem(Record, frozen=True):
     """One line of text; `x` is its left end, `y` its base line."""
 
     text: str
@@ -75,8 +73,7 @@ class TextItem:
         return Box(self.x, self.y - 0.8 * self.size, width, self.size)
 
 
-@dataclass(frozen=True, slots=True)
-class Polyline:
+class Polyline(Record, frozen=True):
     """A polyline, usually with round corners. With `has_arrow`, it has an arrow head at its end."""
 
     points: tuple[Point, ...]
@@ -85,16 +82,14 @@ class Polyline:
     is_round: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class Glyph:
+class Glyph(Record, frozen=True):
     """A small symbol of strokes; `strokes` are polylines in the unit square."""
 
     box: Box
     strokes: tuple[tuple[Point, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(Record, frozen=True):
     """Items that belong together.
 
     Attributes:
@@ -120,8 +115,7 @@ Leaf: TypeAlias = Shape | TextItem | Polyline | Glyph
 Item: TypeAlias = Leaf | Group
 
 
-@dataclass(frozen=True, slots=True)
-class Drawing:
+class Drawing(Record, frozen=True):
     """All groups of a drawing, and its size. `nodes` are the boxes of the nodes by their indexes."""
 
     size: Extent

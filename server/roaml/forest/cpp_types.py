@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from roaml.libraries.scripts import SCRIPT
+from roaml.record import Record
 
 STRING, ANY = "string", "any"
 
@@ -65,8 +65,7 @@ def is_converted(type_name: str) -> bool:
     return is_converted(inner) if inner is not None else name in (*SIMPLE_TYPES, *_REALS, ANY, SCRIPT)
 
 
-@dataclass(frozen=True, slots=True)
-class Mismatch:
+class Mismatch(Record, frozen=True):
     """Why a text does not fit a type. `ignored` is true if the library reads the beginning of the text and ignores the
     rest. `instead` is a text that fits and was probably intended, or ""."""
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
@@ -22,6 +21,7 @@ from roaml.forest.scripts import scripts_of
 from roaml.libraries import Node
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
+from roaml.record import Record
 from roaml.roles import Direction
 from roaml.script.names import names_in
 from roaml.text import Span
@@ -45,8 +45,7 @@ _CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool",
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
+class Use(Record, frozen=True):
     """A place that refers to an entry.
 
     Attributes:
@@ -76,8 +75,7 @@ class Use:
     remaps: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class Entries:
+class Entries(Record, frozen=True, eq=False, dict=True):
     """The entries of the blackboards of a forest.
 
     Attributes:

@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roaml.forest.cpp_types import normal
@@ -18,6 +17,7 @@ from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, 
 from roaml.libraries.version import Version
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
+from roaml.record import Record, replace
 from roaml.roles import NodeKind
 
 CPP = library(BEHAVIORTREE_CPP)
@@ -36,8 +36,7 @@ OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))
 
 
-@dataclass(frozen=True, eq=False)
-class Forest:
+class Forest(Record, frozen=True, eq=False, dict=True):
     """A file of behavior trees together with the files that belong to it.
 
     Attributes:

@@ -5,21 +5,20 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import probable_ports
 from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
 from roaml.libraries.version import SCRIPTS_CHANGED_SINCE, Version
 from roaml.model.tree import TreeNode
+from roaml.record import Record
 from roaml.script.parse import ScriptGrammar, ScriptProblem, parse
 from roaml.script.tree import Script
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
 
-@dataclass(frozen=True, slots=True)
-class ScriptUse:
+class ScriptUse(Record, frozen=True):
     """A script in an attribute of a node. `is_condition` is true if its value must be true or false."""
 
     node: TreeNode

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.libraries.version import NEWEST_VERSION, Version
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class TreeSettings:
+class TreeSettings(Record, frozen=True):
     """The user's settings.
 
     Attributes:

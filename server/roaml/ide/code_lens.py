@@ -8,7 +8,6 @@ The positions of all lenses are computed at once. The text of a lens is computed
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.describe.markdown import plain
@@ -23,20 +22,19 @@ from roaml.model.machine import Machine
 from roaml.model.property_sentences import sentences
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 
-@dataclass(frozen=True, slots=True)
-class Lens:
+class Lens(Record, frozen=True):
     """The position of a lens. `span` is the declaration; `symbol` is the declared symbol, whose uses are counted."""
 
     span: Span
     symbol: Symbol
 
 
-@dataclass(frozen=True, slots=True)
-class Counted:
+class Counted(Record, frozen=True):
     """The text of a lens, and the places of the uses whose number the text contains."""
 
     title: str

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, StructKind, Type, unwrap
@@ -41,6 +40,7 @@ from roaml.model.tree import TreeNode, nodes
 from roaml.model.tree_paths import label_of, nodes_called
 from roaml.model.value_types import TypedValue, ValueUse, find_handle, port_type
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Location, Span
 from roaml.xml_syntax import Element
@@ -61,16 +61,14 @@ class HintKind(enum.Enum):
 ALL_HINTS = frozenset(HintKind)
 
 
-@dataclass(frozen=True, slots=True)
-class InlayHintLabelPart:
+class InlayHintLabelPart(Record, frozen=True):
     """A part of the text of a hint. `symbol` is the symbol that it names, if any."""
 
     text: str
     symbol: Symbol | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class InlayHint:
+class InlayHint(Record, frozen=True):
     """An inlay hint. `offset` is its position in the text of the file."""
 
     offset: int
@@ -82,8 +80,7 @@ class InlayHint:
         return "".join(part.text for part in self.parts)
 
 
-@dataclass(frozen=True, slots=True)
-class Explanation:
+class Explanation(Record, frozen=True):
     """The explanation of a symbol in a hint: its description in Markdown, and the place of its definition."""
 
     text: str

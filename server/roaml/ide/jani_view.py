@@ -4,20 +4,18 @@ form, is not changed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.ide.formatting.json import gaps
 from roaml.ide.formatting.layout import FileLayout, edits
 from roaml.ide.navigation.document_symbol import DocumentSymbol
 from roaml.ide.navigation.jani_symbols import jani_symbols
 from roaml.json_syntax import parse
+from roaml.record import Record
 from roaml.text import apply_edits
 
 _LAYOUT = FileLayout(width=2)
 
 
-@dataclass(frozen=True, slots=True)
-class JaniView:
+class JaniView(Record, frozen=True):
     """The text of a view, and its outline with positions in this text."""
 
     text: str

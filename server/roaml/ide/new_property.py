@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from roaml.edit.elements import after, first_in, last_in
@@ -41,6 +40,7 @@ from roaml.observers.sentences import SentenceClause, Times, pattern_sentence
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of
+from roaml.record import Record
 from roaml.text import Edit
 from roaml.xml_syntax import parse
 
@@ -52,8 +52,7 @@ _LETTERS = {LEFT: "A", RIGHT: "B", OPEN: "C", CLOSE: "D"}
 """The names of the conditions in a sentence before the user has chosen their events."""
 
 
-@dataclass(frozen=True, slots=True)
-class PropertySentence:
+class PropertySentence(Record, frozen=True):
     """A sentence for a new property, with letters instead of the conditions.
 
     Attributes:
@@ -70,8 +69,7 @@ class PropertySentence:
     needs_time: bool
 
 
-@dataclass(frozen=True, slots=True)
-class ObservableEvent:
+class ObservableEvent(Record, frozen=True):
     """An event that a port of a property file can listen to.
 
     Attributes:
@@ -85,8 +83,7 @@ class ObservableEvent:
     id: str
 
 
-@dataclass(frozen=True, slots=True)
-class NewProperty:
+class NewProperty(Record, frozen=True):
     """The name of a new property, the path of its property file, and the change that creates it."""
 
     name: str

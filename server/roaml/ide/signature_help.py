@@ -7,12 +7,12 @@ Works on the characters before the caret: an incomplete expression has no useful
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from roaml.expr.operators import FUNCTIONS
 from roaml.ide.describe import language as describe_language
 from roaml.ide.syntax import expression_at, xml_file
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 
 TRIGGERS = ("(", ",")
 
@@ -21,8 +21,7 @@ _CALLED = re.compile(r"Math\s*\.\s*(\w+)\s*\Z")
 _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
-@dataclass(frozen=True, slots=True)
-class SignatureHelp:
+class SignatureHelp(Record, frozen=True):
     """The signature of a function of `Math`, whose call is being typed.
 
     Attributes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.comparison import Comparison, read_comparison
@@ -14,14 +13,14 @@ from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind
 from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.text import SourceFile, Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
 """Paths of files, each with the digest of the content."""
 
 
-@dataclass(frozen=True, slots=True)
-class Verifiable:
+class Verifiable(Record, frozen=True):
     """A property of a system. `span` is its place in the file `path`; `name_span` is the place of its name without
     quotes.
 

@@ -14,7 +14,6 @@ Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `ro
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -23,6 +22,7 @@ from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.type_syntax import find_type, parse_type
 from roaml.interfaces.types import KIND_NAMES, SECTION_NAMES, Constant, Definition, Field, FieldType, Kind, Section
 from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, value_end
+from roaml.record import Record, field, replace
 from roaml.text import Span
 
 MAX_LENGTH = 1_000_000
@@ -57,8 +57,7 @@ class _Head(NamedTuple):
     name_span: Span
 
 
-@dataclass(slots=True)
-class _Element:
+class _Element(Record):
     """A field or constant whose comment has not been read completely yet."""
 
     item: Field | Constant
@@ -68,8 +67,7 @@ class _Element:
         return replace(self.item, comment="\n".join(self.comment)) if self.comment else self.item
 
 
-@dataclass(slots=True)
-class _OpenSection:
+class _OpenSection(Record):
     elements: dict[str, _Element] = field(default_factory=dict)
     comment: list[str] = field(default_factory=list)
 

@@ -11,13 +11,13 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Finding
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.parse import parse
 from roaml.interfaces.search import SearchPath
 from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
+from roaml.record import Record, replace
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile
 
@@ -36,8 +36,7 @@ class Reason(enum.Enum):
     TOO_LARGE = "it has too many fields"
 
 
-@dataclass(frozen=True, slots=True)
-class NotFound:
+class NotFound(Record, frozen=True):
     """A requested type that was not found.
 
     `type_name` is the requested name. `close` are similar names of the same kind, `package/Name`, the nearest first.
@@ -76,8 +75,7 @@ class NotFound:
                 return f"`{self.type_name}` is too large: with all nested messages, it has {self.size}"
 
 
-@dataclass(frozen=True, slots=True)
-class Parsed:
+class Parsed(Record, frozen=True):
     """A definition and the errors in its file."""
 
     definition: Definition

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
+from roaml.record import PartlyCompared, Record
 from roaml.text import Span
 
 Kind: TypeAlias = Literal["msg", "srv", "action"]
@@ -66,8 +66,7 @@ class ArrayKind(enum.Enum):
     """Any number of elements: `T[]`."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldType:
+class FieldType(Record, frozen=True):
     """The type of a field or constant.
 
     `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; in a file with errors it may be
@@ -109,53 +108,55 @@ class FieldType:
         return f"{self.name}{bound}{suffix}"
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(PartlyCompared, frozen=True):
     """A member of a message. Without `default`, its initial value is 0, false or empty.
 
     `default_text` is the default as written. `comment` contains the lines above, beside and below the field, without
     `#`.
     """
 
+    UNCOMPARED = frozenset({"default_text", "comment", "name_span", "type_span", "default_span"})
+
     name: str
     type: FieldType
     default: Value | None = None
-    default_text: str = field(default="", compare=False)
-    comment: str = field(default="", compare=False)
-    name_span: Span = field(default=Span(0, 0), compare=False)
-    type_span: Span = field(default=Span(0, 0), compare=False)
-    default_span: Span | None = field(default=None, compare=False)
+    default_text: str = ""
+    comment: str = ""
+    name_span: Span = Span(0, 0)
+    type_span: Span = Span(0, 0)
+    default_span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(PartlyCompared, frozen=True):
     """A named value of a definition. It is not a field and not sent. `value` is `None` if the file has an error
     there."""
+
+    UNCOMPARED = frozenset({"value_text", "comment", "name_span", "type_span", "value_span"})
 
     name: str
     type: FieldType
     value: Scalar | None
-    value_text: str = field(default="", compare=False)
-    comment: str = field(default="", compare=False)
-    name_span: Span = field(default=Span(0, 0), compare=False)
-    type_span: Span = field(default=Span(0, 0), compare=False)
-    value_span: Span = field(default=Span(0, 0), compare=False)
+    value_text: str = ""
+    comment: str = ""
+    name_span: Span = Span(0, 0)
+    type_span: Span = Span(0, 0)
+    value_span: Span = Span(0, 0)
 
 
-@dataclass(frozen=True, slots=True)
-class Section:
+class Section(PartlyCompared, frozen=True):
     """A message, or one part of a service or action. `comment` is the block of comment lines at its beginning."""
+
+    UNCOMPARED = frozenset({"comment"})
 
     fields: tuple[Field, ...] = ()
     constants: tuple[Constant, ...] = ()
-    comment: str = field(default="", compare=False)
+    comment: str = ""
 
     def field(self, name: str) -> Field | None:
         return next((f for f in self.fields if f.name == name), None)
 
 
-@dataclass(frozen=True, slots=True)
-class Definition:
+class Definition(Record, frozen=True):
     """A message, service or action type. It has all the sections of `SECTION_NAMES[kind]`, in that order.
 
     `path` is the file from which it was read; it may be empty.

@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 
 from roaml.jani.expressions import Boolean, Expression, Integer, Real
 from roaml.jani.model import Constant, Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import BOOL, INT, REAL, BasicType, BoundedType
+from roaml.record import replace
 from roaml.suggest import nearest_name
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,19}")

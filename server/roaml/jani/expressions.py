@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -17,52 +16,44 @@ from roaml.jani.node import CommentedNode, Node
 from roaml.jani.operators import BinaryOperator, Distribution, NumberConstant, UnaryOperator
 
 
-@dataclass(frozen=True, slots=True)
-class Boolean(Node):
+class Boolean(Node, frozen=True):
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Integer(Node):
+class Integer(Node, frozen=True):
     value: int
 
 
-@dataclass(frozen=True, slots=True)
-class Real(Node):
+class Real(Node, frozen=True):
     """A number written with a point or an exponent; `value` is finite."""
 
     value: float
 
 
-@dataclass(frozen=True, slots=True)
-class NamedNumber(CommentedNode):
+class NamedNumber(CommentedNode, frozen=True):
     """A named real number: `{"constant": "e"}` or `{"constant": "π"}`."""
 
     constant: NumberConstant
 
 
-@dataclass(frozen=True, slots=True)
-class Name(Node):
+class Name(Node, frozen=True):
     """A reference to a variable, constant or parameter."""
 
     identifier: str
 
 
-@dataclass(frozen=True, slots=True)
-class Unary(CommentedNode):
+class Unary(CommentedNode, frozen=True):
     operator: UnaryOperator
     operand: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Binary(CommentedNode):
+class Binary(CommentedNode, frozen=True):
     operator: BinaryOperator
     left: Expression
     right: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Conditional(CommentedNode):
+class Conditional(CommentedNode, frozen=True):
     """`ite`: the value of `then` if `test` holds; otherwise the value of `otherwise`."""
 
     test: Expression
@@ -70,23 +61,20 @@ class Conditional(CommentedNode):
     otherwise: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayAccess(CommentedNode):
+class ArrayAccess(CommentedNode, frozen=True):
     """`aa`: the element of `array` at `index`, from 0."""
 
     array: Expression
     index: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayValue(CommentedNode):
+class ArrayValue(CommentedNode, frozen=True):
     """`av`: an array with these elements."""
 
     elements: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayConstructor(CommentedNode):
+class ArrayConstructor(CommentedNode, frozen=True):
     """`ac`: an array of `length` elements, the values of `body` for `variable` = 0, ..., `length` - 1."""
 
     variable: str
@@ -94,72 +82,62 @@ class ArrayConstructor(CommentedNode):
     body: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class DatatypeAccess(CommentedNode):
+class DatatypeAccess(CommentedNode, frozen=True):
     """`da`: a member of a value of a datatype."""
 
     record: Expression
     member: str
 
 
-@dataclass(frozen=True, slots=True)
-class DatatypeValue(CommentedNode):
+class DatatypeValue(CommentedNode, frozen=True):
     """`dv`: a value of a datatype, given by its members."""
 
     datatype: str
     members: tuple[tuple[str, Expression], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class OptionAccess(CommentedNode):
+class OptionAccess(CommentedNode, frozen=True):
     """`oa`: the content of an option that is not empty."""
 
     option: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class OptionValue(CommentedNode):
+class OptionValue(CommentedNode, frozen=True):
     """`ov`: an option with a value."""
 
     content: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class EmptyOption(CommentedNode):
+class EmptyOption(CommentedNode, frozen=True):
     """`empty`: an option without a value."""
 
 
-@dataclass(frozen=True, slots=True)
-class Call(CommentedNode):
+class Call(CommentedNode, frozen=True):
     function: str
     arguments: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Selection(CommentedNode):
+class Selection(CommentedNode, frozen=True):
     """`nondet`: any value of `variable` for which `condition` holds."""
 
     variable: str
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Sample(CommentedNode):
+class Sample(CommentedNode, frozen=True):
     """A random value of a distribution."""
 
     distribution: Distribution
     arguments: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Derivative(CommentedNode):
+class Derivative(CommentedNode, frozen=True):
     """`der`: the derivative of a continuous variable with respect to time."""
 
     variable: str
 
 
-@dataclass(frozen=True, slots=True)
-class Missing(Node):
+class Missing(Node, frozen=True):
     """A part that cannot be read. A finding of the reader states the reason. A model with such a part is not
     written."""
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -78,11 +77,11 @@ from roaml.jani.types import (
     join,
     value_type,
 )
+from roaml.record import Record, field
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class TypeScope:
+class TypeScope(Record, frozen=True):
     """The names that can be used in one place of a model. `variables` also contains constants and parameters; the names
     in `constants` cannot be assigned to."""
 

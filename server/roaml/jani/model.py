@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
 from roaml.jani.expressions import Expression, LValue
 from roaml.jani.node import CommentedNode, Node
@@ -34,8 +33,7 @@ class ModelType(enum.Enum):
     SHA = "sha"
 
 
-@dataclass(frozen=True, slots=True)
-class Metadata(Node):
+class Metadata(Node, frozen=True):
     """The authors and the purpose of the model."""
 
     version: str | None = None
@@ -45,16 +43,14 @@ class Metadata(Node):
     url: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Clause(CommentedNode):
+class Clause(CommentedNode, frozen=True):
     """An expression for which JANI allows a comment: a guard, a rate, a probability, a time progress condition or a
     restriction of initial states."""
 
     exp: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Constant(CommentedNode):
+class Constant(CommentedNode, frozen=True):
     """A constant. If `value` is `None`, the user of the model chooses the value."""
 
     name: str
@@ -62,8 +58,7 @@ class Constant(CommentedNode):
     value: Expression | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Variable(CommentedNode):
+class Variable(CommentedNode, frozen=True):
     """A variable. If `initial_value` is `None`, any initial value is possible. A transient variable is reset to its
     initial value in each state."""
 
@@ -73,54 +68,46 @@ class Variable(CommentedNode):
     transient: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Action(CommentedNode):
+class Action(CommentedNode, frozen=True):
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class DatatypeMember(CommentedNode):
+class DatatypeMember(CommentedNode, frozen=True):
     name: str
     type: Type
 
 
-@dataclass(frozen=True, slots=True)
-class Datatype(CommentedNode):
+class Datatype(CommentedNode, frozen=True):
     name: str
     members: tuple[DatatypeMember, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter(CommentedNode):
+class Parameter(CommentedNode, frozen=True):
     name: str
     type: Type
 
 
-@dataclass(frozen=True, slots=True)
-class Function(CommentedNode):
+class Function(CommentedNode, frozen=True):
     name: str
     type: Type
     parameters: tuple[Parameter, ...]
     body: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class TransientValue(CommentedNode):
+class TransientValue(CommentedNode, frozen=True):
     """The value that a transient variable has in a location."""
 
     target: LValue
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Location(CommentedNode):
+class Location(CommentedNode, frozen=True):
     name: str
     time_progress: Clause | None = None
     transient_values: tuple[TransientValue, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Assignment(CommentedNode):
+class Assignment(CommentedNode, frozen=True):
     """The assignment `target := value`. Assignments with equal `index` are simultaneous; assignments with a smaller
     index are executed first."""
 
@@ -129,8 +116,7 @@ class Assignment(CommentedNode):
     index: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Destination(CommentedNode):
+class Destination(CommentedNode, frozen=True):
     """A target of an edge, with its probability (1 if it is `None`) and its assignments."""
 
     location: str
@@ -138,8 +124,7 @@ class Destination(CommentedNode):
     assignments: tuple[Assignment, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Edge(CommentedNode):
+class Edge(CommentedNode, frozen=True):
     """An edge from the location `source` to one of `destinations`. An edge without `action` is silent; an edge without
     `guard` is always enabled."""
 
@@ -150,8 +135,7 @@ class Edge(CommentedNode):
     rate: Clause | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Automaton(CommentedNode):
+class Automaton(CommentedNode, frozen=True):
     name: str
     locations: tuple[Location, ...]
     initial_locations: tuple[str, ...]
@@ -161,8 +145,7 @@ class Automaton(CommentedNode):
     restrict_initial: Clause | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Element(CommentedNode):
+class Element(CommentedNode, frozen=True):
     """An automaton as an element of the parallel composition. `input_enable` contains the actions that it can always
     take."""
 
@@ -170,8 +153,7 @@ class Element(CommentedNode):
     input_enable: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Sync(CommentedNode):
+class Sync(CommentedNode, frozen=True):
     """A synchronisation: edges that several automata take together.
 
     Attributes:
@@ -184,16 +166,14 @@ class Sync(CommentedNode):
     result: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class System(CommentedNode):
+class System(CommentedNode, frozen=True):
     """The parallel composition of `elements`, with all synchronisations of their actions."""
 
     elements: tuple[Element, ...]
     syncs: tuple[Sync, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Model(Node):
+class Model(Node, frozen=True):
     """A whole model. `features` need not contain the features that its parts require, because the writer adds them."""
 
     type: ModelType

@@ -3,24 +3,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from roaml.record import PartlyCompared
 from roaml.text import Location
 
 Origin: TypeAlias = Location
 """A position in the JANI file (set by the reader) or in the robot model (set by the translator)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Node:
+class Node(PartlyCompared, frozen=True, kw_only=True):
     """A part of a model. `origin` is the place from which it comes; equality ignores it."""
 
-    origin: Origin | None = field(default=None, compare=False, repr=False)
+    UNCOMPARED = frozenset({"origin"})
+
+    origin: Origin | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CommentedNode(Node):
+class CommentedNode(Node, frozen=True, kw_only=True):
     """A node whose JSON form may have a member `comment`."""
 
     comment: str | None = None

@@ -5,12 +5,12 @@ writes variables that no other automaton reads, so the other automata behave in 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.expressions import walk as walk_expression
 from roaml.jani.model import Assignment, Automaton, Edge, Model
 from roaml.jani.properties import Formula, identifiers
+from roaml.record import replace
 
 
 def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.jani import expressions
@@ -96,8 +95,7 @@ class Accumulation(enum.Enum):
     EXIT = "exit"
 
 
-@dataclass(frozen=True, slots=True)
-class Interval(CommentedNode):
+class Interval(CommentedNode, frozen=True):
     """The bounds of a number. A bound that is `None` does not exist; `None` for `…_exclusive` means false."""
 
     lower: Expression | None = None
@@ -106,8 +104,7 @@ class Interval(CommentedNode):
     upper_exclusive: bool | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class RewardBound(CommentedNode):
+class RewardBound(CommentedNode, frozen=True):
     """A requirement that the accumulated value of `reward` is within `bounds`."""
 
     reward: Expression
@@ -115,8 +112,7 @@ class RewardBound(CommentedNode):
     bounds: Interval
 
 
-@dataclass(frozen=True, slots=True)
-class RewardInstant(CommentedNode):
+class RewardInstant(CommentedNode, frozen=True):
     """The moment at which the accumulated value of `reward` reaches `instant`."""
 
     reward: Expression
@@ -124,14 +120,12 @@ class RewardInstant(CommentedNode):
     instant: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class UnaryFormula(CommentedNode):
+class UnaryFormula(CommentedNode, frozen=True):
     operator: UnaryOperator
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class BinaryFormula(CommentedNode):
+class BinaryFormula(CommentedNode, frozen=True):
     """A formula with two operands, such as a probability and its threshold: `Pmin(...) ≥ 0.95`."""
 
     operator: BinaryOperator
@@ -139,15 +133,13 @@ class BinaryFormula(CommentedNode):
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class ConditionalFormula(CommentedNode):
+class ConditionalFormula(CommentedNode, frozen=True):
     test: Formula
     then: Formula
     otherwise: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Filter(CommentedNode):
+class Filter(CommentedNode, frozen=True):
     """The result of `function` on the values of `values` in the states in which `states` holds."""
 
     function: FilterFunction
@@ -155,22 +147,19 @@ class Filter(CommentedNode):
     states: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Probability(CommentedNode):
+class Probability(CommentedNode, frozen=True):
     operator: ProbabilityOperator
     path: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Quantified(CommentedNode):
+class Quantified(CommentedNode, frozen=True):
     """The requirement that `path` holds on all paths, or on at least one path."""
 
     quantifier: PathQuantifier
     path: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation(CommentedNode):
+class Expectation(CommentedNode, frozen=True):
     """The expected value of `reward` at an instant or when `reach` holds for the first time. It is accumulated until
     then if `accumulate` is not `None`.
 
@@ -186,8 +175,7 @@ class Expectation(CommentedNode):
     reward_instants: tuple[RewardInstant, ...] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SteadyState(CommentedNode):
+class SteadyState(CommentedNode, frozen=True):
     """The long-run probability of `value` if it is a state formula; otherwise its long-run average as a reward."""
 
     operator: SteadyStateOperator
@@ -195,8 +183,7 @@ class SteadyState(CommentedNode):
     accumulate: tuple[Accumulation, ...] | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PathBounds(CommentedNode):
+class PathBounds(CommentedNode, frozen=True, kw_only=True):
     """Limits on the steps, the time and the rewards within which a path formula must be satisfied."""
 
     step_bounds: Interval | None = None
@@ -204,21 +191,18 @@ class PathBounds(CommentedNode):
     reward_bounds: tuple[RewardBound, ...] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class UnaryPath(PathBounds):
+class UnaryPath(PathBounds, frozen=True):
     operator: UnaryPathOperator
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class BinaryPath(PathBounds):
+class BinaryPath(PathBounds, frozen=True):
     operator: BinaryPathOperator
     left: Formula
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Predicate(CommentedNode):
+class Predicate(CommentedNode, frozen=True):
     predicate: StatePredicate
 
 
@@ -240,8 +224,7 @@ ProperFormula: TypeAlias = (
 Formula: TypeAlias = Expression | ProperFormula
 
 
-@dataclass(frozen=True, slots=True)
-class Property(CommentedNode):
+class Property(CommentedNode, frozen=True):
     name: str
     expression: Formula
 

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from roaml.jani.deep import Steps, run
 from roaml.jani.node import Node
+from roaml.record import replace
 
 N = TypeVar("N", bound=Node)
 
@@ -24,8 +24,8 @@ def rewrite(node: N, change: Callable[[Node], Node]) -> N:
 
 def _rewritten(node: Any, change: Callable[[Node], Node]) -> Steps[Any]:
     changed = {}
-    for field in dataclasses.fields(node):
-        value = getattr(node, field.name)
+    for name in node.__struct_fields__:
+        value = getattr(node, name)
         if isinstance(value, Node):
             new: Any = yield _rewritten(value, change)
         elif isinstance(value, tuple) and any(isinstance(item, Node) for item in value):
@@ -36,5 +36,5 @@ def _rewritten(node: Any, change: Callable[[Node], Node]) -> Steps[Any]:
         else:
             continue
         if new is not value:
-            changed[field.name] = new
-    return change(dataclasses.replace(node, **changed) if changed else node)
+            changed[name] = new
+    return change(replace(node, **changed) if changed else node)

@@ -14,7 +14,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -46,6 +45,7 @@ from roaml.jani.expressions import (
 from roaml.jani.model import Function
 from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, Operator, Signature
+from roaml.record import Record
 
 MAX_ARRAY_LENGTH = 1_000_000
 MAX_CALLS = 10_000
@@ -54,22 +54,20 @@ MAX_CALLS = 10_000
 _LARGE = 1e21
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
+class DatatypeInstance(Record, frozen=True):
     """A value of a datatype."""
 
     datatype: str
     members: Mapping[str, Value]
 
 
-@dataclass(frozen=True, slots=True)
-class Some:
+class Some(Record, frozen=True):
     """An option with a value; the empty option is `None`."""
 
     content: Value
 
 
-Value: TypeAlias = "bool | int | float | tuple[Value, ...] | Record | Some | None"
+Value: TypeAlias = "bool | int | float | tuple[Value, ...] | DatatypeInstance | Some | None"
 
 
 class EvaluationError(Exception):
@@ -190,14 +188,14 @@ class _Evaluation:
                 return tuple(values)
             case DatatypeAccess(record, member):
                 value: Value = yield self.value(record, bound)
-                if not isinstance(value, Record) or member not in value.members:
+                if not isinstance(value, DatatypeInstance) or member not in value.members:
                     raise EvaluationError(f"the value has no member `{member}`", node.origin)
                 return value.members[member]
             case DatatypeValue(datatype, pairs):
                 members: dict[str, Value] = {}
                 for name, part in pairs:
                     members[name] = yield self.value(part, bound)
-                return Record(datatype, members)
+                return DatatypeInstance(datatype, members)
             case OptionAccess(option):
                 value = yield self.value(option, bound)
                 if not isinstance(value, Some):
@@ -279,7 +277,7 @@ def _kind(value: Value) -> str:
             return "number"
         case tuple():
             return "array"
-        case Record():
+        case DatatypeInstance():
             return f"record {value.datatype}"
         case Some() | None:
             return "option"
@@ -294,7 +292,7 @@ def _shown(value: Value) -> str:
             return str(value) if abs(value) < _LARGE else "a very large number"
         case tuple():
             return f"an array of {len(value)} elements"
-        case Record():
+        case DatatypeInstance():
             return f"a `{value.datatype}`"
         case Some() | None:
             return "an option"

@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from roaml.diagnostics import Finding
 from roaml.jani.deep import run
@@ -31,6 +30,7 @@ from roaml.jani.types import (
     fits,
     value_type,
 )
+from roaml.record import replace
 
 
 def model_scope(model: Model) -> TypeScope:

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
 from roaml.jani.expressions import Expression
+from roaml.record import Record
 
 
 class BasicType(enum.Enum):
@@ -19,8 +19,7 @@ class BasicType(enum.Enum):
     CONTINUOUS = "continuous"
 
 
-@dataclass(frozen=True, slots=True)
-class BoundedType:
+class BoundedType(Record, frozen=True):
     """A number with bounds. `base` is int or real; a bound that is `None` does not exist."""
 
     base: BasicType
@@ -28,27 +27,23 @@ class BoundedType:
     upper: Expression | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayType:
+class ArrayType(Record, frozen=True):
     element: Type
 
 
-@dataclass(frozen=True, slots=True)
-class DatatypeType:
+class DatatypeType(Record, frozen=True):
     """The datatype that the model declares with the name `name`."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class OptionType:
+class OptionType(Record, frozen=True):
     """An option: a value of type `content`, or no value."""
 
     content: Type
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownType:
+class UnknownType(Record, frozen=True):
     """The type of an expression with a reported error, or with several possible types. It fits every type."""
 
 

@@ -11,14 +11,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.record import Record
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class _Value:
+class _Value(Record, frozen=True):
     start: int
     end: int
 
@@ -27,8 +26,7 @@ class _Value:
         return Span(self.start, self.end)
 
 
-@dataclass(frozen=True, slots=True)
-class JsonObject(_Value):
+class JsonObject(_Value, frozen=True):
     """An object. `members` are in the order of the text; members with equal keys are all kept."""
 
     members: tuple[Member, ...]
@@ -42,8 +40,7 @@ class JsonObject(_Value):
         return None
 
 
-@dataclass(frozen=True, slots=True)
-class Nulls(_Value):
+class Nulls(_Value, frozen=True):
     """The text `null,null,...`, without white space, as one part of a list."""
 
     @property
@@ -59,8 +56,7 @@ class Nulls(_Value):
 _NULL_AND_COMMA = len("null,")
 
 
-@dataclass(frozen=True, slots=True)
-class JsonArray(_Value):
+class JsonArray(_Value, frozen=True):
     """A list. `parts` are its items, except that a run of nulls is one part. Most values in a JANI file are the nulls
     of its synchronisation table, which has a column for each automaton."""
 
@@ -95,8 +91,7 @@ class JsonArray(_Value):
                 index += 1
 
 
-@dataclass(frozen=True, slots=True)
-class JsonString(_Value):
+class JsonString(_Value, frozen=True):
     """A string. `value` has its escapes resolved. `quotes` are the lengths of the opening and closing quote in the
     text, 0 if a quote is missing."""
 
@@ -109,34 +104,29 @@ class JsonString(_Value):
         return Span(self.start + self.quotes[0], self.end - self.quotes[1])
 
 
-@dataclass(frozen=True, slots=True)
-class JsonNumber(_Value):
+class JsonNumber(_Value, frozen=True):
     """A number. `text` is the number as written; `value` is an int if `text` has neither a point nor an exponent."""
 
     value: int | float
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class JsonBool(_Value):
+class JsonBool(_Value, frozen=True):
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
-class JsonNull(_Value):
+class JsonNull(_Value, frozen=True):
     pass
 
 
-@dataclass(frozen=True, slots=True)
-class JsonError(_Value):
+class JsonError(_Value, frozen=True):
     """A value that cannot be read or is missing; a finding contains the reason."""
 
 
 JsonValue: TypeAlias = JsonObject | JsonArray | JsonString | JsonNumber | JsonBool | JsonNull | JsonError
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(Record, frozen=True):
     """One `"key": value`. The key extends from `start` to `key_end`, including quotes of the given lengths.
 
     `value` is `None` if the value is missing.

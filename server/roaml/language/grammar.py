@@ -10,11 +10,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from roaml.language.resources import schema_path
+from roaml.record import Record, field
 from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValuePart, ValueRole
 
 if TYPE_CHECKING:
@@ -24,8 +24,7 @@ _XS = "{http://www.w3.org/2001/XMLSchema}"
 _R = "{urn:roaml:roles}"
 
 
-@dataclass(frozen=True, slots=True)
-class ValueChoice:
+class ValueChoice(Record, frozen=True):
     """One value of an enumeration. `use` is the value that replaces it if it is deprecated, otherwise ""."""
 
     value: str
@@ -33,8 +32,7 @@ class ValueChoice:
     use: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class SimpleType:
+class SimpleType(Record, frozen=True):
     """The set of values of an attribute: a base type of XML Schema (without prefix) restricted by facets.
 
     Attributes:
@@ -54,8 +52,7 @@ class SimpleType:
     most: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class PortType:
+class PortType(Record, frozen=True):
     """A port of a tree node.
 
     Attributes:
@@ -74,8 +71,7 @@ class PortType:
     alias_of: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class AttributeType:
+class AttributeType(Record, frozen=True):
     """An attribute of an element.
 
     Attributes:
@@ -102,16 +98,14 @@ class AttributeType:
     port: PortType | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Multiplicity:
+class Multiplicity(Record, frozen=True):
     """The minimum and maximum number of occurrences of a child in its parent."""
 
     least: int
     most: int
 
 
-@dataclass(frozen=True, slots=True)
-class Binding:
+class Binding(Record, frozen=True):
     """An event variable. It is available in conditions if `only` is `COND`, in bodies if `only` is `BODY`, and in both
     if `only` is `None`."""
 
@@ -119,8 +113,7 @@ class Binding:
     only: ValuePart | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ElementType:
+class ElementType(Record, frozen=True):
     """An element.
 
     Attributes:
@@ -171,8 +164,7 @@ class ElementType:
         return (attribute.port.alias_of if attribute and attribute.port else "") or name
 
 
-@dataclass(frozen=True)
-class Grammar:
+class Grammar(Record, frozen=True, dict=True):
     """One language: the schema file and the names of its root elements."""
 
     schema: str
@@ -250,8 +242,7 @@ BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
 XML_GRAMMARS = (HL_SCXML, PLAIN_SCXML, SYSTEM, XML_PROPERTIES, STRUCTS, BEHAVIOR_TREE)
 
 
-@dataclass
-class _Shape:
+class _Shape(Record):
     """The parts of a complex type that have been read so far."""
 
     attributes: dict[str, AttributeType] = field(default_factory=dict)

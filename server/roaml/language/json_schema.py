@@ -11,19 +11,18 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from roaml.json_syntax import JsonArray, JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
 from roaml.language.resources import schema_path
+from roaml.record import Record
 
 Schema: TypeAlias = Mapping[str, Any]
 
 _MAX_DEPTH = 40
 
 
-@dataclass(frozen=True, slots=True)
-class Key:
+class Key(Record, frozen=True):
     """A member that an object may have."""
 
     name: str
@@ -31,8 +30,7 @@ class Key:
     required: bool
 
 
-@dataclass(frozen=True)
-class JsonGrammar:
+class JsonGrammar(Record, frozen=True, dict=True):
     """The grammar of JSON documents that a schema file defines."""
 
     name: str

@@ -13,13 +13,13 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from lxml import etree
 
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
+from roaml.record import Record
 from roaml.roles import UNBOUNDED
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
@@ -32,16 +32,14 @@ _UNREAD = ("xml-syntax", "nesting-too-deep")
 SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownElement:
+class UnknownElement(Record, frozen=True):
     """An element whose name does not occur in the grammar."""
 
     element: Element
     parent: ElementType
 
 
-@dataclass(frozen=True, slots=True)
-class MisplacedElement:
+class MisplacedElement(Record, frozen=True):
     """An element of the grammar that is not allowed in `parent`."""
 
     element: Element
@@ -49,8 +47,7 @@ class MisplacedElement:
     parent: ElementType
 
 
-@dataclass(frozen=True, slots=True)
-class TooManyElements:
+class TooManyElements(Record, frozen=True):
     """An element that exceeds the allowed number `most` of elements with its name in `parent`; `first` is the first of
     them."""
 
@@ -60,8 +57,7 @@ class TooManyElements:
     most: int
 
 
-@dataclass(frozen=True, slots=True)
-class MissingElement:
+class MissingElement(Record, frozen=True):
     """`element` lacks a required child. A child with one of `names` is required; if `names` is empty, any child is
     sufficient."""
 
@@ -70,22 +66,19 @@ class MissingElement:
     names: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownAttribute:
+class UnknownAttribute(Record, frozen=True):
     element: Element
     attribute: Attribute
     type: ElementType
 
 
-@dataclass(frozen=True, slots=True)
-class MissingAttribute:
+class MissingAttribute(Record, frozen=True):
     element: Element
     type: ElementType
     attribute: AttributeType
 
 
-@dataclass(frozen=True, slots=True)
-class InvalidValue:
+class InvalidValue(Record, frozen=True):
     """The value of an attribute is not one that the grammar allows; `required` is a noun phrase for the allowed
     values."""
 
@@ -95,16 +88,14 @@ class InvalidValue:
     required: str
 
 
-@dataclass(frozen=True, slots=True)
-class StrayText:
+class StrayText(Record, frozen=True):
     """Character data where the grammar does not allow any."""
 
     span: Span
     parent: ElementType
 
 
-@dataclass(frozen=True, slots=True)
-class SchemaViolation:
+class SchemaViolation(Record, frozen=True):
     """Any other violation of the schema."""
 
     element: Element
@@ -137,8 +128,7 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     return tuple(violations)
 
 
-@dataclass(frozen=True, slots=True)
-class Misfit:
+class Misfit(Record, frozen=True):
     """An element that the grammar does not know or does not allow where it is, with its parent and the type of the
     parent."""
 

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
+from roaml.record import Record
 from roaml.roles import Direction, NodeKind
 
 EVENT_ATTRIBUTE = "_event_probability"
@@ -18,8 +18,7 @@ WORLD_NODES = frozenset(
 """The nodes that depend on events of the world (docs/spec/mocks.md#world)."""
 
 
-@dataclass(frozen=True, slots=True)
-class PortLimits:
+class PortLimits(Record, frozen=True):
     """The numbers that are useful values of a port (docs/spec/lone-trees.md#limits).
 
     Attributes:
@@ -41,8 +40,7 @@ class PortLimits:
     effect: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Port:
+class Port(Record, frozen=True):
     """A port of a node.
 
     Attributes:
@@ -67,8 +65,7 @@ class Port:
     limits: PortLimits | None = None
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(Record, frozen=True, dict=True):
     """A node that trees can use.
 
     Attributes:
@@ -107,16 +104,14 @@ class Node:
         return self.port_by_name.get(name)
 
 
-@dataclass(frozen=True, slots=True)
-class Renamed:
+class Renamed(Record, frozen=True):
     """A name of version 3, and the name that replaces it."""
 
     name: str
     now: str
 
 
-@dataclass(frozen=True, slots=True)
-class Absent:
+class Absent(Record, frozen=True):
     """A name that is not a node of the XML format.
 
     Attributes:
@@ -132,8 +127,7 @@ class Absent:
     not_translated: str
 
 
-@dataclass(frozen=True)
-class Library:
+class Library(Record, frozen=True):
     """The nodes of one library, by name.
 
     Attributes:

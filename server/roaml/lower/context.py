@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.expr.parse import parse
 from roaml.expr.tree import Boolean, Expr, String
@@ -18,13 +17,13 @@ from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import PortRead
 from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings, find_handle, port_type
+from roaml.record import Record
 from roaml.roles import SymbolKind, ValuePart
 from roaml.scxml.events import ScxmlEvent
 from roaml.text import Decoded, Location, Span
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LoweringContext:
+class LoweringContext(Record, frozen=True, eq=False):
     """The context in which a chart is lowered.
 
     Attributes:

@@ -8,12 +8,12 @@ In initial values, `1.0` remains a real number (docs/spec/expressions.md#whole-r
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.expr.tree import ArrayLiteral, Expr, Number, ObjectLiteral, Unary
 from roaml.expr.types import Array, ScalarKind, Struct, Type, is_kind, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.expressions import SEPARATOR, Path
+from roaml.record import replace
 from roaml.scxml.model import Data
 from roaml.text import Location
 

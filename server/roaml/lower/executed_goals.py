@@ -10,7 +10,6 @@ ends the goal or passes it on to a thread.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Boolean, Expr
@@ -19,6 +18,7 @@ from roaml.expr.zero import zero
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext
 from roaml.model.system import Channel
+from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Data
 from roaml.scxml.names import sanitise
@@ -28,8 +28,7 @@ GOAL_ID = "goal_id"
 _BOOL = BASE_TYPES["bool"]
 
 
-@dataclass(frozen=True, slots=True)
-class ExecutedGoals:
+class ExecutedGoals(Record, frozen=True):
     """The variables for the executed goals of one automaton.
 
     Attributes:

@@ -11,7 +11,6 @@ renamed, structs are flattened, and indices follow the whole name.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 
 from roaml.expr.tree import (
     ArrayLiteral,
@@ -29,6 +28,7 @@ from roaml.expr.tree import (
 )
 from roaml.expr.types import UNKNOWN, Array, Type, leaves, member_type
 from roaml.lower.build import event_data, indexed, integer, length, name
+from roaml.record import Record, replace
 from roaml.scxml.names import FIELD_PREFIX
 from roaml.text import Span
 
@@ -36,8 +36,7 @@ SEPARATOR = "__"
 Path = tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class LoweringScope:
+class LoweringScope(Record, frozen=True):
     """The names that expressions in one place can use.
 
     Attributes:
@@ -51,8 +50,7 @@ class LoweringScope:
     constants: Mapping[str, int]
 
 
-@dataclass(frozen=True, slots=True)
-class AccessedVariable:
+class AccessedVariable(Record, frozen=True):
     """A variable or parameter, or a part of one, to which an expression refers.
 
     Attributes:

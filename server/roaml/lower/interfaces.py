@@ -5,12 +5,12 @@ the fields that they carry."""
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from roaml.expr.types import Type, leaves
 from roaml.lower.expressions import SEPARATOR
 from roaml.model.system import Channel, ChannelEndpoint, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS, Environment, section_of
+from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import EventRole, ScxmlEvent
 from roaml.scxml.names import (
@@ -39,8 +39,7 @@ def tree_event(node: int | str, kind: TreeEventKind) -> ScxmlEvent:
     return ScxmlEvent(tree_event_name(node, kind), EventRole.BLOCKING)
 
 
-@dataclass(frozen=True, slots=True)
-class ServiceEvents:
+class ServiceEvents(Record, frozen=True):
     """The events of one service."""
 
     service: str
@@ -64,8 +63,7 @@ class ServiceEvents:
         return ScxmlEvent(f"{self.stem}_response_client_{safe_name(client.name)}", EventRole.BLOCKING)
 
 
-@dataclass(frozen=True, slots=True)
-class ActionEvents:
+class ActionEvents(Record, frozen=True):
     """The events of one action. The name of the action determines whether its feedback waits for its receivers
     (docs/spec/jani.md#synchronising-names)."""
 

@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -35,6 +34,7 @@ from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.outline import MachineOutline
 from roaml.model.system import EntryOutline, System, SystemAutomaton
 from roaml.model.tree import TreeFile, TreeNode
+from roaml.record import Record, replace
 from roaml.roles import Direction, NodeKind
 from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
@@ -53,8 +53,7 @@ _NEVER_TICK_ENDED = frozenset(
 """The nodes that always reset a child that has ended before they tick it again."""
 
 
-@dataclass(frozen=True, eq=False)
-class LibraryTree:
+class LibraryTree(Record, frozen=True, eq=False):
     """The translation of a tree.
 
     Attributes:
@@ -78,13 +77,12 @@ class LibraryTree:
         return tuple(node_automaton(code).automaton for code in self.codes[number])
 
 
-@dataclass(frozen=True, eq=False)
-class _FrameNames:
+class _FrameNames(Record, frozen=True, eq=False):
     """The names in one use of a tree. Entries that a `<SubTree>` sets to constants are added to `initial`, with the
     texts of the constants."""
 
     frame: Frame
-    initial: dict[str, str] = field(repr=False)
+    initial: dict[str, str]
 
     def entry(self, name: str) -> str:
         value = self.frame.resolve(name)
@@ -99,8 +97,7 @@ class _FrameNames:
         return entry in self.initial
 
 
-@dataclass(eq=False)
-class _Part:
+class _Part(Record, eq=False):
     """One part of an instance, which becomes an automaton: the conditions of a node, or the node itself. `program` is
     `None` for a machine."""
 

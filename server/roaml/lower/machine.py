@@ -5,7 +5,6 @@ of its action threads."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 
 from roaml.exhaustive import assert_never
@@ -26,6 +25,7 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Handler, Machine, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.system import SystemAutomaton
+from roaml.record import replace
 from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Automaton as PlainAutomaton

@@ -4,21 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roaml.model.machine import Machine
 from roaml.model.parameters import Parameters
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.value_types import Environment
+from roaml.record import Record
 from roaml.text import Location
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TranslatableSystem:
+class TranslatableSystem(Record, frozen=True, eq=False):
     """A system without errors, with everything that its translation needs.
 
     Attributes:

@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
@@ -42,6 +41,7 @@ from roaml.model.size import Share, Size, cells_of
 from roaml.model.syntax import Expression
 from roaml.model.system import Channel, SystemAutomaton
 from roaml.model.value_types import bindings
+from roaml.record import Record, field
 from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import FLAG
 
@@ -200,8 +200,7 @@ def _count(machine: Machine, chart: Chart, children: int, program: TranslatableS
     return counted
 
 
-@dataclass(eq=False)
-class _Counter:
+class _Counter(Record, eq=False):
     """Counts the parts and actions of one copy of a chart, for a node with the given number of children."""
 
     machine: Machine

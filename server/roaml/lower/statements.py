@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -24,6 +23,7 @@ from roaml.model.expand import Reference
 from roaml.model.machine import CallChild, NoEffect, ReturnHalted, ReturnStatus, RosSend, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import unset_fields
+from roaml.record import Record, field
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import ScxmlEvent
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
@@ -49,8 +49,7 @@ def combinations(value: Expr, random_values: int) -> int | None:
 TypedParam: TypeAlias = tuple[Param, Type]
 
 
-@dataclass(eq=False)
-class StatementLowering:
+class StatementLowering(Record, eq=False):
     """Lowers the bodies of one automaton. Variables for random numbers are added to `drawn`."""
 
     context: LoweringContext

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.expr.operators import Operator
@@ -26,6 +25,7 @@ from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, Period, period, rate
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Branch, Data, If, Param, Send, State, Statement, Target, Transition
@@ -34,8 +34,7 @@ from roaml.scxml.names import CLOCK, CLOCK_STEP, FIELD_PREFIX, TIME_IS_OVER, TIM
 from roaml.text import NO_SPAN, Location
 
 
-@dataclass(frozen=True, slots=True)
-class Timer:
+class Timer(Record, frozen=True):
     """A timer of one automaton.
 
     Attributes:

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from fractions import Fraction
+
+from roaml.record import Record
 
 _MOCK = re.compile(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
 _DURATION = re.compile(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
@@ -19,8 +20,7 @@ class MockError(ValueError):
     """A mock is not valid; the message states the reason."""
 
 
-@dataclass(frozen=True, slots=True)
-class Mock:
+class Mock(Record, frozen=True):
     """A mock: the behaviour of the leaves whose name or type matches a pattern.
 
     Attributes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 from roaml.expr.operators import Operator
@@ -35,6 +34,7 @@ from roaml.mocks.mock import Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
+from roaml.record import Record, field
 from roaml.roles import NodeKind
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
@@ -51,8 +51,7 @@ MAX_TEXT_LENGTH = 100
 """The maximum length of a text in the blackboard."""
 
 
-@dataclass(frozen=True, slots=True)
-class MockOptions:
+class MockOptions(Record, frozen=True):
     """How a tree without a system is executed.
 
     Attributes:
@@ -70,8 +69,7 @@ class MockOptions:
     counts: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MockedLeaf:
+class MockedLeaf(Record, frozen=True, eq=False):
     """A leaf with its mock.
 
     Attributes:
@@ -85,8 +83,7 @@ class MockedLeaf:
     is_known: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MockedTree:
+class MockedTree(Record, frozen=True, eq=False):
     """The translation of a tree with mocks.
 
     Attributes:

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from xml.sax.saxutils import escape, quoteattr
 
 from roaml.lower.programs.values import ticks_of
 from roaml.mocks.mock import Mock
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class MockPort:
+class MockPort(Record, frozen=True):
     """A port of a mock.
 
     Attributes:
@@ -40,8 +39,7 @@ def mock_plugin(name: str, mock: Mock, rate: Fraction, ports: Sequence[MockPort]
     return "\n".join(_Plugin(name, mock.probability, duration, tuple(ports), is_condition).lines()) + "\n"
 
 
-@dataclass(frozen=True)
-class _Plugin:
+class _Plugin(Record, frozen=True):
     name: str
     success: float
     duration: int

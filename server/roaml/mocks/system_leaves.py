@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
@@ -15,6 +14,7 @@ from roaml.libraries import Node, node_in_libraries
 from roaml.mocks.plugin import MockPort
 from roaml.model.expand import Instance, PortConstant, Reference
 from roaml.model.system import System
+from roaml.record import Record, field
 from roaml.roles import NodeKind
 from roaml.scxml.names import safe_name
 
@@ -25,8 +25,7 @@ _TYPES = {"double": "float64", "float": "float32", "bool": "bool", "string": "st
           "unsigned": "uint32"}  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class SystemLeaf:
+class SystemLeaf(Record, frozen=True):
     """A type of leaves without a plugin.
 
     Attributes:
@@ -80,8 +79,7 @@ def _is_condition(nodes: list[Instance], known: Node | None) -> bool:
     return all(node.condition for node in nodes)
 
 
-@dataclass
-class _Types:
+class _Types(Record, dict=True):
     """Finds the types of ports: all ports that are bound to one variable have the same type."""
 
     system: System

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from xml.sax.saxutils import quoteattr
 
@@ -15,12 +14,12 @@ from roaml.mocks.system_leaves import SystemLeaf
 from roaml.model.expand import node_at
 from roaml.model.system import System
 from roaml.model.tree import TreeFile
+from roaml.record import Record
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
 
-@dataclass(frozen=True, slots=True)
-class PlannedMock:
+class PlannedMock(Record, frozen=True):
     """A plugin for a type of leaves. `path` is the path of its file, which need not exist."""
 
     leaf: SystemLeaf

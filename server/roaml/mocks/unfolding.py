@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.forest import Forest
@@ -14,14 +13,14 @@ from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
+from roaml.record import Record, field
 from roaml.text import Location
 
 MAX_DEPTH = 200
 """The maximum nesting depth of nodes and subtrees."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TreeFrame:
+class TreeFrame(Record, frozen=True, eq=False):
     """One use of a tree, which determines the entries to which names in the tree refer.
 
     Attributes:
@@ -83,8 +82,7 @@ def _main_tree(forest: Forest) -> Tree:
     raise TreeRefusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
 
 
-@dataclass
-class _Unfolder:
+class _Unfolder(Record):
     forest: Forest
     nodes: dict[int, ExecutedNode] = field(default_factory=dict)
     initial: dict[str, str] = field(default_factory=dict)

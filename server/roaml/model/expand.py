@@ -13,12 +13,12 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
+from roaml.record import PartlyCompared, Record, field
 from roaml.script.names import names_in
 from roaml.scxml.names import NODE_PREFIX
 from roaml.suggest import close_names
@@ -26,8 +26,7 @@ from roaml.suggest import close_names
 ROOT_NUMBER = 1000
 
 
-@dataclass(frozen=True, slots=True)
-class NodeOutline:
+class NodeOutline(Record, frozen=True):
     """A node of a tree, without positions in the text.
 
     Attributes:
@@ -45,15 +44,13 @@ class NodeOutline:
     condition: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class TreeOutline:
+class TreeOutline(Record, frozen=True):
     path: str
     id: str
     root: NodeOutline | None
 
 
-@dataclass(frozen=True, slots=True)
-class TreeFileOutline:
+class TreeFileOutline(Record, frozen=True):
     """A file of trees without positions.
 
     Attributes:
@@ -74,8 +71,7 @@ class TreeFileOutline:
     conditions: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class PortConstant:
+class PortConstant(Record, frozen=True):
     """A port with a constant text.
 
     Attributes:
@@ -86,8 +82,7 @@ class PortConstant:
     variable: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
+class Reference(Record, frozen=True):
     """A port that is bound to the blackboard variable with this full name."""
 
     variable: str
@@ -96,8 +91,7 @@ class Reference:
 PortValue: TypeAlias = PortConstant | Reference
 
 
-@dataclass(frozen=True, slots=True)
-class NodeSource:
+class NodeSource(Record, frozen=True):
     """A reference to a node in a file: the file, the tree, and the position of the node in the tree."""
 
     path: str
@@ -105,8 +99,7 @@ class NodeSource:
     position: int
 
 
-@dataclass(frozen=True, slots=True)
-class TreeUse:
+class TreeUse(PartlyCompared, frozen=True):
     """One use of a tree: the executed tree itself, or a `<SubTree>` node.
 
     Attributes:
@@ -117,15 +110,16 @@ class TreeUse:
         scripts: the conditions and scripts of the `<SubTree>`, by attribute.
     """
 
+    UNCOMPARED = frozenset({"frame"})
+
     name: str
     tree: str
     outer: int | None
-    frame: Frame = field(compare=False, repr=False)
+    frame: Frame
     scripts: tuple[tuple[str, str], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Instance:
+class Instance(Record, frozen=True):
     """One node of the executed tree.
 
     Attributes:
@@ -274,8 +268,7 @@ MAX_SUBTREES = 1_000
 """The maximum number of nested subtrees. The length of the names of blackboard variables grows with this number."""
 
 
-@dataclass(frozen=True, slots=True)
-class TreeExtent:
+class TreeExtent(Record, frozen=True):
     """The size of a tree with all subtrees expanded, computed without expanding them.
 
     Attributes:
@@ -355,8 +348,7 @@ def _by_id(files: tuple[TreeFileOutline, ...]) -> dict[str, TreeOutline]:
     return {tree.id: tree for file in reversed(files) for tree in reversed(file.trees)}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Frame:
+class Frame(Record, frozen=True, eq=False):
     """One use of a tree, with the mapping of the names in it to the full names of blackboard variables.
 
     Attributes:
@@ -386,7 +378,7 @@ class Frame:
     names: frozenset[str]
     inside: frozenset[str]
     scripts: tuple[tuple[str, str], ...] = ()
-    looked_up: dict[str, PortValue | None] = field(default_factory=dict, repr=False)
+    looked_up: dict[str, PortValue | None] = field(default_factory=dict)
 
     def resolve(self, name: str) -> PortValue:
         """The blackboard variable or constant that `name` refers to in this use, after all remappings.
@@ -418,8 +410,7 @@ class Frame:
         return PortConstant(text) if variable is None else self.resolve(key if variable == "=" else variable)
 
 
-@dataclass(frozen=True, slots=True)
-class Expansion:
+class Expansion(Record, frozen=True):
     """The executed tree.
 
     Attributes:
@@ -456,8 +447,7 @@ def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
     return _Expander(files).run(main)
 
 
-@dataclass(slots=True)
-class _Placed:
+class _Placed(Record):
     """An instance while it is built: its children may not exist yet."""
 
     plugin: str
@@ -599,8 +589,7 @@ def _names(tree: TreeOutline) -> frozenset[str]:
 # ------------------------------------------------------------------- remappings
 
 
-@dataclass(frozen=True, slots=True)
-class StrayRemap:
+class StrayRemap(Record, frozen=True):
     """An attribute of a `<SubTree>` whose name is not a variable of the subtree.
 
     Attributes:

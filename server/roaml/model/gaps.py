@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
@@ -23,6 +22,7 @@ from roaml.model.machine import Declaration, Handler, Machine, RosSend, Send, Se
 from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, ValueUse, find_handle
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -68,8 +68,7 @@ class InterfaceAct(NamedTuple):
 Act: TypeAlias = GapAct | InterfaceAct
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
+class Gap(Record, frozen=True):
     """A fact that an unreadable part of a file may contain.
 
     Attributes:
@@ -94,8 +93,7 @@ def answers(act: Act, missing: Act) -> bool:
     return act.kind is missing.kind and (act.part is None or act == missing._replace(is_of_field=False))
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedGap:
+class PlacedGap(Record, frozen=True):
     gap: Gap
     span: Span
 

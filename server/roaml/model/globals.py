@@ -8,7 +8,6 @@ have variables with their lengths. The translation does not read this table; a t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
@@ -16,6 +15,7 @@ from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import (
     BLACKBOARD_ANSWER,
@@ -37,8 +37,7 @@ FindInterface = Callable[[str, str], InterfaceType | None]
 """Finds a ROS type by its kind (msg, srv or action) and its name as written; `None` if there is none."""
 
 
-@dataclass(frozen=True, slots=True)
-class GlobalVariable:
+class GlobalVariable(Record, frozen=True):
     """A variable of the translated system.
 
     Attributes:

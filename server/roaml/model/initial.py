@@ -4,17 +4,16 @@ an array or object literal of constants."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr import infer
 from roaml.expr.tree import ArrayLiteral, Expr, ObjectLiteral
 from roaml.expr.types import Array, ScalarKind, Struct, Type, Unknown, fits, is_kind
+from roaml.record import Record
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class MissingMembers:
+class MissingMembers(Record, frozen=True):
     """An object literal has no value for the members `names` of the struct."""
 
     span: Span
@@ -22,8 +21,7 @@ class MissingMembers:
     names: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ExtraMember:
+class ExtraMember(Record, frozen=True):
     """An object literal has a member that the struct does not have, or that is repeated (`twice`)."""
 
     span: Span
@@ -32,15 +30,13 @@ class ExtraMember:
     twice: bool
 
 
-@dataclass(frozen=True, slots=True)
-class WrongType:
+class WrongType(Record, frozen=True):
     span: Span
     given: Type
     required: Type
 
 
-@dataclass(frozen=True, slots=True)
-class TooLong:
+class TooLong(Record, frozen=True):
     """A literal has more elements than the array can hold."""
 
     span: Span

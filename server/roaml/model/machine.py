@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 from roaml.language import ElementType
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
+from roaml.record import Record
 from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
@@ -29,8 +29,7 @@ class Dialect(enum.Enum):
     FOREIGN = "a format of another tool"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Data:
+class Data(Record, frozen=True, eq=False):
     """A variable of a machine. `comment_type` means that its type is written in a comment before the element
     (docs/spec/machines.md#type-comment)."""
 
@@ -43,8 +42,7 @@ class Data:
     comment_type: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Declaration:
+class Declaration(Record, frozen=True, eq=False):
     """A ROS interface or timer that the machine uses.
 
     Attributes:
@@ -65,8 +63,7 @@ class Declaration:
     rate: Name | PortRead | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Port:
+class Port(Record, frozen=True, eq=False):
     """A port of a behavior tree plugin."""
 
     element: Element
@@ -75,8 +72,7 @@ class Port:
     direction: Direction
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Param:
+class Param(Record, frozen=True, eq=False):
     """A `<param>` of an event or a `<field>` of a ROS message."""
 
     element: Element
@@ -84,22 +80,19 @@ class Param:
     value: Value | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Assign:
+class Assign(Record, frozen=True, eq=False):
     element: Element
     location: Expression | None
     value: Value | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Send:
+class Send(Record, frozen=True, eq=False):
     element: Element
     event: Name | None
     params: tuple[Param, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Branch:
+class Branch(Record, frozen=True, eq=False):
     """A branch of an `<if>`. `element` is the `<if>`, `<elseif>` or `<else>`; a valid `<if>` or `<elseif>` has a
     condition."""
 
@@ -108,8 +101,7 @@ class Branch:
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class If:
+class If(Record, frozen=True, eq=False):
     """An `<if>` with its branches. `otherwise` is the branch of `<else/>`, if there is one."""
 
     element: Element
@@ -117,8 +109,7 @@ class If:
     otherwise: Branch | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RosSend:
+class RosSend(Record, frozen=True, eq=False):
     """An element that sends a part of a ROS interface, such as a message, request, response, goal or result.
 
     `goal_id` and `thread_id` are `None` if the attribute is missing or the element cannot have it.
@@ -138,19 +129,16 @@ class RosSend:
         return self.type.sends
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ReturnStatus:
+class ReturnStatus(Record, frozen=True, eq=False):
     element: Element
     status: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ReturnHalted:
+class ReturnHalted(Record, frozen=True, eq=False):
     element: Element
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CallChild:
+class CallChild(Record, frozen=True, eq=False):
     """An element that ticks a child, or halts it if `halts` is true. `child` is the index of the child, or a variable
     that contains it."""
 
@@ -159,15 +147,13 @@ class CallChild:
     child: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SetOutput:
+class SetOutput(Record, frozen=True, eq=False):
     element: Element
     key: Name | None
     value: Expression | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NoEffect:
+class NoEffect(Record, frozen=True, eq=False):
     """An element that is accepted and has no effect: `<log>`."""
 
     element: Element
@@ -176,8 +162,7 @@ class NoEffect:
 Statement: TypeAlias = Assign | Send | If | RosSend | ReturnStatus | ReturnHalted | CallChild | SetOutput | NoEffect
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Target:
+class Target(Record, frozen=True, eq=False):
     """A target of a transition. `element` is the `<target>`; `None` for the attribute `target`. `probability` is the
     text of the attribute `prob`; `None` if it is missing."""
 
@@ -187,8 +172,7 @@ class Target:
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Handler:
+class Handler(Record, frozen=True, eq=False):
     """A transition or a callback that works like one.
 
     Attributes:
@@ -216,16 +200,14 @@ class Handler:
         return len(self.targets) > 1 and self.trigger is not ProtocolPart.GOAL_RESPONSE
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Body:
+class Body(Record, frozen=True, eq=False):
     """The content of `<onentry>` or `<onexit>`."""
 
     element: Element
     statements: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(Record, frozen=True, eq=False):
     element: Element
     id: Name | None
     entry: Body | None
@@ -233,8 +215,7 @@ class State:
     handlers: tuple[Handler, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Chart:
+class Chart(Record, frozen=True, eq=False, dict=True):
     """The states and data of a machine itself, or those of one action thread.
 
     `scope` is "" for the machine itself and distinguishes the threads of a file.
@@ -275,8 +256,7 @@ class Chart:
                 yield body
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Thread:
+class Thread(Record, frozen=True, eq=False):
     """An action thread: `count` copies of `chart` (`None` if the number is invalid)."""
 
     element: Element
@@ -285,8 +265,7 @@ class Thread:
     chart: Chart
 
 
-@dataclass(frozen=True, eq=False)
-class Machine:
+class Machine(Record, frozen=True, eq=False, dict=True):
     """One document.
 
     Attributes:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+from roaml.record import Record
 
 MAX_FIELDS = 10_000
 """The maximum number of fields of a struct or message, including those of its members."""
@@ -13,8 +14,7 @@ MAX_DEPTH = 100
 """The maximum nesting depth of structs and messages."""
 
 
-@dataclass(frozen=True, slots=True)
-class TypeExtent:
+class TypeExtent(Record, frozen=True):
     """The size of a struct or message.
 
     Attributes:

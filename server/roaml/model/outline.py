@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.expr.tree import Expr, Member, walk
@@ -33,12 +32,12 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
+from roaml.record import Record
 from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
 
 
-@dataclass(frozen=True, slots=True)
-class PortOutline:
+class PortOutline(Record, frozen=True):
     """A port of a plugin. `type` is the type as written; `read` and `written` state whether the machine reads or writes
     the port."""
 
@@ -49,16 +48,14 @@ class PortOutline:
     written: bool
 
 
-@dataclass(frozen=True, slots=True)
-class SentField:
+class SentField(Record, frozen=True):
     """A field or parameter that is sent, with its type."""
 
     name: str
     type: Type
 
 
-@dataclass(frozen=True, slots=True)
-class InterfaceUse:
+class InterfaceUse(Record, frozen=True):
     """A declared ROS interface and its uses by the machine.
 
     Attributes:
@@ -80,16 +77,14 @@ class InterfaceUse:
     awaited: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class EventSent:
+class EventSent(Record, frozen=True):
     """A `<send>`. A parameter whose value is a struct is listed once, without its members."""
 
     event: str
     params: tuple[SentField, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class EventReceived:
+class EventReceived(Record, frozen=True):
     """A transition on an event.
 
     Attributes:
@@ -102,8 +97,7 @@ class EventReceived:
     forwarded: bool
 
 
-@dataclass(frozen=True, slots=True)
-class TimerOutline:
+class TimerOutline(Record, frozen=True):
     """A declared timer.
 
     Attributes:
@@ -118,14 +112,12 @@ class TimerOutline:
     users: int
 
 
-@dataclass(frozen=True, slots=True)
-class ThreadOutline:
+class ThreadOutline(Record, frozen=True):
     server: str
     count: int
 
 
-@dataclass(frozen=True, slots=True)
-class PluginOutline:
+class PluginOutline(Record, frozen=True):
     """The part that a machine has in a behavior tree.
 
     Attributes:
@@ -147,8 +139,7 @@ class PluginOutline:
     halts_children: bool
 
 
-@dataclass(frozen=True)
-class MachineOutline:
+class MachineOutline(Record, frozen=True, dict=True):
     """The outline of a machine.
 
     Attributes:

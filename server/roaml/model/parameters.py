@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from roaml.record import Record, replace
 
 DEFAULT_MAX_ARRAY_SIZE = 100
 DEFAULT_TICK_RATE = 1.0
@@ -13,8 +13,7 @@ MAX_RANDOM_VALUES = 10_000
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 
-@dataclass(frozen=True, slots=True)
-class Parameters:
+class Parameters(Record, frozen=True):
     """The parameters with which a system is translated.
 
     Attributes:
@@ -30,8 +29,7 @@ class Parameters:
     random_values: int = DEFAULT_RANDOM_VALUES
 
 
-@dataclass(frozen=True, slots=True)
-class Overrides:
+class Overrides(Record, frozen=True):
     """Parameters that replace those of a system file. A parameter that is `None` replaces nothing; see `Parameters`."""
 
     max_time: int | None = None

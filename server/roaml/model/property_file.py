@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.exhaustive import Vocabulary
 from roaml.language import XML_PROPERTIES
 from roaml.model.syntax import Expression, Name, TypeRef, expression_from, expression_of, name_of, type_of
 from roaml.observers.notation import Notation, read
+from roaml.record import Record
 from roaml.text import Decoded
 from roaml.xml_syntax import Document, Element
 
@@ -76,8 +76,7 @@ PORTS = "ports"
 """The section with the ports."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PortVariable:
+class PortVariable(Record, frozen=True, eq=False):
     """A variable of a port. `field` is the dotted path of a field in a message, or the parameter of an event."""
 
     element: Element
@@ -88,8 +87,7 @@ class PortVariable:
     initial: Expression | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Port:
+class Port(Record, frozen=True, eq=False):
     """A port. `name` is the interface, node or event that it listens to; `event` is the part of the interface."""
 
     element: Element
@@ -107,16 +105,14 @@ class Port:
         return _PARTS.get(self.event.value) if self.event is not None else None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class WrittenScope:
+class WrittenScope(Record, frozen=True, eq=False):
     element: Element
     type: Name | None
     event: Expression | None
     until: Expression | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TimeInterval:
+class TimeInterval(Record, frozen=True, eq=False):
     element: Element
     time: Name | None
     after: Name | None
@@ -124,8 +120,7 @@ class TimeInterval:
     unit: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class WrittenFormula:
+class WrittenFormula(Record, frozen=True, eq=False):
     """A formula with the conditions that are its atoms, in the order of `notation.atoms`."""
 
     source: Decoded
@@ -133,8 +128,7 @@ class WrittenFormula:
     atoms: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class WrittenProperty:
+class WrittenProperty(Record, frozen=True, eq=False):
     """A property as written. `conditions` are the conditions in `<event>` or
     `<events>`."""
 
@@ -159,8 +153,7 @@ class WrittenProperty:
             yield from self.formula.atoms
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PropertyFile:
+class PropertyFile(Record, frozen=True, eq=False):
     document: Document
     element: Element
     ports: tuple[Port, ...]

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.comparison import read_comparison
@@ -59,13 +58,13 @@ from roaml.observers.properties import (
 from roaml.observers.properties import (
     walk as walk_formula,
 )
+from roaml.record import Record
 from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
 
-@dataclass(frozen=True, slots=True)
-class LinkedProperty:
+class LinkedProperty(Record, frozen=True):
     """A property without problems, for which an observer can be built.
 
     Attributes:
@@ -85,8 +84,7 @@ class LinkedProperty:
     sentence: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LinkedFile:
+class LinkedFile(Record, frozen=True, eq=False):
     """A linked file; `properties` are those without problems."""
 
     file: PropertyFile

@@ -9,7 +9,6 @@ between that automaton and the server. Ports listen to the event of the client.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
@@ -22,6 +21,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
+from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import CANCEL_PREFIX, FIELD_PREFIX, flag_of, safe_name, sanitise, topic_message
 from roaml.scxml.observed import PortEvent
@@ -82,8 +82,7 @@ _GIVEN_BY = {
 """Kind of variable -> the parts of an action that carry its value."""
 
 
-@dataclass(frozen=True, slots=True)
-class LinkedVariable:
+class LinkedVariable(Record, frozen=True):
     """A variable of a port that is linked to a parameter of the events of the port.
 
     Attributes:
@@ -98,8 +97,7 @@ class LinkedVariable:
     written: PortVariable
 
 
-@dataclass(frozen=True, slots=True)
-class LinkedPort:
+class LinkedPort(Record, frozen=True):
     """A port that is linked to its events. `is_known` is false if the events cannot be determined."""
 
     written: Port

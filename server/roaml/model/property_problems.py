@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
@@ -35,8 +35,7 @@ class Remedy(enum.Enum):
     ADD_SCOPE = "add a scope to the element"
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
+class Problem(Record, frozen=True):
     """A problem of a property file.
 
     Attributes:

@@ -9,13 +9,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, Struct, StructKind, Type, leaves, unwrap
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import SECTION_NAMES, ArrayKind, Definition, Field, FieldType, Kind, Section
 from roaml.model.nesting import TypeExtent, extents
+from roaml.record import Record
 
 FindMessage: TypeAlias = Callable[[str], Definition | NotFound]
 """Finds the definition of a message by its full name, `package/Name`."""
@@ -24,8 +24,7 @@ _HL_NAMES = {"byte": "uint8", "char": "uint8", "wstring": "string"}
 _REFERENCE_SEQUENCES = frozenset(("int32", "float32", "float64"))
 
 
-@dataclass(frozen=True, slots=True)
-class RepeatedType:
+class RepeatedType(Record, frozen=True):
     """A ROS type that two files define differently.
 
     Attributes:
@@ -41,8 +40,7 @@ class RepeatedType:
     other: str
 
 
-@dataclass(frozen=True, slots=True)
-class InterfaceType:
+class InterfaceType(Record, frozen=True):
     """A ROS interface type in terms of HL-SCXML.
 
     Attributes:

@@ -5,10 +5,10 @@ computes the size before the translation."""
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Array, EmptyArray, ScalarKind, Struct, Type, is_kind
+from roaml.record import Record
 
 MAX_CELLS = 1_000_000
 """The default maximum number of cells of a system (`max-cells`)."""
@@ -17,8 +17,7 @@ MAX_PARTS = 3_000_000
 """The default maximum number of parts of a system (`max-parts`)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Share:
+class Share(Record, frozen=True):
     """The contribution of one part of the models to a size.
 
     Attributes:
@@ -34,8 +33,7 @@ class Share:
     symbol: Symbol | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Size:
+class Size(Record, frozen=True):
     """The size of a translated system.
 
     Attributes:
@@ -49,8 +47,7 @@ class Size:
     parts: tuple[Share, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(Record, frozen=True):
     """The maximum size of a system that is translated."""
 
     cells: int = MAX_CELLS

@@ -4,17 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Struct, Type, TypeName, wrap
 from roaml.model.nesting import TypeExtent, extents
 from roaml.model.syntax import Name, TypeRef, name_of, type_of
+from roaml.record import Record
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
 
 
-@dataclass(frozen=True, slots=True)
-class MemberDeclaration:
+class MemberDeclaration(Record, frozen=True):
     """The declaration of a member of a struct. `span` is the whole declaration."""
 
     name: Name | None
@@ -22,8 +21,7 @@ class MemberDeclaration:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class StructDeclaration:
+class StructDeclaration(Record, frozen=True):
     """The declaration of a struct. `complete` means that all parts of it could be read."""
 
     name: Name | None
@@ -40,8 +38,7 @@ class StructDeclaration:
         return StructOutline(self.name.value, members, self.complete and all(m.name for m in self.members))
 
 
-@dataclass(frozen=True, slots=True)
-class StructOutline:
+class StructOutline(Record, frozen=True):
     """The name and the members of a struct, without positions. The type of a member is `None` if it cannot be read.
     `complete` means that all declarations of members could be read."""
 

@@ -3,28 +3,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.diagnostics import Finding
 from roaml.expr.parse import parse
 from roaml.expr.tree import Expr
 from roaml.expr.types import TypeName, parse_type
+from roaml.record import Record
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Attribute, Document, Element
 from roaml.xml_syntax.names import SPACE
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Record, frozen=True):
     """A name in the file, with its position."""
 
     value: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Expression:
+class Expression(Record, frozen=True):
     """An expression and its syntax errors. `source` contains the decoded text and its mapping to the file."""
 
     source: Decoded
@@ -42,8 +40,7 @@ class Expression:
         return bool(self.findings)
 
 
-@dataclass(frozen=True, slots=True)
-class PortRead:
+class PortRead(Record, frozen=True):
     """A `<bt_get_input key="…"/>`, which reads the value of a port."""
 
     key: Name | None
@@ -53,8 +50,7 @@ class PortRead:
 Value: TypeAlias = Expression | PortRead
 
 
-@dataclass(frozen=True, slots=True)
-class TypeRef:
+class TypeRef(Record, frozen=True):
     """A type as written; `name` is `None` if the text does not have the form of a type."""
 
     text: str

@@ -11,7 +11,6 @@ from __future__ import annotations
 import bisect
 import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
@@ -32,6 +31,7 @@ from roaml.model.outline import (
 )
 from roaml.model.parameters import Parameters
 from roaml.model.tree import EXPLICIT, SUBTREES
+from roaml.record import Record, field
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.scxml.event_data import parameter_types
 from roaml.scxml.names import (
@@ -59,8 +59,7 @@ Fact: TypeAlias = "tuple[Act, str | None]"
 name."""
 
 
-@dataclass(frozen=True, slots=True)
-class SystemAutomaton:
+class SystemAutomaton(Record, frozen=True):
     """A machine in its place in the system: a ROS node, or the copy of a plugin for one node of the tree.
 
     Attributes:
@@ -93,8 +92,7 @@ class SystemAutomaton:
         return Symbol(self.path, use.kind, use.handle)
 
 
-@dataclass(frozen=True, slots=True)
-class ChannelEndpoint:
+class ChannelEndpoint(Record, frozen=True):
     """An automaton that uses a topic, service or action, with its declaration."""
 
     automaton: SystemAutomaton
@@ -105,8 +103,7 @@ class ChannelEndpoint:
         return self.automaton.symbol(self.use)
 
 
-@dataclass(slots=True)
-class Channel:
+class Channel(Record):
     """A topic, service or action. `sources` are its publishers or servers, `users` its subscribers or clients."""
 
     name: str
@@ -118,8 +115,7 @@ class Channel:
         return [*self.sources, *self.users]
 
 
-@dataclass(slots=True)
-class PlainEvent:
+class PlainEvent(Record):
     """A plain event with all its senders and receivers."""
 
     name: str
@@ -133,8 +129,7 @@ class PlainEvent:
         return Struct("", tuple(params.items()), f"data of event {self.name}", StructKind.EVENT, self.name)
 
 
-@dataclass(frozen=True, slots=True)
-class BoundPort:
+class BoundPort(Record, frozen=True):
     """A port that is bound to a blackboard variable."""
 
     automaton: SystemAutomaton
@@ -146,8 +141,7 @@ class BoundPort:
         return self.automaton.instance.source
 
 
-@dataclass(frozen=True, slots=True)
-class EntryOutline:
+class EntryOutline(Record, frozen=True):
     """A variable of the blackboard of a tree that is executed as BehaviorTree.CPP executes it. `type` is the name of
     its type; `read` and `written` state whether nodes or scripts read and write it."""
 
@@ -160,8 +154,7 @@ _BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAc
 """The acts that do not affect which events a machine handles and sends."""
 
 
-@dataclass(frozen=True, eq=False)
-class System:
+class System(Record, frozen=True, eq=False, dict=True):
     """A system file and everything that it names.
 
     Attributes:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.disk import UnreadableReason
 from roaml.exhaustive import Vocabulary
 from roaml.language import SYSTEM
@@ -22,6 +20,7 @@ from roaml.model.parameters import (
 )
 from roaml.model.spelling import meant
 from roaml.model.syntax import Name, name_of
+from roaml.record import Record
 from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Document, Element
@@ -44,8 +43,7 @@ PLUGIN_TYPES = ("bt-plugin-ascxml", "bt-plugin-ros-scxml")
 NODE_TYPES = ("node-ascxml", "ros-scxml")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SystemInput:
+class SystemInput(Record, frozen=True, eq=False):
     """An `<input>`: a file of the system. `section` is the name of the enclosing element."""
 
     element: Element
@@ -54,8 +52,7 @@ class SystemInput:
     src: Name | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ListedFile:
+class ListedFile(Record, frozen=True, eq=False):
     """An `<input>` and the file it names.
 
     Attributes:
@@ -105,8 +102,7 @@ def required_kind(entry: SystemInput) -> FileKind | None:
     return _REQUIRED_KINDS[close[0]] if close else None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SystemFile:
+class SystemFile(Record, frozen=True, eq=False):
     """One system file.
 
     Attributes:

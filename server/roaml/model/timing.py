@@ -5,19 +5,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.model.exact_number import exact_number
 from roaml.model.expand import PortConstant
 from roaml.model.parameters import NANOSECONDS, Parameters
 from roaml.model.system import System, SystemAutomaton
+from roaml.record import Record
 
 NANOSECONDS_PER_SECOND = 10**9
 
 
-@dataclass(frozen=True, slots=True)
-class Period:
+class Period(Record, frozen=True):
     """A period of `count` units of `unit` ns."""
 
     count: int

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
+from roaml.record import Record
 from roaml.roles import Direction, ValueRole
 from roaml.suggest import are_similar
 from roaml.xml_syntax import Attribute, Document, Element, Text
@@ -23,8 +23,7 @@ _VARIABLE = re.compile(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
 _BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PortSetting:
+class PortSetting(Record, frozen=True, eq=False):
     """An attribute of a node that sets a port. `key` is the main name of the port, even if an alias of it is
     written."""
 
@@ -38,8 +37,7 @@ class PortSetting:
         return blackboard_variable(self.value.value)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TreeNode:
+class TreeNode(Record, frozen=True, eq=False):
     """A node of a tree.
 
     Attributes:
@@ -61,8 +59,7 @@ class TreeNode:
     compact: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Tree:
+class Tree(Record, frozen=True, eq=False):
     """A `<BehaviorTree>`; `roots` contains one node unless the file is invalid."""
 
     element: Element
@@ -70,8 +67,7 @@ class Tree:
     roots: tuple[TreeNode, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PortModel:
+class PortModel(Record, frozen=True, eq=False):
     """A port in `<TreeNodesModel>`.
 
     Attributes:
@@ -88,8 +84,7 @@ class PortModel:
     text: str = ""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NodeModel:
+class NodeModel(Record, frozen=True, eq=False):
     element: Element
     id: Name | None
     kind: str
@@ -105,15 +100,13 @@ class NodeModel:
         return self.kind == "Condition"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Include:
+class Include(Record, frozen=True, eq=False):
     element: Element
     path: Name | None
     package: Name | None
 
 
-@dataclass(frozen=True, eq=False)
-class TreeFile:
+class TreeFile(Record, frozen=True, eq=False, dict=True):
     """A file of trees.
 
     Attributes:

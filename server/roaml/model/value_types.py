@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from roaml.expr.infer import Problem, RandomUsed, infer
@@ -48,6 +47,7 @@ from roaml.model.machine import (
 )
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Name, PortRead, Value
+from roaml.record import Record, field, replace
 from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES
 from roaml.xml_syntax import Element
@@ -84,8 +84,7 @@ class ValueUse(enum.Enum):
     BOUND = "bound"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BranchConditions:
+class BranchConditions(Record, frozen=True, eq=False):
     """A condition of an enclosing `<if>`, whether it holds, and the earlier conditions as a linked list.
 
     Each branch of an `<if>` has the conditions of all branches before it, so earlier conditions are shared in memory.
@@ -103,8 +102,7 @@ class BranchConditions:
             node = node.before
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ValuePlace:
+class ValuePlace(Record, frozen=True, eq=False):
     """The place of a value in a machine.
 
     Attributes:
@@ -124,8 +122,7 @@ class ValuePlace:
     branch_conditions: BranchConditions | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TypedValue:
+class TypedValue(Record, frozen=True, eq=False):
     """A value with its type and problems.
 
     Attributes:
@@ -146,8 +143,7 @@ class TypedValue:
     sent: Type = UNKNOWN
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TypedMachine:
+class TypedMachine(Record, frozen=True, eq=False):
     """A machine with the types of its values.
 
     Attributes:
@@ -328,8 +324,7 @@ def unset_fields(statement: RosSend, machine: Machine, environment: Environment)
 # -------------------------------------------------------------------- the pass
 
 
-@dataclass(eq=False)
-class _Typer:
+class _Typer(Record, eq=False):
     machine: Machine
     environment: Environment
     values: list[TypedValue] = field(default_factory=list)

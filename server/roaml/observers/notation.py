@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
 from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Since, Window, historically, implies, once
+from roaml.record import Record
 from roaml.text import Span
 
 MAX_DEPTH = 100
@@ -24,8 +24,7 @@ MAX_OPERATORS = 200
 """The maximum number of binary operators in a formula."""
 
 
-@dataclass(frozen=True, slots=True)
-class Notation:
+class Notation(Record, frozen=True):
     """The result of parsing a formula.
 
     Attributes:

@@ -10,29 +10,26 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.record import Record
 
-@dataclass(frozen=True, slots=True)
-class Literal:
+
+class Literal(Record, frozen=True):
     value: bool | int
 
 
-@dataclass(frozen=True, slots=True)
-class Input:
+class Input(Record, frozen=True):
     """Whether a condition of the property is true at this letter."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Tick:
+class Tick(Record, frozen=True):
     """Whether this letter is a step of the clock."""
 
 
-@dataclass(frozen=True, slots=True)
-class Register:
+class Register(Record, frozen=True):
     """A variable of an observer.
 
     Attributes:
@@ -44,8 +41,7 @@ class Register:
     limit: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Negation:
+class Negation(Record, frozen=True):
     operand: Expression
 
 
@@ -58,15 +54,13 @@ class BinaryOperator(enum.Enum):
     SUBTRACT = "-"
 
 
-@dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(Record, frozen=True):
     operator: BinaryOperator
     left: Expression
     right: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(Record, frozen=True):
     """`then` if `test` is true, else `otherwise`."""
 
     test: Expression
@@ -80,14 +74,12 @@ TRUE = Literal(True)
 FALSE = Literal(False)
 
 
-@dataclass(frozen=True, slots=True)
-class Assign:
+class Assign(Record, frozen=True):
     register: Register
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
+class Outputs(Record, frozen=True):
     """Registers and conditions that contain the verdict on a trace. A register that is true stays true.
 
     Attributes:
@@ -108,8 +100,7 @@ class Outputs:
     opened: Register | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Observer:
+class Observer(Record, frozen=True):
     """An observer; `inputs` are the conditions whose values it reads at each letter."""
 
     inputs: tuple[str, ...]

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
+
+from roaml.record import Record
 
 LEFT = "left"
 """The only or the first condition of a pattern."""
@@ -61,8 +62,7 @@ class ScopeKind(enum.Enum):
         return self in (ScopeKind.BEFORE, ScopeKind.BETWEEN)
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
+class Window(Record, frozen=True):
     """The distances in time that a property allows, in clock steps.
 
     Raises:
@@ -81,8 +81,11 @@ class Window:
         return self.lower == 0 and self.upper is None
 
 
-@dataclass(frozen=True, slots=True)
-class PatternProperty:
+ANY_TIME = Window()
+"""All distances in time."""
+
+
+class PatternProperty(Record, frozen=True):
     """A pattern that holds in every stretch of a scope.
 
     Raises:
@@ -91,7 +94,7 @@ class PatternProperty:
 
     pattern: Pattern
     scope: ScopeKind = ScopeKind.GLOBALLY
-    window: Window = Window()
+    window: Window = ANY_TIME
 
     def __post_init__(self) -> None:
         if self.pattern is Pattern.RECURRENCE and (self.window.upper is None or self.window.lower > 0):
@@ -113,41 +116,35 @@ class PatternProperty:
 # --------------------------------------------------------------------- formulas
 
 
-@dataclass(frozen=True, slots=True)
-class Atom:
+class Atom(Record, frozen=True):
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Record, frozen=True):
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Not:
+class Not(Record, frozen=True):
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class And:
+class And(Record, frozen=True):
     left: Formula
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Or:
+class Or(Record, frozen=True):
     left: Formula
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Since:
+class Since(Record, frozen=True):
     """`right` was true at some letter up to the current one whose distance is in `window`, and `left` at all letters
     after it."""
 
     left: Formula
     right: Formula
-    window: Window = Window()
+    window: Window = ANY_TIME
 
 
 Formula: TypeAlias = Atom | Constant | Not | And | Or | Since
@@ -157,12 +154,12 @@ def implies(left: Formula, right: Formula) -> Formula:
     return Or(Not(left), right)
 
 
-def once(operand: Formula, window: Window = Window()) -> Formula:
+def once(operand: Formula, window: Window = ANY_TIME) -> Formula:
     """The formula: `operand` was true at some letter up to the current one whose distance is in `window`."""
     return Since(Constant(True), operand, window)
 
 
-def historically(operand: Formula, window: Window = Window()) -> Formula:
+def historically(operand: Formula, window: Window = ANY_TIME) -> Formula:
     """The formula: `operand` was true at all letters up to the current one whose distance is in `window`."""
     return Not(once(Not(operand), window))
 
@@ -186,8 +183,7 @@ def walk(formula: Formula) -> Iterator[Formula]:
         stack += reversed(children(node))
 
 
-@dataclass(frozen=True, slots=True)
-class FormulaProperty:
+class FormulaProperty(Record, frozen=True):
     """The property that a formula is true at every letter."""
 
     formula: Formula

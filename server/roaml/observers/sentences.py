@@ -7,7 +7,6 @@ Conditions and durations are given as text, so that incomplete properties can be
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.observers.properties import (
     CLOSE,
@@ -25,13 +24,13 @@ from roaml.observers.properties import (
     Since,
     Window,
 )
+from roaml.record import Record
 
 _MAX_DEPTH = 8
 """The number of levels of a formula that are written out."""
 
 
-@dataclass(frozen=True, slots=True)
-class SentenceClause:
+class SentenceClause(Record, frozen=True):
     """A condition as a clause: `/charge` (subject) is (auxiliary) called (verb)."""
 
     subject: str
@@ -49,8 +48,7 @@ class SentenceClause:
 UNKNOWN = SentenceClause("…", "")
 
 
-@dataclass(frozen=True, slots=True)
-class Times:
+class Times(Record, frozen=True):
     """Bounds on a time, as text with units such as "5 s"; an empty string means that there is no bound."""
 
     after: str = ""

@@ -13,7 +13,6 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
@@ -55,6 +54,7 @@ from roaml.project.files import MAX_CHARACTERS, Files
 from roaml.project.memo import Memo
 from roaml.project.paths import resolve
 from roaml.project.settings import folders_above
+from roaml.record import Record, replace
 from roaml.roles import SymbolKind
 from roaml.scxml.event_data import Round, infer_in_rounds
 from roaml.scxml.names import sanitise
@@ -69,8 +69,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Structs:
+class Structs(Record, frozen=True, eq=False):
     """The structs of a system.
 
     Attributes:

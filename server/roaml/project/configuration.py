@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import Any
 
 from roaml.diagnostics import Finding, Fix
@@ -18,12 +17,12 @@ from roaml.disk import UnreadableReason
 from roaml.model.config_files import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, SettingProblem, Settings, folders_above, folders_in, settings_from
+from roaml.record import Record, replace
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
 
-@dataclass(frozen=True, slots=True)
-class Configuration:
+class Configuration(Record, frozen=True):
     """The content of a configuration file.
 
     Attributes:

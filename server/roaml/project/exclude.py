@@ -7,10 +7,10 @@ from __future__ import annotations
 import functools
 import re
 import warnings
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roaml.project.paths import is_below, relative
+from roaml.record import Record
 
 if TYPE_CHECKING:
     from pathspec import GitIgnoreSpec, PathSpec, Pattern
@@ -23,8 +23,7 @@ MAX_DEPTH = 30
 excluded."""
 
 
-@dataclass(frozen=True, slots=True)
-class Exclude:
+class Exclude(Record, frozen=True):
     """The patterns of excluded files. If several patterns match, the last one decides.
 
     Attributes:

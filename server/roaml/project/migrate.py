@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
 from roaml.diagnostics import Diagnostic, Fix
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.fixing import MAX_PASSES, fix_edits
 from roaml.project.workspace import Snapshot
+from roaml.record import Record
 from roaml.text import SourceFile, Span, TextEdit, apply_edits
 
 CODES = frozenset(
@@ -35,8 +35,7 @@ CODES = frozenset(
 _OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
 
 
-@dataclass(frozen=True, slots=True)
-class Migration:
+class Migration(Record, frozen=True):
     """The migration of a file. `new_path` differs from `path` if the file is renamed; `data` is the text `after` in the
     encoding of the file."""
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roaml.comparison import Comparison, read_comparison
@@ -23,14 +22,14 @@ from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.project import exclude
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.paths import full
+from roaml.record import Record, field, replace
 from roaml.suggest import close_names, did_you_mean
 from roaml.toml import Path
 
 SEVERITIES = {severity.label: severity for severity in Severity}
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
+class Settings(Record, frozen=True):
     """The user's settings.
 
     Attributes:
@@ -73,8 +72,7 @@ def ament_prefixes(environment: Mapping[str, str] = os.environ) -> tuple[str, ..
     return tuple(part for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
 
 
-@dataclass(frozen=True, slots=True)
-class SettingProblem:
+class SettingProblem(Record, frozen=True):
     """An error in a configuration table.
 
     Attributes:
@@ -90,8 +88,7 @@ class SettingProblem:
     instead: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Folder:
+class Folder(Record, frozen=True):
     """A folder in a configuration. `path` is its place in the table, `written` its text, `full` the absolute path."""
 
     path: Path

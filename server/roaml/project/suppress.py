@@ -9,17 +9,16 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding
+from roaml.record import Record
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element, Node, Text
 
 _COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
 
 
-@dataclass(frozen=True, slots=True)
-class Suppression:
+class Suppression(Record, frozen=True):
     """A suppression comment.
 
     Attributes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.comparison import read_comparison
 from roaml.jani.properties import Property
@@ -20,6 +19,7 @@ from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
+from roaml.record import replace
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.text import Location
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
@@ -33,6 +32,7 @@ from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
+from roaml.record import Record, field
 from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
 from roaml.suggest import listing as listing  # noqa: PLC0414
@@ -40,8 +40,7 @@ from roaml.text import SourceFile, Span, TextEdit
 from roaml.xml_syntax import Document
 
 
-@dataclass(frozen=True, slots=True)
-class FileContext:
+class FileContext(Record, frozen=True):
     """The context of rules about any kind of file.
 
     Attributes:
@@ -60,8 +59,7 @@ class FileContext:
     older: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class MachineContext:
+class MachineContext(Record, frozen=True):
     """The context of rules about a machine.
 
     Attributes:
@@ -98,8 +96,7 @@ class MachineContext:
         return self.dialect is Dialect.OLDER
 
 
-@dataclass(frozen=True, slots=True)
-class TreeContext:
+class TreeContext(Record, frozen=True):
     """The context of rules about a file of trees.
 
     Attributes:
@@ -127,8 +124,7 @@ class TreeContext:
     refusals: tuple[tuple[Span, str], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class SystemContext:
+class SystemContext(Record, frozen=True):
     """The context of rules about a system file.
 
     Attributes:
@@ -150,8 +146,7 @@ class SystemContext:
     limits: Limits
 
 
-@dataclass(frozen=True, slots=True)
-class StructsContext:
+class StructsContext(Record, frozen=True):
     """The context of rules about a file of struct declarations, in XML or JSON.
 
     Attributes:
@@ -166,8 +161,7 @@ class StructsContext:
     complete: bool
 
 
-@dataclass(frozen=True, slots=True)
-class PropertiesContext:
+class PropertiesContext(Record, frozen=True):
     """The context of rules about a property file in JANI.
 
     Attributes:
@@ -185,8 +179,7 @@ class PropertiesContext:
     taken: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(Record, frozen=True):
     """A rule: its code, its default severity, and a check for each kind of file that it supports.
 
     Attributes:

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import enum
 import re
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record
 from roaml.script.tree import (
     Assignment,
     Binary,
@@ -86,8 +86,7 @@ class ScriptGrammar(enum.Enum):
     BEFORE_4_9 = "before 4.9"
 
 
-@dataclass(frozen=True, slots=True)
-class ScriptProblem:
+class ScriptProblem(Record, frozen=True):
     """A syntax error in a script. `replacement` is the text that was probably intended instead of the text in `span`,
     or ""."""
 

@@ -9,44 +9,39 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from roaml.record import Record
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Record, frozen=True):
     """An integer or a real number; a real number is written with a point or an exponent."""
 
     span: Span
     value: int | float
 
 
-@dataclass(frozen=True, slots=True)
-class Boolean:
+class Boolean(Record, frozen=True):
     """`true` or `false`: the numbers 1.0 and 0.0."""
 
     span: Span
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
-class String:
+class String(Record, frozen=True):
     span: Span
     value: str
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Record, frozen=True):
     """An enumeration constant of the program, or an entry; a leading `@` refers to the root blackboard."""
 
     span: Span
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(Record, frozen=True):
     """A unary operation. `operator` is `-`, `~` or `!`."""
 
     span: Span
@@ -54,8 +49,7 @@ class Unary:
     operand: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(Record, frozen=True):
     """A binary operation whose operator is neither a comparison nor an assignment."""
 
     span: Span
@@ -65,8 +59,7 @@ class Binary:
     right: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Record, frozen=True):
     """One or more comparisons, such as `a < b == c`. Each of `operators` is between two of `operands`, and all
     comparisons must be true."""
 
@@ -75,8 +68,7 @@ class Comparison:
     operands: tuple[Expr, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Conditional:
+class Conditional(Record, frozen=True):
     """A conditional expression `test ? yes : no`."""
 
     span: Span
@@ -85,8 +77,7 @@ class Conditional:
     no: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class Assignment:
+class Assignment(Record, frozen=True):
     """An assignment such as `target := value`; `operator` is `:=`, `=`, `+=`, `-=`, `*=` or `/=`."""
 
     span: Span
@@ -96,8 +87,7 @@ class Assignment:
     value: Expr
 
 
-@dataclass(frozen=True, slots=True)
-class ErrorExpr:
+class ErrorExpr(Record, frozen=True):
     """An expression that is missing or invalid."""
 
     span: Span
@@ -106,8 +96,7 @@ class ErrorExpr:
 Expr: TypeAlias = Number | Boolean | String | Name | Unary | Binary | Comparison | Conditional | Assignment | ErrorExpr
 
 
-@dataclass(frozen=True, slots=True)
-class Script:
+class Script(Record, frozen=True):
     """A script. Its value is that of its last statement."""
 
     span: Span

@@ -8,10 +8,10 @@ rounds. Each round uses the types of the previous round, until the types of forw
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from roaml.expr.types import UNKNOWN, Type, join, unwrap
+from roaml.record import Record
 
 T = TypeVar("T")
 D = TypeVar("D")
@@ -21,8 +21,7 @@ MAX_DIMENSIONS = 100
 dimension in each round."""
 
 
-@dataclass(frozen=True, slots=True)
-class Round(Generic[T, D]):
+class Round(Record, Generic[T, D], frozen=True):
     """The result of one round.
 
     Attributes:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+
+from roaml.record import Record
 
 
 class Role(enum.Enum):
@@ -40,8 +41,7 @@ class EventRole(enum.Enum):
         return self in (EventRole.TIMER_TICK, EventRole.CLOCK_STEP)
 
 
-@dataclass(frozen=True, slots=True)
-class ScxmlEvent:
+class ScxmlEvent(Record, frozen=True):
     """An event. Events with equal names have the same role.
 
     Attributes:

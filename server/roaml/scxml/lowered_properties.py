@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from roaml.expr.format import format_expr
@@ -20,6 +19,7 @@ from roaml.expr.tree import Binary, Boolean, Expr, Name, walk
 from roaml.expr.types import Scalar, ScalarKind
 from roaml.observers.past import past_formula
 from roaml.observers.properties import RIGHT, And, Atom, Constant, Formula, FormulaProperty, Not, Or, Since, Window
+from roaml.record import Record
 from roaml.scxml.model import Automaton, Body, If, Network, Send
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.scxml.writer import NOBODY, receivers_of
@@ -36,8 +36,7 @@ class _NotWrittenError(Exception):
     """Raised if a property cannot be written. The message states the reason."""
 
 
-@dataclass(frozen=True, slots=True)
-class LoweredProperties:
+class LoweredProperties(Record, frozen=True):
     """The document with the properties of a system.
 
     Attributes:

@@ -15,17 +15,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
+from roaml.record import Record
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.text import Location
 
 
-@dataclass(frozen=True, slots=True)
-class Data:
+class Data(Record, frozen=True):
     """A variable; `value` is a constant expression."""
 
     id: str
@@ -34,8 +33,7 @@ class Data:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Assign:
+class Assign(Record, frozen=True):
     """An assignment. `location` is a variable, an element of an array, or the `.length` of either."""
 
     location: Expr
@@ -43,29 +41,25 @@ class Assign:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Param:
+class Param(Record, frozen=True):
     name: str
     value: Expr
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Send:
+class Send(Record, frozen=True):
     event: ScxmlEvent
     params: tuple[Param, ...]
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Branch:
+class Branch(Record, frozen=True):
     cond: Expr
     body: Body
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class If:
+class If(Record, frozen=True):
     """A conditional statement: the first branch whose condition holds is executed. If there is none, `otherwise` is
     executed."""
 
@@ -78,8 +72,7 @@ Statement: TypeAlias = Assign | Send | If
 Body: TypeAlias = tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(Record, frozen=True):
     """A target of a transition, with the statements that are executed before the target is entered. The probabilities
     of the targets of a transition add up to 1."""
 
@@ -89,8 +82,7 @@ class Target:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Transition:
+class Transition(Record, frozen=True):
     """A transition. It is taken on `event` if `cond` holds and no earlier transition on the same event is taken.
     `event` is `None` for an eventless transition."""
 
@@ -100,8 +92,7 @@ class Transition:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(Record, frozen=True):
     id: str
     entry: Body
     exit: Body
@@ -109,8 +100,7 @@ class State:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Automaton:
+class Automaton(Record, frozen=True):
     """One state machine. The `entry` of a state is executed when the state is entered; the `entry` of the initial state
     is also executed once at the start.
 
@@ -127,8 +117,7 @@ class Automaton:
     thread_of: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Network:
+class Network(Record, frozen=True):
     """All automata of a system, in processing order (docs/spec/systems.md#processing-order).
 
     Attributes:

@@ -5,17 +5,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.comparison import Comparison
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
 from roaml.observers.properties import Property
+from roaml.record import Record
 from roaml.text import Location
 
 
-@dataclass(frozen=True, slots=True)
-class PortEvent:
+class PortEvent(Record, frozen=True):
     """An event of the translation that a port observes.
 
     Attributes:
@@ -29,8 +28,7 @@ class PortEvent:
     constants: tuple[tuple[str, int | bool], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class ObservedVariable:
+class ObservedVariable(Record, frozen=True):
     """A variable whose value the events of a port determine.
 
     Attributes:
@@ -46,14 +44,12 @@ class ObservedVariable:
     initial: Expr | None
 
 
-@dataclass(frozen=True, slots=True)
-class ObservedPort:
+class ObservedPort(Record, frozen=True):
     events: tuple[PortEvent, ...]
     variables: tuple[ObservedVariable, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ObservedProperty:
+class ObservedProperty(Record, frozen=True):
     """A property with the ports that it observes.
 
     Attributes:

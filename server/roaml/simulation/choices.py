@@ -10,11 +10,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from roaml.jani.expressions import Boolean, Integer, Name, Real
 from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.scxml.events import Role
 from roaml.scxml.names import CLOCK_ACTION, automaton_role, is_timer, received_by, sent_by
 from roaml.simulation.run import Decision, Enabled, EnabledEdges
@@ -31,8 +31,7 @@ MAX_CHOICES = 256
 """The maximum number of listed choices in a state."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Record, frozen=True):
     """A possible outcome of a choice.
 
     Attributes:
@@ -46,8 +45,7 @@ class Outcome:
     decision: Decision
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(Record, frozen=True):
     """A possible next step.
 
     Attributes:
@@ -69,8 +67,7 @@ class Choice:
     is_internal: bool
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
+class _Part(Record, frozen=True):
     """An automaton that takes part in a step, with the first way of its edge and the probabilities of its
     destinations."""
 

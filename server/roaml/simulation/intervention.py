@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
+from roaml.record import Record
 from roaml.scxml.names import RECEIVED
 from roaml.smc.compile import Legend
 from roaml.smc.kernel import Kernel
@@ -15,8 +15,7 @@ from roaml.smc.record import Plain, RecordedVariable
 from roaml.smc.registers import REAL
 
 
-@dataclass(frozen=True, slots=True)
-class Intervention:
+class Intervention(Record, frozen=True):
     """A change of the state.
 
     Attributes:

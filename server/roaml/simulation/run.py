@@ -8,9 +8,9 @@ back restores the last snapshot before the position and replays the steps from t
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from roaml.record import Record
 from roaml.simulation.intervention import Intervention, intervene, is_free, is_possible
 from roaml.smc.batch import TraceProblem
 from roaml.smc.end import End
@@ -30,8 +30,7 @@ class RunError(ValueError):
     """A decision is not possible in the state for which it was given."""
 
 
-@dataclass(frozen=True, slots=True)
-class Decision:
+class Decision(Record, frozen=True):
     """A step that the user has chosen.
 
     Attributes:
@@ -56,8 +55,7 @@ class EnabledEdges(NamedTuple):
     edges: tuple[tuple[int, tuple[float, ...]], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Enabled:
+class Enabled(Record, frozen=True):
     """An enabled synchronisation vector.
 
     Attributes:

@@ -6,10 +6,10 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Any
 
 from roaml.jani.model import Automaton
+from roaml.record import Record, replace
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome, choices
 from roaml.simulation.follow import Follower
@@ -29,8 +29,7 @@ ENGINE_VERSION = 1
 """The version of the random number generator: with another version, a saved session takes different steps."""
 
 
-@dataclass(frozen=True, slots=True)
-class SavedSession:
+class SavedSession(Record, frozen=True):
     """Everything that determines a run, except for the model.
 
     Attributes:

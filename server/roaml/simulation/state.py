@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.smc.record import Plain
 
 
@@ -21,8 +21,7 @@ class NodeStatus(enum.Enum):
     FAILURE = "FAILURE"
 
 
-@dataclass(frozen=True, slots=True)
-class MachineState:
+class MachineState(Record, frozen=True):
     """A state machine.
 
     Attributes:
@@ -45,8 +44,7 @@ class MachineState:
     handler: Origin | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class NodeState:
+class NodeState(Record, frozen=True):
     """The state of a node of the tree: its number, its type and its status."""
 
     number: int
@@ -54,8 +52,7 @@ class NodeState:
     status: NodeStatus
 
 
-@dataclass(frozen=True, slots=True)
-class EventState:
+class EventState(Record, frozen=True):
     """An event with the parameters with which it was last sent.
 
     Attributes:
@@ -74,8 +71,7 @@ class EventState:
     is_waiting: bool
 
 
-@dataclass(frozen=True, slots=True)
-class SystemState:
+class SystemState(Record, frozen=True):
     """The state after step `step`.
 
     Attributes:

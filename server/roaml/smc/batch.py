@@ -9,9 +9,9 @@ import signal
 import threading
 from array import array
 from collections.abc import Callable
-from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, NamedTuple
 
+from roaml.record import Record
 from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
@@ -57,8 +57,7 @@ class Task(NamedTuple):
     questions: tuple[int, ...] = (0,)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Rows:
+class Rows(Record, frozen=True, eq=False):
     """The result of a batch for one question. For each trace it contains the verdict (FALSE, TRUE or UNKNOWN), the
     reason why the trace has ended for the question (`End`), the number of steps until then, the `goal.Activity` and,
     for questions about rewards, the reward."""
@@ -70,8 +69,7 @@ class Rows:
     rewards: Reals
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BatchOutcome:
+class BatchOutcome(Record, frozen=True, eq=False):
     """The result of a batch: rows for each of its questions. A problem ends the batch; its trace is not counted."""
 
     questions: tuple[Rows, ...]
@@ -82,10 +80,10 @@ def pack(compiled: Compiled) -> Payload:
     """A compiled model in the form that is sent to workers."""
     digest = hashlib.sha256()
     for part in (compiled.program, compiled.goal):
-        for field in fields(part):
-            value = getattr(part, field.name)
+        for name in part.__struct_fields__:
+            value = getattr(part, name)
             digest.update(value.tobytes() if isinstance(value, array) else repr(value).encode())
-            digest.update(field.name.encode())
+            digest.update(name.encode())
     return Payload(digest.hexdigest(), pickle.dumps(compiled))
 
 

@@ -12,10 +12,10 @@ The method depends only on the model, the question, the options and the traces o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Model, ModelType
+from roaml.record import Record
 from roaml.smc.batch import Payload
 from roaml.smc.lss import candidates, described, probe
 from roaml.smc.pool import Pool, Pulse
@@ -40,8 +40,7 @@ class ExtremeMethod(Vocabulary):
     UNIFORM = "uniform choices"
 
 
-@dataclass(frozen=True, slots=True)
-class Extreme:
+class Extreme(Record, frozen=True):
     """The minimum or the maximum probability, as far as it is known.
 
     Attributes:
@@ -64,8 +63,7 @@ class Extreme:
         return self.method is ExtremeMethod.EXPLORATION
 
 
-@dataclass(frozen=True, slots=True)
-class Choices:
+class Choices(Record, frozen=True):
     """What is known about schedulers other than the uniform one.
 
     Attributes:

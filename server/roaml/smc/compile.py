@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from roaml.jani.expressions import Real
 from roaml.jani.model import Assignment, Destination, Edge, Model, ModelType
 from roaml.jani.node import Origin
 from roaml.jani.properties import Formula, identifiers
+from roaml.record import Record
 from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.cells import CellAssembler
@@ -25,8 +25,7 @@ from roaml.smc.registers import Tape
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
 
-@dataclass(frozen=True, slots=True)
-class Legend:
+class Legend(Record, frozen=True):
     """The meanings of the numbers in a program. Workers do not need them.
 
     Attributes:

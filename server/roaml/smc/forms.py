@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node
@@ -30,6 +29,7 @@ from roaml.jani.properties import (
     UnaryPath,
     walk,
 )
+from roaml.record import Record
 from roaml.smc.fault import FaultError
 from roaml.smc.normal_form import NestingError, lasting_condition
 
@@ -88,8 +88,7 @@ def check_form(property_: Property) -> None:
         raise fault
 
 
-@dataclass(frozen=True, slots=True)
-class Lasting:
+class Lasting(Record, frozen=True):
     """`F G condition`, or its negation `G F ¬condition`."""
 
     condition: Formula

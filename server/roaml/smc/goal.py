@@ -11,7 +11,6 @@ from __future__ import annotations
 import enum
 import math
 from array import array
-from dataclasses import dataclass, replace
 
 from roaml.jani.expressions import Conditional, Expression, Integer, Name, Unary
 from roaml.jani.operators import BinaryOperator, UnaryOperator
@@ -38,6 +37,7 @@ from roaml.jani.properties import (
     identifiers,
 )
 from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.record import Record, replace
 from roaml.smc.compile import Compilation
 from roaml.smc.fault import FaultError
 from roaml.smc.forms import NOT_OBSERVABLE, UNSUPPORTED, Lasting, check_form, lasting_part
@@ -56,8 +56,7 @@ _MIRRORED = {
 """Comparison -> the operator with the same meaning after an exchange of the two sides."""
 
 
-@dataclass(frozen=True, slots=True)
-class Threshold:
+class Threshold(Record, frozen=True):
     """A comparison with a number, such as `≥ 0.95` in `P(...) ≥ 0.95`."""
 
     relation: BinaryOperator
@@ -72,8 +71,7 @@ class Threshold:
         return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
+class Question(Record, frozen=True):
     """What a property asks about all traces, such as the minimum of a probability.
 
     Attributes:
@@ -109,8 +107,7 @@ class Activity(enum.IntEnum):
     TRIGGERED = 2
 
 
-@dataclass(frozen=True, slots=True)
-class CompiledProperty:
+class CompiledProperty(Record, frozen=True):
     """A property with its question and its goal, and the goal of its assumptions if it has any."""
 
     property: Property
@@ -119,8 +116,7 @@ class CompiledProperty:
     assumptions: Goal | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ObserverOutputs:
+class ObserverOutputs(Record, frozen=True):
     """Expressions over the variables of a property's observer; `None` where it has no such variable.
 
     Attributes:

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, MutableSequence
-from dataclasses import dataclass
 from typing import Any
 
 from roaml.jani.expressions import ArrayAccess, Expression, Name
 from roaml.jani.model import Assignment, Automaton, Function, Model, Variable
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import ArrayType, BoundedType, Type
+from roaml.record import Record
 from roaml.smc import shapes
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Meaning, Storage, StorageNames
@@ -18,8 +18,7 @@ from roaml.smc.registers import INT, REAL, Number, Operand, Tape, product
 from roaml.smc.shapes import kind_of, larger, shape_of
 
 
-@dataclass(frozen=True, slots=True)
-class AutomatonInstance:
+class AutomatonInstance(Record, frozen=True):
     """An automaton as an element of the system. `own` contains the variables that it declares."""
 
     automaton: Automaton
@@ -28,8 +27,7 @@ class AutomatonInstance:
     transient: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True)
-class MemoryLayout:
+class MemoryLayout(Record, frozen=True):
     """All variables of a model.
 
     Attributes:

@@ -18,10 +18,10 @@ extreme.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record, field, replace
 from roaml.smc.batch import Payload, Task
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
@@ -48,8 +48,7 @@ _AUTOMATON_SHIFT = 32
 _INDEX_MASK = (1 << _AUTOMATON_SHIFT) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class Extremes:
+class Extremes(Record, frozen=True):
     """The probabilities under the selected schedulers.
 
     Attributes:
@@ -116,8 +115,7 @@ class SelectedScheduler(NamedTuple):
     tally: Tally
 
 
-@dataclass(slots=True)
-class Search:
+class Search(Record):
     """The progress of a search for schedulers, updated during the search. If the search is interrupted, it contains the
     results so far.
 

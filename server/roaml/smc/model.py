@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property
+from roaml.record import replace
 from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend

@@ -4,19 +4,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from roaml.jani.expressions import ArrayAccess, Call, Expression, Name, walk
 from roaml.jani.model import Assignment, Function
 from roaml.jani.node import Node
 from roaml.jani.types import Type
+from roaml.record import Record, replace
 from roaml.smc.fault import FaultError
 from roaml.smc.registers import Number, Operand, Region
 
 
-@dataclass(slots=True)
-class Storage:
+class Storage(Record):
     """The register of a variable or constant. `watch` is its number if its changes must be tracked, otherwise -1."""
 
     name: str
@@ -33,8 +32,7 @@ Meaning: TypeAlias = Storage | Operand | Region
 """The meaning of a name: a variable or constant, a bound scalar, or a bound array."""
 
 
-@dataclass(frozen=True)
-class StorageNames:
+class StorageNames(Record, frozen=True):
     """The meanings of names at a place. `calls` are the functions whose bodies contain the place."""
 
     values: Mapping[str, Meaning]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
 
@@ -44,6 +43,7 @@ from roaml.observers.properties import (
     implies,
     once,
 )
+from roaml.record import Record
 from roaml.smc.normal_form import (
     TRUE,
     Disjunction,
@@ -71,8 +71,7 @@ _ANY_TIME = Window()
 _T = TypeVar("_T")
 
 
-@dataclass(frozen=True, slots=True)
-class ObservedFormula:
+class ObservedFormula(Record, frozen=True):
     """A property of the sequence of states, and the conditions on states that it reads."""
 
     property: observed.Property
@@ -122,8 +121,7 @@ def _count_formulas(formula: Formula) -> int:
 # ----------------------------------------------------------------------- forms
 
 
-@dataclass(frozen=True, slots=True)
-class _Request:
+class _Request(Record, frozen=True):
     """A request and its answer: `request ⇒ F answer`; with a scope, `request ⇒ (¬close U (answer ∧ ¬close))`."""
 
     request: Expression

@@ -7,13 +7,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-
 from roaml.jani.expressions import ArrayAccess, Binary, Boolean, Expression, Unary
 from roaml.jani.model import Assignment, Destination, Edge, Model
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.semantics import EvaluationError, evaluate
+from roaml.record import Record, field, replace
 from roaml.smc.fault import FaultError
 from roaml.smc.layout import AutomatonInstance, MemoryLayout
 from roaml.smc.names import StorageNames, read_by, variables_in
@@ -22,16 +21,14 @@ from roaml.smc.registers import Operand
 _PROBABILITY_TOLERANCE = 1e-6
 
 
-@dataclass(slots=True)
-class WeightedDestination:
+class WeightedDestination(Record):
     """A destination of an edge. `probability` is `None` if it depends on the state."""
 
     destination: Destination
     probability: float | None
 
 
-@dataclass(slots=True)
-class EdgeStep:
+class EdgeStep(Record):
     """An edge of an instance that can be taken. `guard` is `None` if the edge is always enabled."""
 
     edge: Edge
@@ -40,8 +37,7 @@ class EdgeStep:
     is_inert: bool
 
 
-@dataclass(slots=True)
-class Slot:
+class Slot(Record):
     """The edges of an instance for one action, grouped by their source location."""
 
     instance: int

@@ -5,7 +5,6 @@ may have bounds on the time."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from roaml.jani.deep import Steps, run
@@ -22,6 +21,7 @@ from roaml.jani.properties import (
     UnaryPath,
     UnaryPathOperator,
 )
+from roaml.record import Record, replace
 
 MAX_CLAUSES = 16
 """The maximum number of clauses of a conjunctive normal form."""
@@ -131,8 +131,7 @@ def weak(left: Formula, right: Formula) -> Formula:
     return globally(left) if right == FALSE else BinaryPath(BinaryPathOperator.WEAK_UNTIL, left, right)
 
 
-@dataclass(frozen=True, slots=True)
-class Disjunction:
+class Disjunction(Record, frozen=True):
     """A disjunction of a condition and path formulas."""
 
     condition: Expression

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.jani.operators import Operator
+from roaml.record import Record
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The verdict on a trace. The kernel uses the same numbers. UNKNOWN: the trace can continue; if it has ended, it is
@@ -26,8 +26,7 @@ Ints: TypeAlias = "array[int]"
 Reals: TypeAlias = "array[float]"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Program:
+class Program(Record, frozen=True, eq=False):
     """A compiled model.
 
     Attributes:
@@ -98,8 +97,7 @@ class Program:
     zero_instances: Ints
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Goal:
+class Goal(Record, frozen=True, eq=False):
     """The questions about a trace: a formula over untils for each question, and rewards. A goal with rewards, or with a
     deadlock in a condition, has one question.
 
@@ -175,8 +173,7 @@ def _joined(kind: str, parts: Iterable[Ints]) -> Ints:
     return array(kind, [item for part in parts for item in part])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Compiled:
+class Compiled(Record, frozen=True, eq=False):
     """A program with its goal: all data that a worker needs."""
 
     program: Program

@@ -5,11 +5,11 @@ which they come."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Destination, Edge, System
+from roaml.record import Record
 from roaml.smc.batch import TraceProblem
 from roaml.smc.compile import Legend
 from roaml.smc.end import End
@@ -68,8 +68,7 @@ class VariableChange(NamedTuple):
     after: Plain
 
 
-@dataclass(frozen=True, slots=True)
-class TraceStep:
+class TraceStep(Record, frozen=True):
     """A step. `number` is 1 for the first one; `action` is `None` if the step has no action."""
 
     number: int
@@ -78,8 +77,7 @@ class TraceStep:
     changes: tuple[VariableChange, ...]
 
 
-@dataclass(slots=True)
-class Recording:
+class Recording(Record):
     """A trace that is simulated again. `verdict` and `end` are set when it is complete, `problem` if it failed."""
 
     trace: int

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.jani.node import Origin
 from roaml.jani.operators import Operator
+from roaml.record import Record
 from roaml.smc.opcodes import WIDTH, Op
 
 BOOL, INT, REAL = "bool", "int", "real"
@@ -16,8 +16,7 @@ BOOL, INT, REAL = "bool", "int", "real"
 Number: TypeAlias = "bool | int | float"
 
 
-@dataclass(frozen=True, slots=True)
-class Operand:
+class Operand(Record, frozen=True):
     """A scalar in a register; `value` is known for constants."""
 
     kind: str
@@ -25,8 +24,7 @@ class Operand:
     value: Number | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Region:
+class Region(Record, frozen=True):
     """Consecutive registers of an array, row by row. `offset` is an int register that is added to `base`, or -1."""
 
     kind: str

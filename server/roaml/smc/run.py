@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record, field
 from roaml.smc.batch import Payload, Rows, Task, TraceProblem
 from roaml.smc.end import End
 from roaml.smc.goal import Activity, Question
@@ -49,8 +49,7 @@ MAX_KEPT_TRACES = 1000
 """The maximum number of stored trace numbers for each verdict."""
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(Record, frozen=True):
     """The options for answering a question.
 
     Attributes:
@@ -90,16 +89,14 @@ class StoredTrace(NamedTuple):
     steps: int
 
 
-@dataclass(slots=True)
-class Ended:
+class Ended(Record):
     """The traces that have ended for one reason: their number, and the shortest one."""
 
     count: int
     shortest: StoredTrace
 
 
-@dataclass(slots=True)
-class Tally:
+class Tally(Record):
     """The counts after some batches, which are sufficient to continue.
 
     Attributes:
@@ -189,8 +186,7 @@ class Tally:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
+class Answer(Record, frozen=True):
     """The result of the traces.
 
     Attributes:
@@ -269,8 +265,7 @@ def answer(
     return summary(question, options, inquiry.tally)
 
 
-@dataclass(slots=True)
-class Inquiry:
+class Inquiry(Record):
     """A question that shares traces with others.
 
     Attributes:

@@ -4,7 +4,6 @@ bodies, and array constructors by their elements."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.jani.expressions import ArrayConstructor, Call, Expression, Integer, walk
@@ -86,7 +85,7 @@ def _nodes(part: object) -> Iterator[Node]:
             stack += node
         elif isinstance(node, Node) and not isinstance(node, Function):
             yield node
-            stack += (getattr(node, field.name) for field in dataclasses.fields(node))
+            stack += (getattr(node, name) for name in node.__struct_fields__)
 
 
 def _check_array(node: ArrayConstructor) -> None:

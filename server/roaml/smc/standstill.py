@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.jani.model import Automaton, Edge, System
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class Standstill:
+class Standstill(Record, frozen=True):
     """The state in which a trace does not change any more.
 
     Attributes:

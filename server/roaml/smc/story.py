@@ -8,16 +8,15 @@ start: the last change of each variable that a step reads, and the step that tri
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.jani.model import Automaton
+from roaml.record import Record
 from roaml.smc.end import End
 from roaml.smc.record import AutomatonStep, Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
 
 
-@dataclass(frozen=True, slots=True)
-class Story:
+class Story(Record, frozen=True):
     """A whole trace, and its relevant steps.
 
     Attributes:

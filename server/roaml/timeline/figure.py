@@ -11,11 +11,11 @@ import enum
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import ELLIPSIS, SMALL, text_width
+from roaml.record import Record
 from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
 
 LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
@@ -42,8 +42,7 @@ class Axis(enum.Enum):
     STEPS = "steps"
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+class View(Record, frozen=True):
     """The part of a timeline that is drawn.
 
     Attributes:

@@ -8,8 +8,8 @@ position are replaced, because the user has chosen another step there, the timel
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, field
 
+from roaml.record import Record, field
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     BLACKBOARD,
@@ -38,8 +38,7 @@ class LaneKind(enum.Enum):
     NODE = "node"
 
 
-@dataclass(slots=True)
-class Lane:
+class Lane(Record):
     """The states of a machine or plugin, or the statuses of a tree node.
 
     Attributes:
@@ -61,8 +60,7 @@ class Lane:
             self.ranks.setdefault(state, len(self.ranks))
 
 
-@dataclass(frozen=True, slots=True)
-class SentMessage:
+class SentMessage(Record, frozen=True):
     """An event from one lane to others.
 
     Attributes:
@@ -78,8 +76,7 @@ class SentMessage:
     receivers: tuple[int, ...]
 
 
-@dataclass(slots=True)
-class Plot:
+class Plot(Record):
     """The values of a variable that is a number or a truth value, after the steps that change them."""
 
     name: str

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, Number, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
+from roaml.record import Record, field
 from roaml.scxml.events import Role
 from roaml.scxml.model import Assign, Body, If, Send, State
 from roaml.scxml.names import flag_of, on_receive, on_send
@@ -30,8 +30,7 @@ from roaml.to_jani.values import JaniScope, all_of, negated
 FIRST = "-first-exec"
 
 
-@dataclass(slots=True)
-class _Destination:
+class _Destination(Record):
     """A destination under construction."""
 
     probability: Clause | None
@@ -49,8 +48,7 @@ class _Destination:
         self.assignments += [Assignment(target, value, origin=origin) for target, value in writes]
 
 
-@dataclass(slots=True)
-class _Draft:
+class _Draft(Record):
     """An edge under construction."""
 
     source: str
@@ -70,8 +68,7 @@ class _Draft:
         return Edge(self.source, destinations, self.action, guard, origin=self.origin)
 
 
-@dataclass(frozen=True, slots=True)
-class Flow:
+class Flow(Record, frozen=True):
     """The locations and edges of an automaton."""
 
     locations: tuple[Location, ...]

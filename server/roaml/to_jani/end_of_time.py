@@ -4,9 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from roaml.jani.model import Action, Edge, Model, Sync
+from roaml.record import replace
 from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER
 
 TIME_OVER_ACTION = "__as2fm__time_is_over"

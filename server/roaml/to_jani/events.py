@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from roaml.expr.infer import infer
 from roaml.expr.tree import Expr, Name, walk
 from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.record import Record, field
 from roaml.scxml.event_data import Round, infer_in_rounds, parameter_types
 from roaml.scxml.events import EventRole, ScxmlEvent
 from roaml.scxml.model import Body, Send, statements
@@ -18,8 +18,7 @@ from roaml.text import Location
 from roaml.to_jani.moves import AutomatonMoves
 
 
-@dataclass(slots=True)
-class EventUsage:
+class EventUsage(Record):
     """An event of a network with its uses.
 
     Attributes:

@@ -8,14 +8,13 @@ The body of a move is the `<onexit>` of the source, the body of the transition, 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.scxml.model import Automaton, Body, State, Transition
 from roaml.text import Location
 
 
-@dataclass(frozen=True, slots=True)
-class MoveOutcome:
+class MoveOutcome(Record, frozen=True):
     """One target of a transition, with all statements that are executed until it is entered."""
 
     state: str
@@ -24,8 +23,7 @@ class MoveOutcome:
     origin: Location
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(Record, frozen=True):
     """A transition with its outcomes. `number` is its index among the transitions of its state."""
 
     source: str
@@ -39,8 +37,7 @@ class Move:
         return self.transition.event.name if self.transition.event else ""
 
 
-@dataclass(frozen=True, slots=True)
-class AutomatonMoves:
+class AutomatonMoves(Record, frozen=True):
     """The moves of an automaton.
 
     Attributes:

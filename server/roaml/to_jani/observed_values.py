@@ -10,7 +10,6 @@ separate variable, a copy. It assigns the copy when an event is sent.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Boolean, Conditional, Expr, Name, Number
@@ -18,6 +17,7 @@ from roaml.expr.types import ScalarKind, is_kind
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.model import Variable
 from roaml.jani.semantics import evaluate
+from roaml.record import Record
 from roaml.scxml.names import flag_of
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
 from roaml.text import NO_SPAN, Location
@@ -28,16 +28,14 @@ from roaml.to_jani.values import JaniScope, Listed, elements_as, lengths_as
 _CONSTANTS = JaniScope({}, "", {})
 
 
-@dataclass(frozen=True, slots=True)
-class _Copy:
+class _Copy(Record, frozen=True):
     """A variable of the observer in which it stores the value of a variable of the property."""
 
     name: str
     shape: ArrayShape
 
 
-@dataclass(frozen=True, slots=True)
-class ObservedValues:
+class ObservedValues(Record, frozen=True):
     """The values that the observer of one property reads.
 
     Attributes:

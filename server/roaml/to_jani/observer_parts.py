@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression, Integer
@@ -35,6 +34,7 @@ from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import Pattern, PatternProperty, Property, ScopeKind
+from roaml.record import replace
 from roaml.scxml.names import ASKED, OBSERVER_SUFFIX, OPEN, OPENED, PENDING, observer_variable
 
 _OBSERVING = "observing"

@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from roaml.jani.model import (
     Assignment,
@@ -31,6 +30,7 @@ from roaml.jani.properties import (
     Property,
     StatePredicate,
 )
+from roaml.record import Record, replace
 from roaml.scxml.names import (
     CLOCK,
     CLOCK_ACTION,
@@ -99,8 +99,7 @@ def _minimum(name: str, paths: Sequence[Formula], origin: Origin, comment: str |
     return Property(name, values, comment=comment, origin=origin)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Listener:
+class _Listener(Record, frozen=True, eq=False):
     """A port together with one of its events. Listeners are compared by identity."""
 
     port: ObservedPort

@@ -10,13 +10,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from roaml.jani.expressions import ArrayAccess, ArrayValue, Binary, Expression, Name
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import Filter, Probability, Property
 from roaml.jani.rewrite import rewrite
+from roaml.record import replace
 from roaml.to_jani.shapes import ArrayShape
 from roaml.to_jani.values import Listed, Stored, equal_arrays, negated
 

@@ -9,20 +9,19 @@ an array of k - 1 dimensions with the lengths of the rows in dimension k (docs/s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.expr.types import Array, EmptyArray, Scalar, ScalarKind, Type, is_kind, unwrap
 from roaml.jani.expressions import ArrayConstructor, ArrayValue, Boolean, Expression, Integer, Real
 from roaml.jani.types import BOOL, INT, REAL, ArrayType, BasicType
 from roaml.jani.types import Type as JaniType
+from roaml.record import Record
 
 _KINDS = {ScalarKind.BOOL: BOOL, ScalarKind.INT: INT, ScalarKind.REAL: REAL, ScalarKind.STRING: INT}
 _ZEROS: dict[BasicType, Expression] = {BOOL: Boolean(False), INT: Integer(0), REAL: Real(0.0)}
 _ITERATOR = "__array_iterator_dim_"
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayShape:
+class ArrayShape(Record, frozen=True):
     """The shape of a variable. `capacities` contains the maximum number of elements in each dimension, the outermost
     first; it is empty for a scalar."""
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
 from typing import TypeAlias
 
 from roaml.jani.expressions import ArrayAccess, Boolean, Expression, Name
@@ -22,6 +21,7 @@ from roaml.jani.rewrite import rewrite
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.observers.properties import PatternProperty, Since
 from roaml.observers.properties import walk as parts_of
+from roaml.record import replace
 from roaml.scxml.names import CLOCK, CLOCK_ACTION
 from roaml.smc.names import variables_in
 from roaml.smc.nested import ObservedFormula, without_nesting, without_nesting_before

@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
@@ -31,6 +30,7 @@ from roaml.jani.expressions import ArrayAccess, ArrayValue, Expression, Integer,
 from roaml.jani.operators import BinaryOperator, NumberConstant
 from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.jani.types import REAL
+from roaml.record import Record
 from roaml.to_jani.shapes import SCALAR_INT, ArrayShape, length_name, zero
 
 BINARY_OPERATORS = {
@@ -104,8 +104,7 @@ def at(array: Expression, *indexes: Expression) -> Expression:
 # -------------------------------------------------------------------- arrays
 
 
-@dataclass(frozen=True, slots=True)
-class Stored:
+class Stored(Record, frozen=True):
     """An array that is stored in a variable, or the element of it at `indexes`."""
 
     variable: str
@@ -128,15 +127,13 @@ class Stored:
         return Stored(self.variable, self.shape, (*self.indexes, index))
 
 
-@dataclass(frozen=True, slots=True)
-class Listed:
+class Listed(Record, frozen=True):
     """An array literal. Its elements are scalars or, if it has several dimensions, array literals."""
 
     elements: tuple[Expression | Listed, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Chosen:
+class Chosen(Record, frozen=True):
     """One of two arrays, depending on a condition."""
 
     test: Expression
@@ -213,8 +210,7 @@ def as_base(value: Expression, shape: ArrayShape) -> Expression:
 # --------------------------------------------------------------- expressions
 
 
-@dataclass(frozen=True, slots=True)
-class JaniScope:
+class JaniScope(Record, frozen=True):
     """The names that expressions in one place can use.
 
     Attributes:

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from roaml.record import Record
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS, TraceVerdict
 from roaml.smc.run import StoredTrace
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from roaml.views.story import StoryLine
 
 
-@dataclass(frozen=True, slots=True)
-class Counterexample:
+class Counterexample(Record, frozen=True):
     """The explanation of a trace.
 
     Attributes:

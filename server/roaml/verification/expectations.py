@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 
 from roaml.comparison import Comparison, read_comparison
 from roaml.jani.operators import BinaryOperator
+from roaml.record import Record
 from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 
@@ -31,8 +31,7 @@ NO_EXPECTATION = "no expectation set"
 """The text for a result with which no expectation is compared."""
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation:
+class Expectation(Record, frozen=True):
     """A comparison of the value of a property with a number. `is_own` states whether the comparison is part of the
     property itself."""
 
@@ -45,8 +44,7 @@ class Expectation:
         return f"{self.threshold.relation.symbol} {self.threshold.number:g}"
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(Record, frozen=True):
     """Whether an expectation is met.
 
     Attributes:

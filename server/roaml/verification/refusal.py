@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from roaml.record import Record
 from roaml.smc.fault import FaultError
 from roaml.verification.target import LineColumn, VerificationTarget
 
 
-@dataclass(frozen=True, slots=True)
-class Refusal:
+class Refusal(Record, frozen=True):
     """The reason why a property has no answer.
 
     Attributes:

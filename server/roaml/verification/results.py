@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from enum import Enum
 
 from roaml.explicit.path import Path, PathRecorder
 from roaml.explicit.space import Space
+from roaml.record import PartlyCompared, Record
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, Question
@@ -26,11 +26,10 @@ from roaml.verification.stuck import Stuck
 from roaml.verification.target import VerificationTarget
 
 
-@dataclass(frozen=True, slots=True)
-class ShortestTrace:
+class ShortestTrace(Record, frozen=True):
     """The shortest of all traces with a given verdict."""
 
-    space: Space = field(repr=False)
+    space: Space
     path: Path
 
     @property
@@ -64,8 +63,7 @@ class Proof(Enum):
     NONE = "the condition holds in no state"
 
 
-@dataclass(frozen=True, slots=True)
-class Exact:
+class Exact(PartlyCompared, frozen=True):
     """The values from all states.
 
     Attributes:
@@ -79,6 +77,8 @@ class Exact:
         traces: the shortest traces in which the property fails or holds, if there are any.
     """
 
+    UNCOMPARED = frozenset({"traces"})
+
     minimum: Bounds
     maximum: Bounds
     uniform: Bounds
@@ -86,7 +86,7 @@ class Exact:
     is_precise: bool = True
     proof: Proof | None = None
     can_get_stuck: bool = False
-    traces: tuple[ShortestTrace, ...] = field(default=(), repr=False, compare=False)
+    traces: tuple[ShortestTrace, ...] = ()
 
     @property
     def least(self) -> float:
@@ -135,8 +135,7 @@ def _value(bounds: Bounds) -> float:
     return next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), (bounds.lower + bounds.upper) / 2)
 
 
-@dataclass(frozen=True, slots=True)
-class SampledResult:
+class SampledResult(Record, frozen=True):
     """The probability under a scheduler that was sampled for the minimum or the maximum.
 
     Attributes:
@@ -152,8 +151,7 @@ class SampledResult:
     stuck: Stuck | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Traces:
+class Traces(Record, frozen=True):
     """The traces under uniform choices for a property. Each can be simulated again."""
 
     target: VerificationTarget
@@ -178,8 +176,7 @@ class Traces:
         return build_story(self.recorder(), trace, self.target.clock)
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
+class Result(PartlyCompared, frozen=True):
     """The result of one property.
 
     Attributes:
@@ -199,6 +196,8 @@ class Result:
         comment: a description of what the property requires; "" if the model contains none.
     """
 
+    UNCOMPARED = frozenset({"fault", "traces"})
+
     name: str
     answer: Answer | None
     verdicts: tuple[Verdict, ...]
@@ -211,8 +210,8 @@ class Result:
     choices: Choices | None = None
     refusal: Refusal | None = None
     undecided: str = ""
-    fault: FaultError | None = field(default=None, repr=False, compare=False)
-    traces: Traces | None = field(default=None, repr=False, compare=False)
+    fault: FaultError | None = None
+    traces: Traces | None = None
     comment: str = ""
 
     @property

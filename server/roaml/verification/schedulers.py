@@ -9,9 +9,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from roaml.jani.operators import BinaryOperator
+from roaml.record import replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer

@@ -9,10 +9,10 @@ chain of waiting automata.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record, replace
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -41,8 +41,7 @@ class StuckLevel(Vocabulary):
     ERROR = "error"
 
 
-@dataclass(frozen=True, slots=True)
-class Stuck:
+class Stuck(Record, frozen=True):
     """The traces of one question that got stuck.
 
     Attributes:
@@ -94,8 +93,7 @@ def chain_of(waiting: Sequence[Wait]) -> Chain:
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
-@dataclass(frozen=True, slots=True)
-class StuckResult:
+class StuckResult(Record, frozen=True):
     """The result of the check for stuck traces.
 
     Attributes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from roaml.comparison import Comparison
@@ -12,6 +11,7 @@ from roaml.jani.model import Model
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property, walk
+from roaml.record import Record, field, replace
 from roaml.scxml.names import assumptions_of
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
@@ -28,8 +28,7 @@ class LineColumn(NamedTuple):
     column: int
 
 
-@dataclass(frozen=True, slots=True)
-class VerificationTarget:
+class VerificationTarget(Record, frozen=True):
     """A model, with the texts that its positions refer to.
 
     Attributes:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from roaml.jani.expressions import Binary, Expression, Integer, Name
 from roaml.jani.model import Model
@@ -24,6 +23,7 @@ from roaml.jani.properties import (
 )
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
+from roaml.record import Record
 from roaml.scxml.names import TREE_ROOT_PREFIX
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
@@ -66,8 +66,7 @@ def _eventually(name: str, condition: Expression) -> Property:
     return Property(name, Filter(FilterFunction.VALUES, probability, Predicate(StatePredicate.INITIAL)))
 
 
-@dataclass(frozen=True, slots=True)
-class OutcomeShare:
+class OutcomeShare(Record, frozen=True):
     """The number of traces with a given outcome, with the interval for its probability."""
 
     count: int
@@ -79,8 +78,7 @@ class OutcomeShare:
         return self.count / self.traces
 
 
-@dataclass(frozen=True, slots=True)
-class Quantile:
+class Quantile(Record, frozen=True):
     """The time in s within which a share of the traces has ended, with its interval; infinite if it is unknown."""
 
     share: float
@@ -88,8 +86,7 @@ class Quantile:
     bounds: Bounds
 
 
-@dataclass(frozen=True, slots=True)
-class Influence:
+class Influence(Record, frozen=True):
     """The derivative of the probability of success with respect to the probability of a mock, with its interval."""
 
     leaf: MockedLeaf
@@ -97,8 +94,7 @@ class Influence:
     bounds: Bounds
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TreeOutcome:
+class TreeOutcome(Record, frozen=True, eq=False):
     """The measurements of all traces of a tree.
 
     Attributes:

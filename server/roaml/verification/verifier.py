@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 
 from roaml.explicit.space import StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
+from roaml.record import Record, field, replace
 from roaml.smc.choices import NO_NONDETERMINISM, Choices
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
@@ -150,8 +150,7 @@ def _verdicts(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Verifier:
+class Verifier(Record, frozen=True):
     """A target with compiled properties, and their expectations; see `verifier_of`.
 
     Attributes:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+
+from roaml.record import Record
 
 
 class Kind(enum.Enum):
@@ -13,8 +14,7 @@ class Kind(enum.Enum):
     NETWORK = "network"
 
 
-@dataclass(frozen=True, slots=True)
-class GraphNode:
+class GraphNode(Record, frozen=True):
     """A node of a diagram. `lines` are the lines of its label; `minor` nodes are drawn less prominently."""
 
     id: str
@@ -22,15 +22,13 @@ class GraphNode:
     minor: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class GraphLink:
+class GraphLink(Record, frozen=True):
     source: str
     target: str
     lines: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Graph:
+class Graph(Record, frozen=True):
     """A diagram. `initial` is the initial node; "" if there is none."""
 
     kind: Kind

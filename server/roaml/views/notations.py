@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.views.graph import Graph, GraphNode, Kind
 
 
-@dataclass(frozen=True, slots=True)
-class Notation:
+class Notation(Record, frozen=True):
     """A language for diagrams: its name in programs, its name for users, the extension of its files, and its writer."""
 
     name: str

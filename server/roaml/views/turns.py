@@ -10,10 +10,10 @@ relevant turn sends. Turns that only pass an event on are omitted.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
+from roaml.record import Record, field
 from roaml.scxml.names import (
     NODE_AUTOMATON,
     OBSERVER_SUFFIX,
@@ -33,8 +33,7 @@ from roaml.views.events import EventReader
 _ENDS = ("SUCCESS", "FAILURE")
 
 
-@dataclass(slots=True)
-class Turn:
+class Turn(Record):
     """The steps of one automaton from one event to the next.
 
     Attributes:
@@ -124,8 +123,7 @@ class Turn:
         return node is not None and read is not None and read.number == int(node[1]) and read.kind in kinds
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
+class Message(Record, frozen=True):
     """An event with the parameters with which it was sent, by their names.
 
     Attributes:

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
@@ -64,8 +64,7 @@ class Wait(NamedTuple):
     for_timer: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class _Link:
+class _Link(Record, frozen=True):
     """An automaton that waits, and the event for which it waits: each of `others` must receive or send the event.
 
     Attributes:

@@ -11,10 +11,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from roaml.diagnostics import Finding
+from roaml.record import Record
 from roaml.text import Decoded, Span, joined
 from roaml.xml_syntax.escapes import decoded
 
@@ -147,8 +147,7 @@ def children_text(element: Element) -> str:
     return "".join(node.value for node in element.nodes if isinstance(node, (Text, CData)))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Document:
+class Document(Record, frozen=True, eq=False):
     """A parsed text. `root` is the first element outside of all others, or `None` if there is no element. An invalid
     file may have several; `nodes` contains all of them."""
 

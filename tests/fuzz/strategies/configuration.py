@@ -12,7 +12,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
@@ -21,6 +21,7 @@ from fuzz.damage import ANY, PIECES
 from fuzz.strategy import Failure, Strategy
 from roaml.project.configuration import find_settings
 from roaml.project.exclude import NOTHING
+from roaml.record import replace
 
 NAMES = ("as2fm.toml", "pyproject.toml", "package.xml", "msg/Level.msg")
 _KEYS = ("roots", "ros-path", "exclude", "select", "ignore", "severity", "warnings-as-errors", "max-cells", "max-parts")

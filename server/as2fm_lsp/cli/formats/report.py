@@ -6,12 +6,12 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.paths import slashed
+from roaml.record import Record
 from roaml.text import SourceFile, Span
 
 _CONTEXT_CHARACTERS = 200
@@ -35,8 +35,7 @@ class RelatedEntry(NamedTuple):
     message: str
 
 
-@dataclass(frozen=True)
-class Entry:
+class Entry(Record, frozen=True, dict=True):
     """A diagnostic in the output. Its paths are as given by the user, or relative to the working directory."""
 
     diagnostic: Diagnostic
@@ -81,8 +80,7 @@ class Entry:
         return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
-@dataclass(frozen=True)
-class CheckReport:
+class CheckReport(Record, frozen=True):
     """The result of a check, for all formats.
 
     Attributes:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.figures.geometry import Box, Extent, Point
+from roaml.record import Record
 
 
 class LayoutDirection(enum.Enum):
@@ -17,8 +17,7 @@ class LayoutDirection(enum.Enum):
     RIGHT = "right"
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(Record, frozen=True):
     """A line from one node to another, and the size of its label if it has one."""
 
     source: str
@@ -26,8 +25,7 @@ class Link:
     label: Extent | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Route:
+class Route(Record, frozen=True):
     """The line of a link from its source to its target.
 
     Attributes:
@@ -48,8 +46,7 @@ class Route:
         return Route(parts, self.label.turned if self.label else None)
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(Record, frozen=True):
     """Boxes by the names of nodes, routes in the order of the links. Everything is within `size`."""
 
     size: Extent

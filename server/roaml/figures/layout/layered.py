@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.cycles import closing_links
@@ -16,6 +15,7 @@ from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
 from roaml.figures.layout.positions import place_vertices
 from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
+from roaml.record import Record
 
 LAYER_DISTANCE = 30.0
 TRACK_MARGIN = 18.0
@@ -42,8 +42,7 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
     return pack(parts, len(links), aspect)
 
 
-@dataclass(frozen=True, slots=True)
-class _Edge:
+class _Edge(Record, frozen=True):
     """A piece of a link between two vertices in neighbouring layers, downwards."""
 
     link: int

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
 from roaml.figures.geometry import Extent
+from roaml.record import Record
 
 
 class VertexKind(enum.Enum):
@@ -15,8 +15,7 @@ class VertexKind(enum.Enum):
     PASSING = "passing"
 
 
-@dataclass(frozen=True, slots=True)
-class Vertex:
+class Vertex(Record, frozen=True):
     """A vertex. `size.width` is its extent along the layer, `size.height` across it."""
 
     kind: VertexKind

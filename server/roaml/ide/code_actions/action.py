@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 
 from roaml.diagnostics import Diagnostic
+from roaml.record import Record, field
 from roaml.text import Span, TextEdit
 
 QUICK_FIX = "quickfix"
@@ -17,8 +17,7 @@ KINDS = (QUICK_FIX, EXTRACT, REWRITE, FIX_ALL)
 """The kinds of actions, with their names in LSP."""
 
 
-@dataclass(frozen=True, slots=True)
-class WorkspaceEdit:
+class WorkspaceEdit(Record, frozen=True):
     """Changes to the files of a workspace.
 
     Attributes:
@@ -35,8 +34,7 @@ class WorkspaceEdit:
         return bool(self.edits or self.created or self.renamed)
 
 
-@dataclass(frozen=True, slots=True)
-class CodeAction:
+class CodeAction(Record, frozen=True):
     """A code action at a place.
 
     Attributes:

@@ -6,9 +6,9 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
+from roaml.record import Record
 from roaml.text import Span
 
 
@@ -43,8 +43,7 @@ class Rank(enum.IntEnum):
     LAST = 4
 
 
-@dataclass(frozen=True, slots=True)
-class CompletionItem:
+class CompletionItem(Record, frozen=True):
     """One completion item.
 
     Attributes:
@@ -69,8 +68,7 @@ class CompletionItem:
         return self.insert or escaped(self.label)
 
 
-@dataclass(frozen=True, slots=True)
-class Completions:
+class Completions(Record, frozen=True):
     """The completions at a caret. The items replace the text in `span`. `incomplete` means that some items are left
     out, so that the editor requests the list again after more typing."""
 

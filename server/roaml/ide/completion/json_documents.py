@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet, escaped
@@ -16,6 +15,7 @@ from roaml.language.json_schema import JSON_STRUCTS, PROPERTIES, JsonGrammar, Sc
 from roaml.model.kinds import FileKind
 from roaml.model.tree_paths import label_of
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.scxml.names import flagged_by
 from roaml.text import Span
@@ -38,8 +38,7 @@ def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Comp
     return place.span, list(_keys(place) if place.is_key else _values(analysis, path, place))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Place:
+class _Place(Record, frozen=True, eq=False):
     """The place of a caret in a JSON document.
 
     Attributes:

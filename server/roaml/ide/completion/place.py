@@ -8,11 +8,11 @@ for in the text.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.ide.on_type import open_element
 from roaml.ide.syntax import Typed, XmlFile, path_at
+from roaml.record import Record
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Comment, Document, Element, Instruction, Text
 
@@ -21,8 +21,7 @@ _WORD_AFTER = re.compile(r"[\w:.-]*")
 _TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StartTag:
+class StartTag(Record, frozen=True, eq=False):
     """The name of a start tag; `span` may be empty. `bare` is true if no other part of the tag follows the name."""
 
     parents: tuple[Typed, ...]
@@ -30,8 +29,7 @@ class StartTag:
     bare: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EndTag:
+class EndTag(Record, frozen=True, eq=False):
     """The name of an end tag. `name` is the name of the innermost open element, "" if there is none."""
 
     name: str
@@ -39,8 +37,7 @@ class EndTag:
     bare: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class AttributeName:
+class AttributeName(Record, frozen=True, eq=False):
     """The name of an attribute of the element `typed`. `attribute` is the attribute at the caret; `None` if a new one
     would be inserted."""
 
@@ -50,8 +47,7 @@ class AttributeName:
     attribute: Attribute | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class AttributeValue:
+class AttributeValue(Record, frozen=True, eq=False):
     """The value of an attribute. `quote` is its quotation mark, "" if it does not have one yet."""
 
     parents: tuple[Typed, ...]
@@ -61,8 +57,7 @@ class AttributeValue:
     quote: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Content:
+class Content(Record, frozen=True, eq=False):
     """A place between tags. `span` is the word at the caret, `text` all character data around it."""
 
     parents: tuple[Typed, ...]

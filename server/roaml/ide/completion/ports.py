@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
@@ -18,12 +17,12 @@ from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import EXPLICIT, SUBTREES, blackboard_variable, is_variable_name, port_key
 from roaml.model.value_types import CHANNEL_KINDS
+from roaml.record import Record
 from roaml.roles import Direction, SymbolKind
 from roaml.xml_syntax import Element
 
 
-@dataclass(frozen=True, slots=True)
-class SettablePort:
+class SettablePort(Record, frozen=True):
     """A port that a node may set. `about` refers to its documentation."""
 
     key: str

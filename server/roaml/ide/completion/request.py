@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,6 +18,7 @@ from roaml.model.system_file import SystemSection
 from roaml.model.value_types import Environment
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
+from roaml.record import Record
 from roaml.xml_syntax import Element
 
 
@@ -37,8 +37,7 @@ class CompletionSubject(NamedTuple):
         return f"{self.parents[-1].element.name if self.parents else ''}/{self.type.name}"
 
 
-@dataclass(frozen=True, eq=False)
-class Request:
+class Request(Record, frozen=True, eq=False, dict=True):
     snapshot: Snapshot
     path: str
     offset: int

@@ -8,8 +8,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.text import Location
 
 
@@ -57,8 +57,7 @@ class EdgeKind(enum.Enum):
     SENDS = "sends"
 
 
-@dataclass(frozen=True, slots=True)
-class DiagramNode:
+class DiagramNode(Record, frozen=True):
     """A node of a diagram.
 
     Attributes:
@@ -77,8 +76,7 @@ class DiagramNode:
     place: Location | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class DiagramEdge:
+class DiagramEdge(Record, frozen=True):
     """An edge of a diagram.
 
     Attributes:
@@ -98,8 +96,7 @@ class DiagramEdge:
     place: Location | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Picture:
+class Picture(Record, frozen=True):
     """A diagram: its title, nodes and edges."""
 
     title: str

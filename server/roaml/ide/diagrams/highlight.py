@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.ide.diagrams.machine import state_id
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.text import Location
 
 
-@dataclass(frozen=True, slots=True)
-class DiagramHighlight:
+class DiagramHighlight(Record, frozen=True):
     """A node to highlight. `picture` is the kind of diagram, "machine" or "tree"; `path` is the file that the diagram
     shows; `node` is the id of the node in the diagram."""
 

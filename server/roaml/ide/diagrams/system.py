@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, Picture
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.project.analysis import Analysis
+from roaml.record import replace
 from roaml.text import Location
 
 

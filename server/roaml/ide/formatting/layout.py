@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from roaml.record import Record
 from roaml.text import Span, TextEdit
 
 _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
-@dataclass(frozen=True, slots=True)
-class FileLayout:
+class FileLayout(Record, frozen=True):
     """The layout of a file.
 
     Attributes:

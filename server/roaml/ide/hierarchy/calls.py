@@ -8,7 +8,6 @@ client calls a service, and the service calls its server. A tree calls the machi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.in_machine import interface_symbol
@@ -19,6 +18,7 @@ from roaml.model.outline import InterfaceUse
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
+from roaml.record import Record, replace
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
@@ -27,8 +27,7 @@ _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _CALLABLE = (SymbolKind.EVENT, *_INTERFACES, SymbolKind.MACHINE, SymbolKind.TREE)
 
 
-@dataclass(frozen=True, slots=True)
-class CallHierarchyItem:
+class CallHierarchyItem(Record, frozen=True):
     """A node of the graph. `span` is the span of the element, `name_span` that of its name."""
 
     symbol: Symbol
@@ -37,8 +36,7 @@ class CallHierarchyItem:
     name_span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class HierarchyCall:
+class HierarchyCall(Record, frozen=True):
     """An edge of the graph: the item at its other end, and the places of the calls in the caller's file."""
 
     item: CallHierarchyItem

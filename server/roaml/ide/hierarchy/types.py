@@ -8,7 +8,6 @@ ROS types are those that the machines of the workspace use, and the types inside
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, StructKind, unwrap
@@ -18,12 +17,12 @@ from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import KIND_NAMES, Definition, Kind
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.text import Location
 
 
-@dataclass(frozen=True, slots=True)
-class TypeItem:
+class TypeItem(Record, frozen=True):
     """A message, service, action or struct. `detail` lists the fields that have this type; if there are none, it is the
     kind of the type."""
 

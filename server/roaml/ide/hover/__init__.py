@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.ide.describe import describe
 from roaml.ide.describe.markdown import paragraphs
@@ -23,6 +22,7 @@ from roaml.ide.hover.tree import tree_node
 from roaml.ide.hover.xml_property_file import compared_number, property_tag
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.text import Span
 
 SEPARATOR = "\n\n---\n\n"
@@ -31,8 +31,7 @@ SEPARATOR = "\n\n---\n\n"
 _JSON = (FileKind.PROPERTIES, FileKind.JANI_MODEL)
 
 
-@dataclass(frozen=True, slots=True)
-class Hover:
+class Hover(Record, frozen=True):
     """`span` is the part of the file that `text` describes."""
 
     span: Span

@@ -3,18 +3,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.ide.names.lookup import occurrences_at
 from roaml.ide.names.occurrence import Occurrence
 from roaml.ide.syntax import Typed, expression_in, path_at, xml_file
 from roaml.model.kinds import FileKind
 from roaml.model.syntax import Expression
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(Record, frozen=True):
     """A place in a file, and what is known about it.
 
     Attributes:

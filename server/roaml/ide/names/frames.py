@@ -8,7 +8,6 @@ is written.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
@@ -19,6 +18,7 @@ from roaml.model.expand import TreeFileOutline, tree_called
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.script.names import names_in as names_in_script
 
@@ -30,16 +30,14 @@ TreeKey = tuple[str, str]
 """The path of a file, and the ID of a tree in it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
+class Setting(Record, frozen=True):
     """A value of a port, written in the file `path`."""
 
     path: str
     value: Name
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(Record, frozen=True, eq=False):
     """One instance of a tree.
 
     Attributes:

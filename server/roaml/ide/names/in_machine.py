@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
@@ -42,6 +41,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS, Environment, bindings, find_handle, interface_part
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES, sanitise
 from roaml.text import Span
@@ -82,8 +82,7 @@ def in_machine(
     return _Machine(text, machine, path, owner, types, environment).all()
 
 
-@dataclass(frozen=True, slots=True)
-class _Machine:
+class _Machine(Record, frozen=True):
     """Finds the occurrences in a machine. The attributes are the arguments of `in_machine`."""
 
     text: str

@@ -8,7 +8,6 @@ refer to one of these symbols form a `SymbolGroup`, because a rename must change
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from roaml.diagnostics import Symbol
@@ -16,6 +15,7 @@ from roaml.ide.names.occurrence import HANDLES, Occurrence
 from roaml.ide.names.occurrences import Uses, uses
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
@@ -23,8 +23,7 @@ _IN_ONE_FILE = frozenset((SymbolKind.STATE, SymbolKind.VARIABLE, *HANDLES))
 """Kinds of symbols that can be used only in the file that defines them."""
 
 
-@dataclass(frozen=True, slots=True)
-class SymbolUse:
+class SymbolUse(Record, frozen=True):
     """An occurrence, and the path of the file that contains it."""
 
     path: str
@@ -35,8 +34,7 @@ class SymbolUse:
         return Location(self.path, self.occurrence.span)
 
 
-@dataclass(frozen=True, eq=False)
-class SymbolGroup:
+class SymbolGroup(Record, frozen=True, eq=False, dict=True):
     """Symbols that must be renamed together, and their uses. `symbols` begins with those at the requested place.
 
     `uses` are sorted by file and place, without duplicates.

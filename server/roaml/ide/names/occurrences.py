@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.frames import Piece, Trees
@@ -17,11 +16,11 @@ from roaml.ide.names.in_tree import in_tree
 from roaml.ide.names.occurrence import Occurrence
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.text import Span
 
 
-@dataclass(frozen=True, eq=False)
-class Uses:
+class Uses(Record, frozen=True, eq=False):
     """The uses of names in one file: as a sequence in the order of the text, by symbol, and by span."""
 
     all: tuple[Occurrence, ...]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import Struct, StructKind, Type, unwrap
@@ -16,14 +15,14 @@ from roaml.model.system import System
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.project.paths import resolve
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.text import Location, Span
 
 INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
-@dataclass(frozen=True, slots=True)
-class DocumentHighlight:
+class DocumentHighlight(Record, frozen=True):
     """A use of a symbol in the same file. `access` is its kind; a definition is a write access."""
 
     span: Span

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
+from roaml.record import Record
 from roaml.text import Span
 
 
@@ -29,8 +29,7 @@ class DocumentSymbolKind(enum.Enum):
     PROPERTY = "property"
 
 
-@dataclass(frozen=True, slots=True)
-class DocumentSymbol:
+class DocumentSymbol(Record, frozen=True):
     """An entry of an outline. `detail` is shown after the name. `name_span` is the part of `span` that is selected when
     the user chooses the entry."""
 

@@ -4,17 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from roaml.diagnostics import Symbol
 from roaml.ide.names.occurrences import uses
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class WorkspaceSymbol:
+class WorkspaceSymbol(Record, frozen=True):
     """A definition. `container` is the name of the machine, struct, event or tree that contains it."""
 
     symbol: Symbol

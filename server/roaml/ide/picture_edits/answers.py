@@ -3,22 +3,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.ide.code_actions.action import WorkspaceEdit
+from roaml.record import Record
 
 
-@dataclass(frozen=True, slots=True)
-class Option:
+class Option(Record, frozen=True):
     """An answer to choose: its text for the user, and the answer itself."""
 
     label: str
     answer: str
 
 
-@dataclass(frozen=True, slots=True)
-class UserQuestion:
+class UserQuestion(Record, frozen=True):
     """A question whose answer the action needs.
 
     Attributes:
@@ -32,8 +30,7 @@ class UserQuestion:
     proposal: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class ActionRefusal:
+class ActionRefusal(Record, frozen=True):
     """An action that is not possible. `reason` is a clause for the user."""
 
     reason: str

@@ -4,59 +4,52 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roaml.model.machine import Chart, Declaration, Handler, Machine, State, Target
 from roaml.model.syntax import Name
 from roaml.model.tree import PortSetting, Tree, TreeNode, nodes
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ChartPart:
+class ChartPart(Record, frozen=True, eq=False):
     """A machine, or one of its action threads."""
 
     machine: Machine
     chart: Chart
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StatePart:
+class StatePart(Record, frozen=True, eq=False):
     machine: Machine
     chart: Chart
     state: State
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class HandlerPart:
+class HandlerPart(Record, frozen=True, eq=False):
     """A transition, or one of the `<target>` elements of a transition if `target` is not `None`."""
 
     handler: Handler
     target: Target | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DeclarationPart:
+class DeclarationPart(Record, frozen=True, eq=False):
     declaration: Declaration
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TreePart:
+class TreePart(Record, frozen=True, eq=False):
     tree: Tree
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TreeNodePart:
+class TreeNodePart(Record, frozen=True, eq=False):
     """A node of a tree; `is_root` says whether it is the root of its tree."""
 
     node: TreeNode
     is_root: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PortPart:
+class PortPart(Record, frozen=True, eq=False):
     setting: PortSetting
 
 

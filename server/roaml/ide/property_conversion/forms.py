@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roaml.jani.expressions import Binary, Expression, Integer, Real, Unary
@@ -21,6 +20,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
 )
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, ScopeKind, Window
+from roaml.record import Record
 from roaml.smc.nested import ObservedFormula, without_nesting, without_nesting_before
 from roaml.smc.normal_form import (
     TRUE,
@@ -43,8 +43,7 @@ _FROM_START = (ScopeKind.GLOBALLY, ScopeKind.BEFORE, ScopeKind.UNTIL)
 """The scopes with only one stretch, which begins at the start of the trace (docs/spec/xml-properties.md#scopes)."""
 
 
-@dataclass(frozen=True, slots=True)
-class PatternForm:
+class PatternForm(Record, frozen=True):
     """A pattern in a scope, and its conditions by the names of its inputs."""
 
     property: PatternProperty

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from xml.sax.saxutils import escape, quoteattr
 
 from roaml.expr.format import format_expr
@@ -26,6 +25,7 @@ from roaml.model.property_ports import FindInterface, LinkedPort, PortLinker, pa
 from roaml.model.ros import InterfaceType
 from roaml.model.system import System
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty, Window
+from roaml.record import Record, field
 from roaml.scxml.names import FIELD_PREFIX, flag_of, flagged_by
 from roaml.smc.normal_form import negated
 from roaml.text import Span
@@ -48,8 +48,7 @@ _BINARY = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class NeededVariable:
+class NeededVariable(Record, frozen=True):
     """A variable of a port. `port` is the start tag of the port without the angle brackets; `element` is that of the
     variable without its id."""
 
@@ -57,8 +56,7 @@ class NeededVariable:
     element: str
 
 
-@dataclass(slots=True)
-class XmlProperty:
+class XmlProperty(Record):
     """A property in XML.
 
     Attributes:

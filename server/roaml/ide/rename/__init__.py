@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group_at
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Form
 from roaml.ide.rename.new_name import problem
 from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC
 from roaml.project.analysis import Analysis
+from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.scxml.names import safe_name, sanitise
 from roaml.text import Span, TextEdit
@@ -37,23 +37,20 @@ _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
 """The names of ports whose values come from the node of the tree."""
 
 
-@dataclass(frozen=True, slots=True)
-class RenameRefusal:
+class RenameRefusal(Record, frozen=True):
     """A rename that is not possible. `reason` is a clause for the user."""
 
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
-class Prepared:
+class Prepared(Record, frozen=True):
     """The place and the current name of the symbol to rename."""
 
     span: Span
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Renaming:
+class Renaming(Record, frozen=True):
     """The edits of a rename, sorted, by the path of the file."""
 
     edits: Mapping[str, tuple[TextEdit, ...]]

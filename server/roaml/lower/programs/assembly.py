@@ -11,10 +11,10 @@ import ast
 import functools
 import importlib.resources
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
 from roaml.libraries.version import NEWEST_VERSION, Version
+from roaml.record import Record, field
 
 FILES = ("behaviortree_cpp.txt", "nav2.txt", "leaves.txt")
 
@@ -159,8 +159,7 @@ Instruction: TypeAlias = (
 )
 
 
-@dataclass(frozen=True)
-class NodeProgram:
+class NodeProgram(Record, frozen=True, dict=True):
     """The program of a node.
 
     Attributes:
@@ -280,8 +279,7 @@ def _constant(value: ast.expr) -> int | bool:
     return constant
 
 
-@dataclass
-class _Assembler:
+class _Assembler(Record):
     """Compiles the statements of one function. `given` contains the scripts that the node has; `None` means all
     scripts."""
 

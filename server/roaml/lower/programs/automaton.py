@@ -9,7 +9,6 @@ blackboard, or decides by the values of its variables how it continues.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
 from roaml.expr.operators import Operator
@@ -47,6 +46,7 @@ from roaml.lower.programs.steps import (
     update_steps,
 )
 from roaml.lower.programs.values import RESULT, ProgramValues, expr, negated
+from roaml.record import Record, field
 from roaml.scxml.events import Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, Statement, Target, Transition
 from roaml.scxml.names import TreeEventKind
@@ -65,8 +65,7 @@ class NodeTooLargeError(Exception):
     """Raised if the automaton of a node has more states than `MAX_STATES`."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NodeAutomaton:
+class NodeAutomaton(Record, frozen=True, eq=False):
     """The automaton of a node, and the properties of the node on which its parent depends."""
 
     automaton: Automaton
@@ -151,8 +150,7 @@ chance."""
 _Key: TypeAlias = _Rest | _Ticking | _Halting | _Asking | _Deciding | _Exception
 
 
-@dataclass(slots=True)
-class _Execution:
+class _Execution(Record):
     """One execution of the code up to the next state.
 
     Attributes:
@@ -166,8 +164,7 @@ class _Execution:
     body: list[Statement]
 
 
-@dataclass(eq=False)
-class _Explorer:
+class _Explorer(Record, eq=False, dict=True):
     code: NodeCode
     states: dict[_Key, str] = field(default_factory=dict)
     built: dict[str, State] = field(default_factory=dict)

@@ -8,7 +8,6 @@ any C++ type.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import grammar_of, parsed, script_attributes
@@ -18,6 +17,7 @@ from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.cases import number_in
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
+from roaml.record import Record, field
 from roaml.roles import Direction
 from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
@@ -35,8 +35,7 @@ _KIND = {Type.INTEGER: EntryKind.INTEGER, Type.REAL: EntryKind.REAL, Type.TEXT: 
 _TYPE = {kind: type_ for type_, kind in _KIND.items()}
 
 
-@dataclass(frozen=True, eq=False)
-class Board:
+class Board(Record, frozen=True, eq=False):
     """The entries of the blackboard of a translated tree.
 
     An observer is a node that checks whether an entry was written. Its flag is an additional entry that stores this.
@@ -107,8 +106,7 @@ def _kind_of_type(name: str) -> EntryKind:
     return EntryKind.REAL if name.startswith("float") else EntryKind.INTEGER
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _ScriptFacts:
+class _ScriptFacts(Record, frozen=True, eq=False):
     """The parts of a script from which types and uses of entries are inferred.
 
     Attributes:
@@ -133,8 +131,7 @@ def _facts(script: Script) -> _ScriptFacts:
     return _ScriptFacts(typed, tuple(dict.fromkeys(names)))
 
 
-@dataclass
-class _Reader:
+class _Reader(Record):
     tree: ExecutedTree
     given: Mapping[str, str]
     used: Mapping[int, NodeProgram | None]

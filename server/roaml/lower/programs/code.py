@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -13,6 +12,7 @@ from roaml.expr.types import BASE_TYPES, Type
 from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.entries import BoardEntry, EntryKind
 from roaml.lower.programs.scripts import CompiledScript
+from roaml.record import Record
 from roaml.text import Location
 
 IDLE, SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = range(6)
@@ -37,8 +37,7 @@ TYPES: Mapping[EntryKind, Type] = {
 }
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Child:
+class Child(Record, frozen=True, eq=False):
     """The properties of a child that the automaton of its parent depends on.
 
     Attributes:
@@ -52,8 +51,7 @@ class Child:
     is_stateless: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class NodeCode:
+class NodeCode(Record, frozen=True, eq=False):
     """Everything that determines the automaton of a node.
 
     Attributes:

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
 from roaml.lower.build import binary, integer
+from roaml.record import Record
 from roaml.text import NO_SPAN
 
 
@@ -18,8 +18,7 @@ class EntryKind(enum.Enum):
     TEXT = "a text"
 
 
-@dataclass(frozen=True, slots=True)
-class BoardEntry:
+class BoardEntry(Record, frozen=True):
     """An entry that scripts or nodes of the libraries read.
 
     Attributes:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 from roaml.forest.entries import entry_of
@@ -14,6 +13,7 @@ from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.model.tree import TreeNode
+from roaml.record import Record
 from roaml.scxml.names import NODE_PREFIX
 from roaml.text import Location, Span
 
@@ -26,8 +26,7 @@ class Names(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ExecutedNode:
+class ExecutedNode(Record, frozen=True, eq=False):
     """A node of the executed tree.
 
     Attributes:
@@ -64,8 +63,7 @@ class ExecutedNode:
             yield setting.key.value, entry, setting.value.value, setting.value.span
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ExecutedTree:
+class ExecutedTree(Record, frozen=True, eq=False):
     """The executed tree.
 
     Attributes:

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
@@ -21,6 +20,7 @@ from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, rea
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
+from roaml.record import Record, field
 from roaml.roles import NodeKind
 from roaml.text import Location
 
@@ -109,8 +109,7 @@ def event_probability(node: ExecutedNode) -> float | None:
     return probability
 
 
-@dataclass(eq=False)
-class PortValues:
+class PortValues(Record, eq=False):
     """The values of the ports that a program uses.
 
     Attributes:
@@ -135,8 +134,7 @@ def port_values(node: ExecutedNode, program: NodeProgram, board: Board) -> PortV
     return _Reader(node, program, board).values()
 
 
-@dataclass(eq=False)
-class _Reader:
+class _Reader(Record, eq=False):
     node: ExecutedNode
     program: NodeProgram
     board: Board

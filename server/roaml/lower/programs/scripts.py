@@ -8,7 +8,6 @@ it. Nothing else is executed in between.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import NoReturn
 
 from roaml.expr.operators import Operator, UnaryOperator
@@ -19,6 +18,7 @@ from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, floor, integer, name
 from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.lower.programs.refusal import INVALID_SCRIPT
+from roaml.record import Record, field
 from roaml.script import tree as syntax
 from roaml.text import NO_SPAN, Span
 
@@ -32,8 +32,7 @@ class ScriptRefusal(Exception):  # noqa: N818 - the script may be correct
         self.reason = reason
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CompiledScript:
+class CompiledScript(Record, frozen=True, eq=False):
     """A script that is translated to assignments.
 
     Attributes:
@@ -54,8 +53,7 @@ class CompiledScript:
 _JOINED = "texts cannot be joined in the translation"
 
 
-@dataclass(frozen=True, slots=True)
-class _Value:
+class _Value(Record, frozen=True):
     """A translated expression. `kind` is the kind of its value; `None` for a condition."""
 
     expr: Expr
@@ -82,8 +80,7 @@ def compiled(
     return _Compiler(entry, unset).script(parsed, is_condition=is_condition)
 
 
-@dataclass
-class _Compiler:
+class _Compiler(Record):
     entry: Callable[[str], BoardEntry | None]
     unset: Callable[[str], str]
     reads: dict[str, BoardEntry] = field(default_factory=dict)

@@ -8,7 +8,6 @@ import ast
 import math
 import operator
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -18,14 +17,14 @@ from roaml.lower.build import binary, equal, floor, integer, math_call, name
 from roaml.lower.programs.cases import are_equal
 from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
 from roaml.lower.programs.entries import EntryKind
+from roaml.record import Record
 from roaml.text import NO_SPAN
 
 RESULT = "*result"
 """The name of the known variable that contains the status which the program has returned."""
 
 
-@dataclass(frozen=True, eq=False)
-class ProgramValues:
+class ProgramValues(Record, frozen=True, eq=False):
     """Evaluates the expressions of the program of a node. `declared` contains the names of the variables of the
     automaton."""
 

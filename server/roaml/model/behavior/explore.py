@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
@@ -58,6 +57,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression
 from roaml.model.value_types import find_handle
+from roaml.record import Record, field, replace
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
 from roaml.text import Span
@@ -93,8 +93,7 @@ class FaultKind(Vocabulary):
     """A thread that does not exist."""
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(Record, frozen=True):
     """A statement on a path that must not be executed after the previous steps of the path, such as a second answer to
     one request.
 
@@ -113,8 +112,7 @@ class Fault:
     source: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class ChartConfiguration:
+class ChartConfiguration(Record, frozen=True):
     state: str
     phases: Phases = ()
     ids: HeldIds = ()
@@ -147,8 +145,7 @@ class ChartConfiguration:
                 return assert_never(duty.kind)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BehaviorStep:
+class BehaviorStep(Record, frozen=True, eq=False):
     """A step from one configuration to another.
 
     Attributes:
@@ -174,8 +171,7 @@ class BehaviorStep:
     certain: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Behavior:
+class Behavior(Record, frozen=True, eq=False):
     """The graph of a chart.
 
     Attributes:
@@ -345,8 +341,7 @@ _WRONG_GOAL = {
 _OF_INTERFACES = tuple(subject for subject in Subject if subject not in (Subject.TREE, Subject.CHILD))
 
 
-@dataclass(eq=False)
-class _Explorer:
+class _Explorer(Record, eq=False, dict=True):
     machine: Machine
     chart: Chart
     fine: bool

@@ -13,13 +13,13 @@ with an unreadable part that handles or sends events.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 
 from roaml.model.behavior.explore import BehaviorStep
 from roaml.model.behavior.phases import DutyKind, ProtocolEvent
 from roaml.model.behavior.summary import START, Needs, Promise
 from roaml.model.gaps import Act, GapAct, InterfaceAct
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
+from roaml.record import Record, field
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import sanitise
 
@@ -62,8 +62,7 @@ _ANSWERS = {
 _Fact = tuple[int, ProtocolEvent]
 
 
-@dataclass(frozen=True, slots=True)
-class EventDelay:
+class EventDelay(Record, frozen=True):
     """The reason why an event takes time.
 
     Attributes:
@@ -82,8 +81,7 @@ class EventDelay:
     next: EventDelay | None = None
 
 
-@dataclass(eq=False)
-class _Solver:
+class _Solver(Record, eq=False, dict=True):
     """The least solution of the facts "this event reaches this automaton", which depend on each other; found by
     iteration."""
 
@@ -152,8 +150,7 @@ def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent)
 # ------------------------------------------------------- without time passing
 
 
-@dataclass(eq=False)
-class Instants:
+class Instants(Record, eq=False, dict=True):
     """The events that can occur after `plugin` has been ticked or halted, without the passing of time."""
 
     system: System

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeAlias
 
 from roaml.expr.format import format_expr
@@ -31,6 +30,7 @@ from roaml.expr.tree import (
     is_draw,
     walk,
 )
+from roaml.record import PartlyCompared, Record, field, replace
 
 Constant: TypeAlias = bool | int | float | str
 
@@ -38,8 +38,7 @@ MAX_CONJUNCTIONS = 16
 """The maximum number of conjunctions into which a condition is split; a larger condition adds no knowledge."""
 
 
-@dataclass(frozen=True, slots=True)
-class Domain:
+class Domain(Record, frozen=True):
     """The values that a term may have.
 
     Attributes:
@@ -96,8 +95,7 @@ TRUTH: Domain = Domain(frozenset((True, False)))
 _RELATIONS = Domain(frozenset("<=>"))
 
 
-@dataclass(frozen=True, slots=True)
-class _Entry:
+class _Entry(Record, frozen=True):
     """A term and its domain. `roots` are the variables in the term."""
 
     term: str
@@ -105,8 +103,7 @@ class _Entry:
     domain: Domain
 
 
-@dataclass(frozen=True, slots=True)
-class Knowledge:
+class Knowledge(Record, frozen=True):
     entries: tuple[_Entry, ...] = ()
     """The entries of a conjunction, sorted by term."""
 
@@ -150,8 +147,7 @@ class _Term(NamedTuple):
     expr: Expr
 
 
-@dataclass(frozen=True)
-class ConditionFacts:
+class ConditionFacts(PartlyCompared, frozen=True):
     """Facts about the variables of a chart that hold on every path. They decide what is stored in a `Knowledge`.
 
     Attributes:
@@ -162,12 +158,14 @@ class ConditionFacts:
         constants: name of a constant, such as `SUCCESS` -> its value.
     """
 
+    UNCOMPARED = frozenset({"_terms"})
+
     whole: frozenset[str] = frozenset()
     logical: frozenset[str] = frozenset()
     followed: frozenset[str] | None = None
     counted: frozenset[str] = frozenset()
     constants: Mapping[str, Constant] = field(default_factory=dict)
-    _terms: dict[int, _Term] = field(default_factory=dict, repr=False, compare=False)
+    _terms: dict[int, _Term] = field(default_factory=dict)
 
     def term(self, expr: Expr) -> _Term:
         """The term for an expression. It is cached by the identity of the expression, which outlives this object."""

@@ -8,12 +8,12 @@ The summary contains names of states and handles, but no positions, so most chan
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, explore
 from roaml.model.behavior.phases import Duty, DutyKind, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Chart, Machine
+from roaml.record import Record, replace
 from roaml.roles import ProtocolPart
 
 Needs: TypeAlias = frozenset[frozenset[ProtocolEvent]]
@@ -43,8 +43,7 @@ _DUTIES = {
 _ASKED_BY = {DutyKind.REQUEST: ProtocolPart.REQUEST, DutyKind.GOAL: ProtocolPart.GOAL}
 
 
-@dataclass(frozen=True, slots=True)
-class Promise:
+class Promise(Record, frozen=True):
     """A delayed answer of a server.
 
     Attributes:
@@ -64,8 +63,7 @@ class Promise:
     needs: Needs
 
 
-@dataclass(frozen=True, slots=True)
-class ChartOutline:
+class ChartOutline(Record, frozen=True):
     """The summary of the graph of a chart.
 
     Attributes:
@@ -95,8 +93,7 @@ def summarise(behavior: Behavior) -> ChartOutline:
     return _Summary(behavior).outline()
 
 
-@dataclass(frozen=True, slots=True)
-class _Edge:
+class _Edge(Record, frozen=True):
     """Steps that do not differ in the summary.
 
     Attributes:

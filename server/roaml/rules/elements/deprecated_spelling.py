@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.diagnostics import Finding, Fix, Severity, Tag
 from roaml.edit.elements import removal, rename_tag
 from roaml.language import BEHAVIOR_TREE, AttributeType
 from roaml.language.grammar import ElementType
+from roaml.record import replace
 from roaml.rules.rule import FileContext, MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.elements import known_elements
 from roaml.text import Span, TextEdit

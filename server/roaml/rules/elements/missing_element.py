@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import first_in, last_in, remove
@@ -19,8 +18,7 @@ from roaml.text import Edit, Span, TextEdit
 from roaml.xml_syntax import Element
 
 
-@dataclass(frozen=True, slots=True)
-class MissingChild(Facts):
+class MissingChild(Facts, frozen=True):
     """The facts of a finding: the element `parent` lacks the required child `name`."""
 
     parent: str

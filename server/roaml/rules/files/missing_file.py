@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Severity
 from roaml.disk import UnreadableReason
@@ -12,8 +11,7 @@ from roaml.facts import Facts
 from roaml.rules.rule import Rule, SystemContext
 
 
-@dataclass(frozen=True, slots=True)
-class UnusableFile(Facts):
+class UnusableFile(Facts, frozen=True):
     problem: UnreadableReason
 
 

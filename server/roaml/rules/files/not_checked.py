@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import BASE_TYPES
@@ -17,6 +16,7 @@ from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
 from roaml.model.system_file import SystemSection
 from roaml.model.vocabulary import FOREIGN_TYPES
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
@@ -78,8 +78,7 @@ def _unknown_types(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(data.type.span, message)
 
 
-@dataclass(frozen=True, slots=True)
-class _Question:
+class _Question(Record, frozen=True):
     """A question about a system that its readable parts do not answer.
 
     Attributes:

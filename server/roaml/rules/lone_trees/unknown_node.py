@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP, Forest
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
+from roaml.record import replace
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of, probably_meant
 from roaml.text import Span, TextEdit

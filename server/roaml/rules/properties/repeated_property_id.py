@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.property_problems import ProblemKind
+from roaml.record import replace
 from roaml.rules.rule import PropertiesContext
 from roaml.rules.support.property_problems import problem_rule
 

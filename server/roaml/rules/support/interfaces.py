@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Related
 from roaml.expr.types import leaves
@@ -16,14 +15,14 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, System, SystemAutomaton
 from roaml.model.tree import TreeNode
+from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.text import Span
 
 
-@dataclass(frozen=True, slots=True)
-class Naming:
+class Naming(Record, frozen=True):
     """A place where an automaton names a topic, service or action.
 
     Attributes:

@@ -3,13 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from roaml.facts import Facts
 
 
-@dataclass(frozen=True, slots=True)
-class WrongName(Facts):
+class WrongName(Facts, frozen=True):
     """The facts of a finding: `name`, which is written at the span of the finding, is not valid there."""
 
     name: str

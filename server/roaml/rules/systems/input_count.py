@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
@@ -14,8 +13,7 @@ from roaml.model.system_file import ListedFile, SystemSection
 from roaml.rules.rule import Rule, SystemContext
 
 
-@dataclass(frozen=True, slots=True)
-class InputCount(Facts):
+class InputCount(Facts, frozen=True):
     """The facts of a finding: the system lists no file of the kind `kind`."""
 
     kind: FileKind

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.facts import Facts
@@ -14,8 +13,7 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.blackboard import places
 
 
-@dataclass(frozen=True, slots=True)
-class TypeConflict(Facts):
+class TypeConflict(Facts, frozen=True):
     """The facts of a finding: `other_type` is the type of another port that is bound to the same variable as `port`."""
 
     port: str

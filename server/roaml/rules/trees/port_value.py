@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
@@ -23,6 +22,7 @@ from roaml.model.tree import (
     looks_like_reference,
     nodes,
 )
+from roaml.record import Record, replace
 from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
@@ -183,8 +183,7 @@ def _place(node: TreeNode, port: PortOutline) -> Span:
     return setting.span
 
 
-@dataclass(frozen=True, slots=True)
-class ConstantProblem:
+class ConstantProblem(Record, frozen=True):
     """Why a port cannot hold a constant; `replacement` is the constant that was probably intended, or an empty
     string."""
 

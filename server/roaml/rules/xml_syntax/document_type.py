@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.diagnostics import Finding, Severity
+from roaml.record import replace
 from roaml.rules.parser_rules import parser_findings
 from roaml.rules.rule import FileContext, Rule
 

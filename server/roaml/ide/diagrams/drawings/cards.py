@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from roaml.figures.drawing import Group, Item, Outline, Polyline, Shape, TextItem, Tone
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
+from roaml.record import Record
 
 PADDING = 10.0
 _ROW_DISTANCE = 5.0
@@ -16,8 +16,7 @@ _BAR_WIDTH, _BAR_DISTANCE = 3.0, 7.0
 _INDENT = 10.0
 
 
-@dataclass(frozen=True, slots=True)
-class TextLine:
+class TextLine(Record, frozen=True):
     """A line of a row; `indent` is in pixels."""
 
     text: str
@@ -35,8 +34,7 @@ class TextLine:
         return self.size * LINE_HEIGHT
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(Record, frozen=True):
     """Lines of a card that represent edges of the diagram, or that describe the node itself if `edges` is empty.
 
     Attributes:
@@ -61,8 +59,7 @@ class Row:
         return Extent(width + bar, sum(line.height for line in self.lines))
 
 
-@dataclass(frozen=True, slots=True)
-class Card:
+class Card(Record, frozen=True):
     """A column of rows. `ruled` is true if a line separates the first row from the others. `side` is the free width on
     the left of the first row, for a badge."""
 

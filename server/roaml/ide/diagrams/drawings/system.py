@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Outline, Shape, Tone
@@ -14,6 +13,7 @@ from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, title
 from roaml.ide.diagrams.drawings.machine import draw_machine
+from roaml.record import replace
 
 _MARGIN = 18.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
