@@ -12,7 +12,7 @@ import pytest
 from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
-from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, machine_picture, ros_picture, tree_picture
+from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, collapsed, machine_picture, ros_picture, tree_picture
 from roaml.ide.picture_edits import PictureAction
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -160,6 +160,33 @@ def test_conditions_and_what_subtrees_are_given(tmp_path: Path) -> None:
         "Grasp | _while = true | at = {place}",
         "S",
         "Grasp | _while = true | at = {S__at}",
+    ]
+
+
+def test_collapsed_nodes(tmp_path: Path) -> None:
+    """The nodes below, and entries that only these use, are left out."""
+    tree = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence>
+        <Fallback><Inverter><Look at="{own}"/></Inverter><Go to="{place}"/></Fallback>
+        <SubTree ID="S"/><Stay at="{place}"/></Sequence></BehaviorTree>
+        <BehaviorTree ID="S"><Grasp/></BehaviorTree></root>"""
+    picture = tree_picture(load(tmp_path, {"tree.xml": tree}), str(tmp_path / "tree.xml"))
+    assert picture is not None
+    ids = {node.label: node.id for node in picture.nodes}
+
+    def lines(*labels: str) -> list[str]:
+        return list(shown(collapsed(picture, [ids.get(label, label) for label in labels])))
+
+    assert lines() == lines("Stay", "unknown") == shown(picture)
+    assert lines("Fallback", "Inverter", "S") == [
+        "control | Sequence | initial",
+        "control | Fallback | … 3 nodes",
+        "subtree | S | … 1 node",
+        "action | Stay | at = {place}",
+        "variable | place",
+        "Sequence -> Fallback | child",
+        "Sequence -> S | child",
+        "Sequence -> Stay | child",
+        "place -> Stay | reads | at",
     ]
 
 

@@ -94,6 +94,8 @@ async def test_pictures(tmp_path: Path) -> None:
     assert all(box["width"] > 0 for drawing in machine["drawings"] for box in drawing["nodes"])
     (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
     assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "ReactiveFallback", "BatteryAbove"]
+    (top,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree", collapsed=["1000"])
+    assert [node["label"] for node in top["nodes"]] == ["ReactiveSequence"]
     ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
     assert "/hand_over" in [node["label"] for node in ros["nodes"]]
     assert none is None

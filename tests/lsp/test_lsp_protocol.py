@@ -28,6 +28,9 @@ PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600,
 NOT_INITIALIZED = -32002
 
 
+COLLAPSED = {"kind": "tree", "textDocument": {"uri": "file:///tree.xml"}, "collapsed": [1]}
+
+
 def framed(body: bytes) -> bytes:
     return b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
 
@@ -149,6 +152,7 @@ BROKEN: list[tuple[bytes, object, int | None]] = [
     (frame({"jsonrpc": "2.0", "id": 11, "method": "as2fm/about", "params": {}}), 11, INVALID_PARAMS),
     (frame({"jsonrpc": "2.0", "id": 12, "method": "as2fm/about", "params": {"type_name": 5}}), 12, INVALID_PARAMS),
     (frame({"jsonrpc": "2.0", "id": 13, "method": "as2fm/picture"}), 13, INVALID_PARAMS),
+    (frame({"jsonrpc": "2.0", "id": 14, "method": "as2fm/picture", "params": COLLAPSED}), 14, INVALID_PARAMS),
     (frame({"jsonrpc": "2.0", "id": 14, "method": "no/such"}), 14, METHOD_NOT_FOUND),
     (frame({"jsonrpc": "2.0", "id": 15, "error": {"code": 1, "message": "?"}}), "-", None),
     (frame({"jsonrpc": "2.0", "id": [], "result": 5}), "-", None),

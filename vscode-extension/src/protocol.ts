@@ -21,6 +21,8 @@ export interface DocumentParams {
 
 export interface PictureParams extends DocumentParams {
     readonly kind: PictureKind;
+    /** The ids of the nodes of a tree whose descendants are hidden. */
+    readonly collapsed?: readonly string[];
 }
 
 export interface PictureFileParams extends PictureParams {

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Picture, PictureEdge, PictureNode, Place, Words } from "../src/pictures/contract";
+import type { Box, Picture, PictureEdge, PictureNode, Place, Words } from "../src/pictures/contract";
 import { partAt } from "../src/pictures/partAt";
-import { bestDrawing, fit, fitLegibly, neighbour, pan, reveal, search, zoom } from "../src/pictures/view/find";
+import {
+    around,
+    bestDrawing,
+    centered,
+    fit,
+    fitLegibly,
+    mapOf,
+    neighbour,
+    pan,
+    reveal,
+    search,
+    zoom,
+} from "../src/pictures/view/find";
 import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
 
 const URI = "file:///m.ascxml";
@@ -171,3 +183,27 @@ test("the legend has one entry for each color", () => {
     assert.deepEqual(entries(TREE), ["control: control", "action: action", "blackboard: variable"]);
     assert.deepEqual(entries(ROS), ["topic: topic", "service: service", "event: event"]);
 });
+
+test("a map of a drawing, and the view around a point of it", () => {
+    const drawing = { width: 4000, height: 1000 };
+    const { width, height, factor } = mapOf(drawing, 200, 150);
+    assert.deepEqual([width, height, factor], [200, 50, 0.05]);
+    assert.equal(mapOf({ width: 100, height: 50 }, 200, 150).factor, 1);
+    assert.deepEqual(centered({ x: 0, y: 0, scale: 0.5 }, { x: 2000, y: 500 }, 600, 400), {
+        x: 1400,
+        y: 100,
+        scale: 0.5,
+    });
+});
+
+test("a drawing that does not fit is shown around its root", () => {
+    const sight = { x: -24, y: -24, scale: 1 };
+    const rootAt = (y: number) => around(sight, { width: 300, height: 2000 }, box(0, y), 600, 400);
+    assert.deepEqual(rootAt(1000), { x: -24, y: 810, scale: 1 });
+    assert.deepEqual(rootAt(0), { x: -24, y: -24, scale: 1 });
+    assert.deepEqual(rootAt(1980), { x: -24, y: 1624, scale: 1 });
+});
+
+function box(x: number, y: number): Box {
+    return { x, y, width: 100, height: 20 };
+}

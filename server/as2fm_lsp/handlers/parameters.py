@@ -37,3 +37,17 @@ def natural(params: object, name: str) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise JsonRpcInvalidParams(f"`{name}` must be an integer of at least 0")
     return value
+
+
+def strings(params: object, name: str) -> tuple[str, ...]:
+    """A parameter that is a list of strings; empty if it is missing.
+
+    Raises:
+        JsonRpcInvalidParams: it is something else.
+    """
+    value = getattr(params, name, None)
+    if value is None:
+        return ()
+    if not isinstance(value, (list, tuple)) or not all(isinstance(item, str) for item in value):
+        raise JsonRpcInvalidParams(f"`{name}` must be a list of strings")
+    return tuple(value)

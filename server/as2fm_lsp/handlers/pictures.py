@@ -6,12 +6,12 @@ from __future__ import annotations
 from typing import Any
 
 from as2fm_lsp.context import Context
-from as2fm_lsp.handlers.parameters import document_uri, string
+from as2fm_lsp.handlers.parameters import document_uri, string, strings
 from roaml.figures.drawing import Drawing
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import DiagramKind, Picture, draw, picture_of
+from roaml.ide.diagrams import DiagramKind, Picture, collapsed, draw, picture_of
 from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -71,9 +71,12 @@ def register(context: Context) -> None:
 
     def asked(params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
         kind = next((kind for kind in DiagramKind if kind.value == string(params, "kind")), None)
+        hidden = strings(params, "collapsed")
         path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis
         picture = picture_of(kind, analysis, path) if kind else None
+        if kind is DiagramKind.TREE and picture is not None:
+            picture = collapsed(picture, hidden)
         return (analysis, kind, picture) if kind and picture else None
 
     @context.feature(METHOD)

@@ -112,6 +112,9 @@ class PicturePanel implements vscode.Disposable {
     readonly loaded: Promise<void>;
     private hasLoaded: () => void = () => undefined;
     private asked = 0;
+    /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
+    private readonly collapsed = new Set<string>();
+    private collapsedIn = "";
 
     constructor(
         private readonly kind: PictureKind,
@@ -152,7 +155,13 @@ class PicturePanel implements vscode.Disposable {
         if (!this.uri) return;
         const asked = ++this.asked;
         const uri = this.uri.toString();
-        const picture = await this.server.ask(pictureRequest, { kind: this.kind, textDocument: { uri } });
+        if (uri !== this.collapsedIn) this.collapsed.clear();
+        this.collapsedIn = uri;
+        const picture = await this.server.ask(pictureRequest, {
+            kind: this.kind,
+            textDocument: { uri },
+            collapsed: [...this.collapsed],
+        });
         if (asked !== this.asked || picture === undefined) return;
         this.picture = picture ?? undefined;
         this.panel.title = picture ? `${titleOf(this.kind)}: ${picture.title}` : titleOf(this.kind);
@@ -237,6 +246,10 @@ class PicturePanel implements vscode.Disposable {
                 this.post({ type: "words", words: words() });
                 if (this.picture) this.draw();
                 break;
+            case "collapse":
+                if (!this.collapsed.delete(message.node)) this.collapsed.add(message.node);
+                await this.refresh();
+                break;
             case "jump":
                 await jump(message.place, message.beside);
                 break;
@@ -256,7 +269,8 @@ class PicturePanel implements vscode.Disposable {
     private async save({ format, direction, theme }: Extract<FromView, { type: "save" }>): Promise<void> {
         if (!this.uri) return;
         const textDocument = { uri: this.uri.toString() };
-        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, direction, theme });
+        const collapsed = [...this.collapsed];
+        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, direction, theme, collapsed });
         if (!file) return;
         if (format === "svg") await this.write("svg", Buffer.from(file.svg, "utf8"));
         else this.post({ type: "rasterize", svg: file.svg });
@@ -324,7 +338,7 @@ function words(): Words {
         savePng: vscode.l10n.t("Save as PNG"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, Enter opens the source, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, Enter opens the source, Space collapses a node of a tree, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         kinds: {

@@ -180,6 +180,8 @@ export type ToView =
 
 export type FromView =
     | { readonly type: "ready" }
+    /** Hide the nodes below the node with an id, or show them again. */
+    | { readonly type: "collapse"; readonly node: string }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
     | { readonly type: "save"; readonly format: "svg" | "png"; readonly direction: Direction; readonly theme: Theme }
     /** The answer to `rasterize`: the PNG file in base64. */

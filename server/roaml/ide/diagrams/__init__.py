@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from roaml.ide.diagrams.collapse import collapsed
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
@@ -26,6 +27,7 @@ __all__ = [
     "DiagramNodeKind",
     "EdgeKind",
     "Picture",
+    "collapsed",
     "draw",
     "draw_for",
     "highlights",

@@ -119,6 +119,31 @@ export function reveal(sight: Sight, box: Box, width: number, height: number): S
     return { ...sight, x: inside(sight.x, box.x, box.width, w), y: inside(sight.y, box.y, box.height, h) };
 }
 
+/** The view moved so that a point of the drawing is in the middle of the window. */
+export function centered(sight: Sight, point: Point, width: number, height: number): Sight {
+    return { ...sight, x: point.x - width / sight.scale / 2, y: point.y - height / sight.scale / 2 };
+}
+
+/** The view moved so that a box is in the middle of the window, as far as there is no empty space beside the drawing. */
+export function around(sight: Sight, drawing: Area, box: Box, width: number, height: number): Sight {
+    const inside = (at: number, now: number, size: number, window: number) =>
+        size <= window ? now : Math.max(-MARGIN / sight.scale, Math.min(at, size + MARGIN / sight.scale - window));
+    const [w, h] = [width / sight.scale, height / sight.scale];
+    const { x, y } = centered(sight, middle(box), width, height);
+    return { ...sight, x: inside(x, sight.x, drawing.width, w), y: inside(y, sight.y, drawing.height, h) };
+}
+
+/** The size of a map of a drawing, and the factor by which the map is smaller. */
+export interface MapScale extends Area {
+    readonly factor: number;
+}
+
+/** The largest map of a drawing that fits into a size. */
+export function mapOf(drawing: Area, width: number, height: number): MapScale {
+    const factor = Math.min(1, width / Math.max(1, drawing.width), height / Math.max(1, drawing.height));
+    return { width: drawing.width * factor, height: drawing.height * factor, factor };
+}
+
 function middle(box: Box): Point {
     return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
 }

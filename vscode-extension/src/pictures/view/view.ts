@@ -13,7 +13,20 @@ import {
     type ToView,
     type Words,
 } from "../contract";
-import { bestDrawing, fit, fitLegibly, isArrow, neighbour, pan, reveal, search, zoom, type Sight } from "./find";
+import {
+    around,
+    bestDrawing,
+    fit,
+    fitLegibly,
+    isArrow,
+    neighbour,
+    pan,
+    reveal,
+    search,
+    zoom,
+    type Sight,
+} from "./find";
+import { Minimap } from "./minimap";
 import { element, pngData, sceneOf, type Scene } from "./scene";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
@@ -31,6 +44,10 @@ class View {
     private readonly input = document.createElement("input");
     private readonly legend = document.createElement("div");
     private readonly notice = document.createElement("div");
+    private readonly minimap = new Minimap((sight) => {
+        this.moved = true;
+        this.look(sight);
+    });
     private words: Words | undefined;
     private picture: Picture | undefined;
     /** The index of the drawing that is shown. */
@@ -49,7 +66,7 @@ class View {
         this.legend.className = "legend";
         this.notice.className = "notice";
         this.notice.setAttribute("role", "status");
-        document.body.append(this.svg, this.bar, this.legend, this.notice);
+        document.body.append(this.svg, this.bar, this.legend, this.notice, this.minimap.svg);
         this.listen();
         new ResizeObserver(() => {
             this.refit();
@@ -116,6 +133,7 @@ class View {
         this.scene?.root.remove();
         this.scene = sceneOf(picture, drawing, words);
         this.svg.append(this.scene.root);
+        this.minimap.show(picture, drawing);
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
         this.legend.replaceChildren(...legendOf(picture, words).map(entry));
         this.look(this.sight);
@@ -149,6 +167,7 @@ class View {
         this.selected = -1;
         this.notice.textContent = "";
         this.legend.replaceChildren();
+        this.minimap.clear();
     }
 
     // ------------------------------------------------------------------- looking
@@ -157,6 +176,8 @@ class View {
         this.sight = sight;
         const { x, y, scale } = sight;
         this.scene?.root.setAttribute("transform", `scale(${scale}) translate(${-x} ${-y})`);
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.minimap.look(sight, width, height);
     }
 
     private fit(): void {
@@ -167,7 +188,10 @@ class View {
 
     private fitLegibly(): void {
         const { width, height } = this.svg.getBoundingClientRect();
-        if (this.drawing) this.look(fitLegibly(this.drawing, width, height));
+        if (!this.drawing) return;
+        const sight = fitLegibly(this.drawing, width, height);
+        const root = this.picture?.kind === "tree" ? this.drawing.nodes[0] : undefined;
+        this.look(root ? around(sight, this.drawing, root, width, height) : sight);
     }
 
     private zoom(factor: number, about?: { x: number; y: number }): void {
@@ -252,9 +276,16 @@ class View {
         if (to?.place) editor.postMessage({ type: "jump", place: to.place, beside });
     }
 
+    /** Hide the nodes below a node of a tree, or show them again. */
+    private collapse(node: number): void {
+        const id = this.picture?.nodes[node]?.id;
+        if (this.picture?.kind === "tree" && id !== undefined) editor.postMessage({ type: "collapse", node: id });
+    }
+
     private search(forward = false): void {
         if (!this.picture || !this.scene) return;
         const matches = search(this.picture, this.input.value);
+        this.minimap.mark(matches);
         this.scene.root.classList.toggle("searched", this.input.value.trim() !== "");
         for (const [index, node] of this.scene.nodes) node.classList.toggle("found", matches.includes(index));
         this.notice.textContent =
@@ -278,7 +309,9 @@ class View {
             }
         });
         this.svg.addEventListener("dblclick", ({ target }) => {
+            const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
             if (target === this.svg) this.fit();
+            else if (node) this.collapse(Number(node));
         });
         this.svg.addEventListener(
             "wheel",
@@ -339,6 +372,7 @@ class View {
         else if (ctrlKey || metaKey) return false;
         else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
         else if (key === "Enter") this.jump(this.picture?.nodes[this.selected], false);
+        else if (key === " ") this.collapse(this.selected);
         else if (key === "+" || key === "=") this.zoom(ZOOM);
         else if (key === "-") this.zoom(1 / ZOOM);
         else if (key === "0") this.fit();

@@ -63,6 +63,11 @@ const CHANNEL_TONES: Partial<Record<NodeKind, string>> = {
     "action-interface": "ros-action",
 };
 
+/** The tone of a node of a tree or a ROS graph; "plain" for other nodes. */
+export function toneOf(kind: NodeKind | undefined): string {
+    return (kind && (NODE_TONES[kind] ?? CHANNEL_TONES[kind])) ?? "plain";
+}
+
 /** One entry for each color of a picture. */
 export function legendOf(picture: Picture, words: Words): LegendEntry[] {
     const entries: LegendEntry[] = [];

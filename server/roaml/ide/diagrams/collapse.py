@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagrams of trees in which nodes are collapsed: the nodes below them are not shown."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from roaml.ide.diagrams.diagram import DiagramNodeKind, EdgeKind, Picture
+
+
+def collapsed(picture: Picture, ids: Collection[str]) -> Picture:
+    """The diagram without the nodes below those with the given ids, and without the entries that only these use. A
+    collapsed node says how many nodes are not shown. Ids of other diagrams are ignored."""
+    children: dict[str, list[str]] = {}
+    for edge in picture.edges:
+        if edge.kind is EdgeKind.CHILD:
+            children.setdefault(edge.source, []).append(edge.target)
+    hidden: set[str] = set()
+    counts: dict[str, int] = {}
+    for name in ids:
+        below, pending = set[str](), list(children.get(name, ()))
+        while pending:
+            child = pending.pop()
+            below.add(child)
+            pending += children.get(child, ())
+        if below:
+            counts[name] = len(below)
+            hidden |= below
+    edges = [edge for edge in picture.edges if not {edge.source, edge.target} & hidden]
+    ends = {end for edge in edges for end in (edge.source, edge.target)}
+    nodes = [
+        replace(node, details=(*node.details, f"… {_nodes(counts[node.id])}")) if node.id in counts else node
+        for node in picture.nodes
+        if node.id not in hidden and (node.kind is not DiagramNodeKind.VARIABLE or node.id in ends)
+    ]
+    return replace(picture, nodes=tuple(nodes), edges=tuple(edges))
+
+
+def _nodes(count: int) -> str:
+    return "1 node" if count == 1 else f"{count} nodes"
