@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 from roaml.ide.diagrams.diagram import DiagramNodeKind, EdgeKind, Picture
+from roaml.record import replace
 
 
 def collapsed(picture: Picture, ids: Collection[str]) -> Picture:

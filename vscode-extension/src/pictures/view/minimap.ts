@@ -8,6 +8,8 @@ import { element } from "./scene";
 
 /** The size of the largest map, in pixels. */
 const LARGEST = { width: 200, height: 300 };
+/** A drawing needs no map if it is at most this many times as large as the visible part. */
+const ALMOST_ALL = 1.4;
 
 export class Minimap {
     readonly svg = element("svg", { class: "minimap", "aria-hidden": "true" });
@@ -36,41 +38,31 @@ export class Minimap {
     /** Draw the nodes of a picture. */
     show(picture: Picture, drawing: Drawing): void {
         this.drawing = drawing;
-        this.scale = mapOf(drawing, LARGEST.width, LARGEST.height);
-        const { width, height, factor } = this.scale;
-        this.svg.setAttribute("width", String(width));
-        this.svg.setAttribute("height", String(height));
+        this.svg.setAttribute("viewBox", `0 0 ${drawing.width} ${drawing.height}`);
         this.svg.replaceChildren(
             ...drawing.nodes.map(({ index, ...box }) =>
                 element("rect", {
                     class: `minimap-node tone-${toneOf(picture.nodes[index]?.kind)}`,
                     "data-map-node": index,
-                    x: box.x * factor,
-                    y: box.y * factor,
-                    width: Math.max(2, box.width * factor),
-                    height: Math.max(2, box.height * factor),
+                    ...box,
                 }),
             ),
             this.frame,
         );
     }
 
-    /** Show which part is visible. The map is hidden if all of the drawing is visible. */
+    /** Show which part is visible. The map is hidden if almost all of the drawing is visible. */
     look(sight: Sight, width: number, height: number): void {
         this.sight = sight;
         this.view = { width, height };
-        if (!this.drawing || !this.scale) return;
+        if (!this.drawing) return;
         const seen = { width: width / sight.scale, height: height / sight.scale };
-        const all = seen.width >= this.drawing.width && seen.height >= this.drawing.height;
-        this.svg.classList.toggle("hidden", all);
-        const { factor } = this.scale;
-        const [left, top] = [Math.max(0, sight.x * factor), Math.max(0, sight.y * factor)];
-        const right = Math.min(this.scale.width, (sight.x + seen.width) * factor);
-        const bottom = Math.min(this.scale.height, (sight.y + seen.height) * factor);
-        this.frame.setAttribute("x", String(left));
-        this.frame.setAttribute("y", String(top));
-        this.frame.setAttribute("width", String(Math.max(0, right - left)));
-        this.frame.setAttribute("height", String(Math.max(0, bottom - top)));
+        const fits = (size: number, window: number) => size <= window * ALMOST_ALL;
+        const isVisible = fits(this.drawing.width, seen.width) && fits(this.drawing.height, seen.height);
+        this.svg.classList.toggle("hidden", isVisible);
+        this.scale = mapOf(this.drawing, Math.min(LARGEST.width, width / 4), Math.min(LARGEST.height, height / 2));
+        place(this.svg, { width: this.scale.width, height: this.scale.height });
+        place(this.frame, { x: sight.x, y: sight.y, ...seen });
     }
 
     /** Emphasise nodes, such as those that a search has found. */
@@ -93,4 +85,8 @@ export class Minimap {
             y: (event.clientY - top) / this.scale.factor,
         };
     }
+}
+
+function place(shape: SVGElement, attributes: Readonly<Record<string, number>>): void {
+    for (const [name, value] of Object.entries(attributes)) shape.setAttribute(name, String(value));
 }
