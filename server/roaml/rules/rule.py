@@ -63,16 +63,16 @@ class MachineContext(Record, frozen=True):
     """The context of rules about a machine.
 
     Attributes:
-        system: `None` if the machine is not part of a system.
-        automata: the automata of the machine in `system`.
+        system: the system that lists the machine; `None` if the machine is checked without a system.
+        automata: the automata of the machine in `system`; empty without a system.
         listed_as: the sections of the system file that list the machine.
-        struct: returns the type of a struct by its name.
+        struct: returns the type of a struct by its name; `None` if there is no struct with this name.
         struct_names: the names of the known structs.
         all_structs: whether the system has no other structs than those in `struct_names`.
         interface: returns a ROS type by its kind and its name as written.
-        event_data: returns the type of the data of an event by its name.
-        gaps: the facts that unreadable parts of the machine may contain.
-        repeated_types: the ROS types that the machine uses and that are defined twice.
+        event_data: returns the type of the data of an event by its name; `None` if the type is unknown.
+        gaps: the facts that unreadable parts of the machine may contain, with their places.
+        repeated_types: the ROS types that the machine uses and that two files define differently.
     """
 
     source: SourceFile
@@ -101,7 +101,7 @@ class TreeContext(Record, frozen=True):
 
     Attributes:
         files: the outlines of all tree files of the system, the executed file first.
-        missing_includes: included files that cannot be read, with the reasons.
+        missing_includes: the paths in `<include>` that cannot be included -> the reasons.
         interface: returns a ROS type by its kind and its name as written.
         gaps: the facts that unreadable parts of this file may contain.
         forest: the trees that are checked together with this file; `None` if the file belongs to a system.
@@ -168,7 +168,8 @@ class PropertiesContext(Record, frozen=True):
         value: the content of the file.
         system: the system of the file; `None` if the file belongs to no system.
         variables: the global variables of the translated system, by name; `None` if the file belongs to no system.
-        taken: the names of properties in the files that the system lists before this file, with these files.
+        taken: the names of the properties in the files that the system lists before this file, each with a phrase that
+            names its file.
     """
 
     source: SourceFile

@@ -105,7 +105,8 @@ def _not_taken(delay: EventDelay) -> bool:
 
 
 def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
-    """One phrase for each link of the chain of machines that wait for each other, except the first link."""
+    """One phrase for each link of the chain of machines that wait for each other, except the last link: why the event
+    of the link does not arrive before the event of the next link."""
     while delay is not None and delay.next is not None:
         then = delay.next
         timed = then.event.part is ProtocolPart.TICK

@@ -52,7 +52,7 @@ def _requests(context: MachineContext) -> Iterator[RosSend]:
 
 
 def _declarations(context: MachineContext, part: ProtocolPart) -> set[Declaration | None]:
-    """The declarations for which the machine sends something."""
+    """The declarations for which the machine sends `part`; with `None` if one cannot be read."""
     return {
         find_handle(context.machine, statement)
         for chart in context.machine.charts

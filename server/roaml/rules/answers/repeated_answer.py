@@ -22,7 +22,7 @@ _REQUESTS_OF = {
     DutyKind.GOAL: (ProtocolPart.GOAL,),
     DutyKind.RESULT: (ProtocolPart.GOAL, ProtocolPart.THREAD_START),
 }
-"""The requests for which a duty requires an answer."""
+"""The kind of a duty -> the events that require its answer."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -118,8 +118,8 @@ def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statem
 
 
 def _first_answer(context: MachineContext, behavior: Behavior, step: BehaviorStep, fault: Fault) -> Statement | None:
-    """The statement that answered the request first, in the same step or in the nearest step before it. `None` if there
-    is none."""
+    """The last statement that answered the request before the statement of `fault`, in the same step or in the nearest
+    step before it. `None` if there is none, and for an answer of the wrong kind."""
     if fault.kind is FaultKind.WRONG_KIND:
         return None
     events = _answers(fault)
@@ -225,7 +225,8 @@ def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterato
 
 
 def _is_last(handler: Handler, statement: Statement) -> bool:
-    """Whether the statement is a direct child of the handler, so that its removal does not leave an empty `<if>`."""
+    """Whether the statement is in the body of the handler and not in an `<if>`, so that its removal leaves no empty
+    `<if>`."""
     return any(statement in target.body for target in handler.targets)
 
 

@@ -13,7 +13,8 @@ from roaml.text import Span, TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report conditions that return RUNNING, which BehaviorTree.CPP does not allow."""
+    """Report plugins that the tree uses as a `<Condition>` and that return RUNNING, which BehaviorTree.CPP does not
+    allow."""
     used = next((a for a in plugins(context) if a.instance is not None and a.instance.condition), None)
     if used is None:
         return

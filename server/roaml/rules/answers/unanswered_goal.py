@@ -56,7 +56,8 @@ def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
         reason = "events are dropped while this condition does not hold, so a goal"
         return f"{reason} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
     how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
-    end = "end it with `<ros_action_succeed>`, `_aborted` or `_canceled`" if ends else "accept or reject it"
+    results = "`<ros_action_succeed>`, `<ros_action_aborted>` or `<ros_action_canceled>`"
+    end = f"end it with {results}" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"
     if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _handles_goal(step)):
         which = "the goal that is pending here"

@@ -35,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     plugin, name, root = automata[0].outline.plugin, context.machine.name, context.machine.element
     if not plugin.ticked:
         if not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
-            message = "the plugin does not handle ticks: it has no `<bt_tick>`"
+            message = "the plugin does not handle ticks: it has no `<bt_tick>`; add one to its states"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handler(context))
         return
     if not is_spelled(context, TICK):
@@ -106,7 +106,8 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
 
 
 def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """A fix that returns SUCCESS at the end of the handler, or RUNNING where none of its conditions holds."""
+    """A fix that returns SUCCESS at the end of the handler. If the step ignores the tick, because the condition of the
+    handler does not hold, the fix adds a handler that returns RUNNING."""
     document, element = context.document, step.handler.element
     if not element.complete or step.event is None:
         return

@@ -33,8 +33,8 @@ _WHY = {
     FaultKind.UNSTORED: "no goal id was stored in `{id}` before; store `_action.goal_id` in it where the goal is "
     "handled",
 }
-"""Reasons by the kind of fault. If several kinds apply to one element, the first is reported: it is the most
-specific."""
+"""The kind of a fault -> the reason in the message. If several kinds apply to one element, the first is reported: it is
+the most specific."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

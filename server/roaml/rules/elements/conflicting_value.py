@@ -30,11 +30,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _overruled(context: MachineContext, child: Element, attribute: Attribute) -> Finding:
-    """Report a value in a child element that is ignored, because an attribute with the same value takes precedence
+    """Report a child element whose value is ignored, because the attribute with the same name takes precedence
     (docs/spec/files.md#attribute-or-child)."""
     return RULE.at(
         child.name_span,
-        f"`{child.name}` is ignored: the attribute of the same name takes precedence",
+        f"`<{child.name}>` is ignored, because the attribute `{attribute.name}` takes precedence; remove one of them",
         Fix(f"Remove `<{child.name}>`", (removal(context.source.text, child.span),), safe=True),
         related=(Related(attribute.name_span, "the attribute that is used"),),
     )

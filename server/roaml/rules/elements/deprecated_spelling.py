@@ -26,8 +26,8 @@ def check(context: FileContext) -> Iterator[Finding]:
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
-    """Report older spellings in trees of a system. For other trees, `unknown-node` and similar rules report the names
-    of version 3."""
+    """Report older spellings in trees of a system that declare a format other than 3. In trees without a system,
+    `unknown-node` and similar rules report the names of version 3."""
     if context.forest is None and _is_newer_tree(context.document.root):
         yield from _spellings(FileContext(context.source, (), context.document, BEHAVIOR_TREE, older=context.older))
 
@@ -56,8 +56,8 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def check_system(context: SystemContext) -> Iterator[Finding]:
-    """Report machines in files whose name does not end in `.ascxml`: the reference translator also uses the name of a
-    file to decide whether it is a machine (docs/spec/files.md#kinds)."""
+    """Report machines of the current dialect in files whose name does not end in `.ascxml`: the reference translator
+    also uses the name of a file to decide whether it is a machine (docs/spec/files.md#kinds)."""
     roots = {path: outline.root for path, outline in (*context.system.nodes, *context.system.plugins)}
     for listed in context.files:
         src = listed.input.src

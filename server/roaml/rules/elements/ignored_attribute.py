@@ -51,8 +51,8 @@ def _severity(name: str, context: FileContext) -> Severity:
 
 
 def _reason(attribute: AttributeType) -> str:
-    """The reason why an attribute has no effect: the text after "Ignored:" in its documentation, otherwise the second
-    sentence of the documentation, or the first if there is only one."""
+    """The reason why an attribute has no effect: the text after "Ignored:" or "Not supported:" in its documentation,
+    otherwise the second sentence of the documentation, or the first if the second gives no reason."""
     text = attribute.documentation
     first, _, second = text.partition(". ")
     reason = text.partition("Ignored:")[2].strip() or second.partition("Not supported:")[2].strip()

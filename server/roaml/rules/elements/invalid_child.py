@@ -21,11 +21,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 # If only some of the nodes have too few children, child-count reports it.
                 if counts and int(name.value[:9]) >= max(counts):
                     most = max(counts)
-                    children = "no children" if most == 0 else f"{most} {'child' if most == 1 else 'children'}"
-                    message = (
-                        f"there is no child {name.value}: in the tree the node has {children}, and children are "
-                        "numbered from 0"
-                    )
+                    if most == 0:
+                        reason = "in the tree, no node of this plugin has children"
+                    else:
+                        children = f"{most} {'child' if most == 1 else 'children'}"
+                        reason = f"in the tree, nodes of this plugin have at most {children}, numbered from 0"
+                    message = f"there is no child `{name.value}`: {reason}"
                     yield RULE.at(name.span, message)
             else:
                 yield from _variable(context, chart, name)

@@ -54,7 +54,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
         )
     elif declaration.interface is None and element.get(name) is None:
         if child is not None:
-            yield RULE.at(child.name_span, f"`<{name}>` is empty")
+            yield RULE.at(child.name_span, f"`<{name}>` is empty; write a name or a `<bt_get_input>` into it")
         elif not misspelled.attribute(element, name, known):
             yield _missing(element, name, "")
 

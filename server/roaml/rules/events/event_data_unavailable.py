@@ -42,7 +42,8 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     name, place = problem.name, value.place
     tag = place_tag(place)
     if place.part is ValuePart.DATA:
-        return RULE.at(problem.span, f"an initial value must be constant; it cannot use `{name}`")
+        subject = "a bound" if value.use is ValueUse.BOUND else "an initial value"
+        return RULE.at(problem.span, f"{subject} must be constant; it cannot use `{name}`")
     if name in SCXML_VARIABLES:
         return RULE.at(problem.span, f"`{name}` is a variable of SCXML that HL-SCXML does not support")
     if name not in EVENT_VARIABLES:

@@ -44,7 +44,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _unsent(context: MachineContext, system: System) -> Iterator[tuple[Name, Handler]]:
-    """The events of transitions that no machine sends, without invalid event names."""
+    """The events of transitions that no machine sends, each with its transition. Wildcards, lists of events, and in
+    plugins the events in `OF_THE_TREE`, are left out, because other rules report them."""
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:

@@ -55,7 +55,7 @@ def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[F
 
 
 def _differing(name: str, type_: Type, other: SentField) -> Iterator[tuple[str, Type, Type]]:
-    """The first parameter for which two senders differ: its name, and its types in the two senders."""
+    """The parameters for which two senders differ: their names, and their types in the two senders."""
     if flat(name) == flat(other.name) and _is_struct(type_) is not _is_struct(other.type):
         if not isinstance(type_, (Unknown, EmptyArray)) and not isinstance(other.type, (Unknown, EmptyArray)):
             yield name, type_, other.type
@@ -75,7 +75,7 @@ def flat(name: str) -> str:
 
 
 def flattened(name: str, type_: Type) -> dict[str, Type]:
-    """The leaves of a parameter: the translation has one parameter for each leaf of a struct
+    """The leaves of a parameter, by name, with their types: the translation has one parameter for each leaf of a struct
     (docs/spec/types.md#leaves)."""
     return {"__".join((flat(name), *path)): leaf for path, leaf in leaves(type_)}
 
@@ -94,8 +94,8 @@ def _sent_fields(context: MachineContext) -> dict[tuple[Declaration, ProtocolPar
 
 
 def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Iterator[Finding]:
-    """Report fields with different types in two senders. The reference translator gives a field the type of its value
-    (docs/spec/expressions.md#whole-reals)."""
+    """Report real fields that are set to an integer here and to a real number elsewhere. The reference translator gives
+    a field the type of its value (docs/spec/expressions.md#whole-reals)."""
     real = {name for name, value in sent if is_kind(value.sent, ScalarKind.REAL)} | real_elsewhere
     for name, value in sent:
         if (
@@ -110,7 +110,8 @@ def _fields(sent: list[tuple[str, TypedValue]], real_elsewhere: set[str]) -> Ite
 
 
 def _real_elsewhere(context: MachineContext, declaration: Declaration) -> set[str]:
-    """The fields that other machines publish as real numbers on the topic of `declaration`."""
+    """The fields that publishers or servers in other machines send as real numbers, for the topic, service or action of
+    `declaration`."""
     return {
         field.name
         for automaton, topic in channels_of(context, declaration)

@@ -27,7 +27,7 @@ _ANSWERS = {
     ProtocolPart.BT_TICK: (ProtocolPart.BT_STATUS,),
     ProtocolPart.BT_HALT: (ProtocolPart.BT_HALTED,),
 }
-"""The events that a machine must send before the next event of a kind can arrive."""
+"""The kind of an event -> the events of which a machine must send one before the next event of this kind can arrive."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -99,7 +99,7 @@ def _message(value: TypedValue, name: str) -> str:
 def _severity(value: TypedValue) -> Severity | None:
     """The severity of a finding: hint if the data are unlikely to be overwritten, otherwise `None` (the default). Data
     of the tree protocol cannot be overwritten, because a node answers once per tick. Data that the machine only
-    forwards in a message are seldom overwritten."""
+    forwards, in an event, as an id or to a port, are seldom overwritten."""
     handler = value.place.handler
     if handler is not None and handler.trigger in (
         ProtocolPart.CHILD_STATUS,

@@ -25,7 +25,9 @@ def _send(send: Send) -> Finding:
     assert send.event is not None
     new = REMOVED_EVENTS[send.event.value]
     fix = Fix(f"Change to `{new}`", (TextEdit(send.element.span, new.replace("/>", " />")),))
-    return RULE.at(send.event.span, f"the tree no longer reacts to events; write `{new}` instead", fix)
+    return RULE.at(
+        send.event.span, f"the tree no longer reacts to the event `{send.event.value}`; write `{new}` instead", fix
+    )
 
 
 def _handler(handler: Handler, text: str) -> Finding:

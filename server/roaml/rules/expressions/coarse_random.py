@@ -50,7 +50,7 @@ def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
     cells = math.ceil(abs(scale))
     lead = f"`Math.random()` has {values:,} values"
     if is_rounded:
-        message = f"{lead}, so most of the {cells:,} whole numbers in this range never occur; {_advice(cells)}"
+        message = f"{lead}, so at most {values:,} of the {cells:,} whole numbers in this range occur; {_advice(cells)}"
         yield RULE.at(expr.span, message)
     else:
         message = f"{lead}, so the results are {abs(scale) / values:g} apart; {_advice(cells)}"
@@ -87,8 +87,7 @@ _STRICT = (Operator.LESS, Operator.GREATER_EQUAL)
 
 
 def drawn_variables(chart: Chart) -> frozenset[str]:
-    """The variables that hold only random numbers: all values that are assigned to them are `Math.random()` or
-    constants."""
+    """The variables to which `Math.random()` is assigned, and otherwise only constants."""
     assigned: dict[str, list[Expr | None]] = {}
     for statement in chart.statements:
         if isinstance(statement, Assign) and statement.location and isinstance(statement.location.tree, Name):

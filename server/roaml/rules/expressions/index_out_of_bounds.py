@@ -67,7 +67,8 @@ def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterat
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
-    """Report `v[v.length]`, which writes after the end of a full bounded array, unless a condition prevents it."""
+    """Report `v[v.length]`, which writes after the end of a full bounded array, unless a condition prevents it, or an
+    earlier statement sets the array."""
     if not isinstance(tree, Index) or not _is_length_of(context, tree.index, tree.object):
         return
     array = _type_of(context, value.place, tree.object)
@@ -105,7 +106,7 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
 
 
 def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:
-    """Whether an earlier statement of the same body sets the length or the elements of the array."""
+    """Whether an earlier statement of the same body sets the whole array or its length."""
     names = (_text(context, array), f"{_text(context, array)}.length")
     return any(
         isinstance(other.value, Expression)
@@ -186,7 +187,8 @@ _MIRRORED = {
 
 
 def _below(operator: Operator, number: float | None, bound: int) -> bool:
-    """Whether `length OPERATOR number` keeps the length below `bound`."""
+    """Whether `length OPERATOR number` keeps the length below `bound`. A limit that is not constant (`None`) is
+    assumed to do so."""
     match operator:
         case Operator.LESS:
             return number is None or number <= bound

@@ -42,7 +42,8 @@ def _is_nested(required: Type) -> bool:
 
 
 def outside(expr: Expr, required: Type) -> Iterator[tuple[Span, int, str]]:
-    """Constants in `expr` outside the range of the integer type that they must have."""
+    """The constants in `expr` outside the range of the integer type that they must have, each as its place, its value
+    and the name of the type."""
     match expr, required:
         case ArrayLiteral(), Array():
             for element in expr.elements:

@@ -20,9 +20,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 case BadOperand(operator="+") if is_kind(problem.given, ScalarKind.STRING):
                     yield RULE.at(problem.span, "strings cannot be joined: `+` requires numbers")
                 case BadOperand(operator="?"):
-                    yield RULE.at(
-                        problem.span, f"the condition of `?` must be {problem.required}, not {phrase(problem.given)}"
-                    )
+                    yield RULE.at(problem.span, f"the condition of `?` must be a boolean, not {phrase(problem.given)}")
                 case BadOperand():
                     operand = "a boolean" if problem.required == BOOL else "a number"
                     message = f"`{problem.operator}` takes {operand}, not {phrase(problem.given)}"

@@ -16,7 +16,7 @@ WHERE = {
     ValueUse.LOCATION: "in a location",
     ValueUse.INITIAL: "in an initial value",
     ValueUse.BOUND: "in a bound",
-    ValueUse.ARGUMENT: "in an id",
+    ValueUse.ARGUMENT: "in the id of a goal or thread",
 }
 
 

@@ -79,8 +79,8 @@ def _without_points(context: MachineContext, value: TypedValue, required: Type) 
 
 
 def _too_long(tree: Expr, required: Type, size: int | None) -> Iterator[Finding]:
-    """Report literals with more elements than the array can hold; `size` is the size of arrays without a bound, if
-    known."""
+    """Report arrays with more elements, and strings with more bytes, than the variable can hold. `size` is the number
+    of elements of an array without a bound and of bytes of a string; `None` if it is unknown."""
     match tree, required:
         case ArrayLiteral(), Array():
             yield from _longer(tree.span, f"`{required}` holds", "elements", len(tree.elements), required.bound or size)

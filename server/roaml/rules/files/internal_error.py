@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rule `internal-error`, which internal_error.md describes. `roaml.project.checking` reports it
-where a rule fails."""
+where a rule, or the construction of the model that the rules check, fails."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
 """The facts that an unreadable file may contain if a system lists it as a plugin: a plugin with any name."""
 _ANY_FACT: set[Fact] = {(GapAct.ANYTHING, None)}
 _MAX_NAMED_QUESTIONS = 3
-"""The maximum number of questions that a message names."""
+"""The maximum number of facts, such as whether a plugin exists, that a message names."""
 
 
 def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
@@ -62,7 +62,7 @@ def _is_unresolved(context: MachineContext | TreeContext | SystemContext, span: 
 
 
 def _unknown_types(context: MachineContext) -> Iterator[Finding]:
-    """The types of variables that may be structs whose declaration cannot be read, each at its first use."""
+    """Report types of variables that may be structs whose declaration cannot be read, each at its first use."""
     known = {*BASE_TYPES, *context.struct_names, *FOREIGN_TYPES}
     for chart in context.machine.charts:
         for data in chart.data:
@@ -84,7 +84,7 @@ class _Question(Record, frozen=True):
     Attributes:
         act: what an automaton would have to do; `None` if the question is whether a variable of the translation exists.
         name: the name of the plugin, topic, service, action, event or variable in question.
-        text: the question as a clause.
+        text: the question as a clause, such as "whether the plugin `Wait` exists".
     """
 
     act: Act | None
@@ -181,7 +181,7 @@ def _type_or_none(interface: InterfaceType | NotFound) -> InterfaceType | None:
 
 def _listing(questions: list[str]) -> str:
     more = len(questions) - _MAX_NAMED_QUESTIONS
-    parts = [*questions[:_MAX_NAMED_QUESTIONS], *([f"{more} more questions of this kind"] if more > 0 else [])]
+    parts = [*questions[:_MAX_NAMED_QUESTIONS], *([f"{more} more facts"] if more > 0 else [])]
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 

@@ -16,12 +16,14 @@ from roaml.text import Span, TextEdit
 def finding(
     text: str, comment: Span, codes: Iterable[str] | None, used: Iterable[str], known: Iterable[str]
 ) -> Iterator[Finding]:
-    """The finding for a comment that suppresses findings that do not occur; no finding if all codes of the comment are
-    needed.
+    """The findings for a comment that lists unknown codes, or that suppresses findings that do not occur; nothing if
+    all codes of the comment are needed.
 
     Args:
-        codes: the codes that the comment lists; `None` if it suppresses all rules.
-        used: the codes of the findings that it suppresses.
+        text: the text of the file.
+        comment: the place of the comment.
+        codes: the codes that the comment lists; `None` if the comment suppresses all rules.
+        used: the codes of the findings that the comment suppresses.
         known: the codes of all rules.
     """
     used, known = frozenset(used), frozenset(known)
@@ -46,7 +48,8 @@ def finding(
             f"Remove {listing(superfluous)} from the comment",
             (TextEdit(comment, f"<!-- as2fm: ignore[{', '.join(kept)}] -->"),),
         )
-        yield RULE.at(comment, f"unused suppression: {listing(superfluous)} is not reported here", fix, tags=tags)
+        are = "is" if len(superfluous) == 1 else "are"
+        yield RULE.at(comment, f"unused suppression: {listing(superfluous)} {are} not reported here", fix, tags=tags)
 
 
 def _misspelt(text: str, comment: Span, code: str, known: Iterable[str]) -> Finding:

@@ -23,7 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _twice(context: MachineContext, params: tuple[Param, ...], kind: str) -> Iterator[Finding]:
-    """Report fields that are set twice; in the translation, `a.b` and `a__b` are the same
+    """Report fields or parameters that are set twice; in the translation, `a.b` and `a__b` are the same name
     (docs/spec/plain-scxml.md#flattening)."""
     first: dict[str, Name] = {}
     for param in params:

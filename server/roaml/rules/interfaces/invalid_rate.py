@@ -15,9 +15,11 @@ from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.text import Span, TextEdit
 
 SLOWEST = 1e-9
+"""The lowest rate of a timer, in Hz, included."""
 FASTEST = 1e9
+"""The highest rate of a timer, in Hz, included."""
 ALMOST = re.compile(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII)
-"""A number with a decimal comma or a unit."""
+"""A rate that may be written with a decimal comma or the unit Hz."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -58,7 +60,7 @@ def rate_problem(text: str) -> str:
     except ValueError:
         return f"a rate must be a number in Hz, not `{text[:40]}`"
     if not 0 < rate < float("inf"):
-        return f"a rate must be greater than 0 Hz, not {text}"
+        return f"a rate must be finite and greater than 0 Hz, not `{text[:40]}`"
     if rate < SLOWEST:
         return "a rate must be at least 1e-9 Hz, one tick in 31 years; check the exponent"
     if rate > FASTEST:

@@ -27,7 +27,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if any(system.may(_SENDS_FEEDBACK, action.name, server.automaton) for server in action.sources):
             continue
         for handler in _handlers(context, declaration):
-            message = f"this handler is never taken: the server of `{action.name}` never sends feedback"
+            message = (
+                f"this handler is never taken: the server of `{action.name}` never sends feedback; remove the handler"
+            )
             related = (Related(action.sources[0].symbol, "the server"),)
             drop = remove(context.document, handler.element)
             yield RULE.at(handler.element.name_span, message, drop, related=related)

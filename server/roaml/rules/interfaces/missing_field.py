@@ -14,6 +14,7 @@ from roaml.rules.rule import MachineContext, Rule, close_names, listing
 from roaml.rules.support.fields import sent_part
 
 SHOWN = 6
+"""The maximum number of fields that a message names."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -11,7 +11,7 @@ from roaml.rules.rule import MachineContext, Rule
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report each package once, where a machine first uses it."""
+    """Report each package of which there are two different copies, once, where the machine first uses it."""
     reported: set[str] = set()
     for declaration in context.machine.declarations:
         for repeated in context.repeated_types:

@@ -63,8 +63,8 @@ def _without(context: MachineContext, declaration: Declaration, sender: str) -> 
 
 
 def _sent(context: MachineContext) -> Iterator[tuple[Declaration | None, str]]:
-    """The names of the sending elements of the machine, each with the declaration that it uses; `None` if the
-    declaration cannot be read."""
+    """The names of the sending elements of the machine, each after the declaration that it uses; `None` if the
+    declaration or the element itself cannot be read."""
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, RosSend):

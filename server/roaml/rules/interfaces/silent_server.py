@@ -31,7 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _may_do_more(system: System, automaton: SystemAutomaton, kind: SymbolKind, channel: Channel) -> bool:
-    """Whether a server may answer in a part of its machine that cannot be read."""
+    """Whether a server may receive or answer requests or goals in a part of its machine that cannot be read."""
     return any(system.may(InterfaceAct(kind, part), channel.name, automaton) for part in _PARTS)
 
 
@@ -77,8 +77,8 @@ def _action(
     waiting = [c for c in clients if ProtocolPart.RESULT in c.use.receives]
     if waiting and not sends(automaton, declaration, ProtocolPart.RESULT):
         message = (
-            f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `_canceled` or `_aborted` is "
-            "missing"
+            f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `<ros_action_canceled>` or "
+            "`<ros_action_aborted>` is missing"
         )
         yield RULE.at(
             name_span(declaration), message, related=[Related(waiting[0].symbol, "this client waits for the result")]

@@ -15,6 +15,7 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 
 _CANCELED = 5
+"""The code of the result of a canceled goal (`STATUS_CANCELED` of `action_msgs/GoalStatus`)."""
 _HANDLER = "ros_action_handle_canceled_result"
 
 

@@ -30,7 +30,8 @@ def _conflicts(typed: list[Use]) -> Iterator[tuple[Use, Use]]:
     """The uses with a type other than that of the entry, each with the use that determines the type of the entry.
 
     The first port determines the type of the entry, unless most ports agree on another type. If the first port is a
-    string, ports of other types may use the entry, but values of only one type may be written to it.
+    string, ports of other types may use the entry, but values of only one type may be written to it. If all of these
+    are strings, the other ports must have types to which BehaviorTree.CPP converts a text.
     """
     first = _first(typed)
     for use in typed:

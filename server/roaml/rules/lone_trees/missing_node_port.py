@@ -37,7 +37,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _missing(node: TreeNode, known: Node, needing: Node) -> Iterator[Finding]:
-    """Report the ports that the node needs according to the declaration `needing`."""
+    """Report the ports that the declaration `needing` requires and that the node does not set."""
     certain = needing.name in CPP.nodes or needing.kind is NodeKind.SUBTREE
     probable = _probable(node, known)
     for port in missing_ports(node, needing):

@@ -40,8 +40,8 @@ def _subtree(forest: Forest, model: NodeModel) -> Iterator[Finding]:
 
 
 def _type(port: PortModel) -> Iterator[Finding]:
-    """Report a misspelled type. Types that a program defines are not reported: their names are longer or have several
-    parts."""
+    """Report a misspelled type. Only names of lower-case letters are checked: other names may be types that a program
+    defines."""
     attribute = port.element.get("type")
     written = port.type.strip()
     if attribute is None or not written.isascii() or not written.isalpha() or not written.islower():
@@ -55,7 +55,7 @@ def _type(port: PortModel) -> Iterator[Finding]:
 
 
 def _swapped(written: str) -> str | None:
-    """The short type with the same letters, such as `int` for `itn`."""
+    """The simple type with the same letters, such as `int` for `itn`; `None` if there is none."""
     return next((name for name in SIMPLE_TYPES if sorted(name) == sorted(written)), None)
 
 

@@ -91,8 +91,8 @@ _DOLLAR = re.compile(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
 
 
 def _without_braces(node: TreeNode, port: Port | None, setting: PortSetting, names: Set[str]) -> Iterator[Finding]:
-    """Report a constant that is probably intended to be an entry of the tree: `${name}`, and `name` if BehaviorTree.CPP
-    cannot convert a text to the type of the port."""
+    """Report a constant that is probably intended to be an entry of the tree: `${name}`; `name` if BehaviorTree.CPP
+    cannot convert a text to the type of the port; and `name` if a subtree passes it under another name."""
     text, span = setting.value.value.strip(), setting.value.span
     dollar = _DOLLAR.match(text)
     name = dollar[1] if dollar else text

@@ -57,8 +57,8 @@ def _types(entries: Entries) -> dict[Key, Type]:
 
 
 def _assigned(forest: Forest, entries: Entries) -> dict[Key, Type]:
-    """The types of the entries that only scripts use. An entry has a type if all assignments that create it assign a
-    text, or all assign a number."""
+    """The types of the entries that only scripts use. An entry has a type if all assignments that create it assign
+    values of one type."""
     others = {key for key, uses in entries.by_entry.items() if not all(use.script for use in uses)}
     types: dict[Key, set[Type]] = {}
     for _, tree, node in forest.all_nodes:

@@ -74,7 +74,8 @@ def _instances(tree: Tree) -> Iterator[Finding]:
             earlier = first.setdefault(node.name.value, node.name)
             if earlier is not node.name:
                 message = (
-                    f"two `SubTree` of one tree must not have the same name `{node.name.value}`; rename one of them"
+                    f"two `<SubTree>` nodes of a tree must not have the same name `{node.name.value}`; rename one of "
+                    "them"
                 )
                 yield RULE.at(
                     node.name.span, message, related=[Related(earlier.span, "the first `SubTree` with this name")]
@@ -97,7 +98,7 @@ def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
         earlier = first.setdefault(model.id.value, model.id)
         if earlier is not model.id:
             drop = remove(context.document, model.element)
-            message = f"`{model.id.value}` is described twice; remove a description"
+            message = f"`{model.id.value}` is described twice; remove one description"
             related = [Related(earlier.span, "the first description")]
             yield RULE.at(model.id.span, message, drop, related=related, severity=Severity.WARNING)
         ports: dict[str, Name] = {}
@@ -105,7 +106,9 @@ def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
             if port.name is None:
                 continue
             if ports.setdefault(port.name.value, port.name) is not port.name:
-                message = f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove a description"
+                message = (
+                    f"the port `{port.name.value}` of `{model.id.value}` is described twice; remove one description"
+                )
                 related = [Related(ports[port.name.value].span, "the first description")]
                 yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
             if is_checked:

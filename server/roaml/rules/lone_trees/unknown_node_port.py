@@ -68,7 +68,8 @@ def _identifier(node: TreeNode) -> Iterator[Finding]:
 
 
 def _conditions(node: TreeNode) -> Iterator[Finding]:
-    """Report unknown attributes that begin with `_`; BehaviorTree.CPP ignores them."""
+    """Report attributes of subtrees of version 3, and misspelled attributes that begin with `_`; BehaviorTree.CPP
+    ignores them."""
     for attribute in node.element.attributes:
         if attribute.name in OLD_ATTRIBUTES and node.is_subtree:
             message = f"`{attribute.name}` is an attribute of version 3 and is ignored; version 4 has `_autoremap`"

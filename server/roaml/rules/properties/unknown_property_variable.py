@@ -33,7 +33,7 @@ def _is_part_of_unknown(name: str, variables: Mapping[str, GlobalVariable]) -> b
 
 
 def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str, ...]:
-    """The variables of the event whose name is the beginning of `name`."""
+    """At most three variables of the event whose name is the beginning of `name`."""
     event = name.partition("__")[0].partition(".")[0]
     return tuple(v.name for v in variables.values() if v.event == event)[:3]
 

@@ -32,7 +32,7 @@ def in_jani(context: PropertiesContext) -> Iterator[Finding]:
 
 
 def _numbers(property_: Property) -> Iterator[Span]:
-    """The numbers that the probability or expected reward of a property is compared with."""
+    """The number with which a property compares its probability or expected reward; nothing if there is none."""
     for formula in walk(property_.expression):
         if isinstance(formula, BinaryFormula) and formula.operator in _COMPARISONS:
             for value, number in ((formula.left, formula.right), (formula.right, formula.left)):

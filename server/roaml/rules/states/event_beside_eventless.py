@@ -22,13 +22,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(
                     always.element.name_span,
                     f"without an event or condition, this transition is taken at once, so the state never waits for "
-                    f"{names}; give it an `event` or a `cond`",
+                    f"{names}; add an `event` or a `cond` to this transition",
                     related=(Related(handler.element.name_span, "never taken") for handler in waiting),
                 )
 
 
 def _awaited(handler: Handler) -> str:
-    """The name of the event, handle or part of the tree protocol that a transition waits for."""
+    """The name of the event or handle that a transition waits for; the name of its element if it has neither."""
     name = handler.event or handler.handle
     return name.value if name else handler.element.name
 

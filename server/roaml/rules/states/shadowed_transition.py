@@ -36,7 +36,7 @@ def _check(context: MachineContext, chart: Chart, state: State) -> Iterator[Find
                 handler.element.name_span,
                 (
                     f"this transition is never taken: an earlier transition {when} has no condition; add a condition "
-                    "to it, or move this transition before it"
+                    "to the earlier one, or move this transition before it"
                 ),
                 *_fixes(context, handler, before),
                 related=(Related(before.element.name_span, "always taken first"),),

@@ -19,7 +19,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         sources = _sources(chart)
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
-                message = f"no transition leads to the state `{state.id.value}`, so it is never entered"
+                message = (
+                    f"no path of transitions leads from the initial state to `{state.id.value}`, so it is never entered"
+                )
                 fixes = _remove(context, state, sources.get(state.id.value, []))
                 yield RULE.at(state.id.span, message, *fixes, tags=(Tag.UNNECESSARY,))
 

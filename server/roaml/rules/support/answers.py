@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Helpers of the rules about answers to ticks, halts, requests and goals.
 
-They provide the graphs of a machine and the position of a plugin in the tree. A finding about a path is reported at the
-handler that takes the step (`place`).
+They provide the graphs of a machine and the position of a plugin in the tree. A finding about a step is reported at the
+handler that takes the step, or at a statement in `<onentry>` or `<onexit>` that the step executes (`place`).
 """
 
 from __future__ import annotations
@@ -90,7 +90,8 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     """The steps after which the answer to a duty is missing, at most one for each handler. The flag of a step states
     whether the answer is missing on all paths.
 
-    Steps are left out if another finding explains them: an element that cannot be read may be the answer, and a
+    Steps are left out if the graph is approximate and the step uncertain, or if another finding explains them: an
+    answer of the wrong kind is reported by repeated-answer, an element that cannot be read may be the answer, and a
     condition that has no effect because of earlier conditions (shadowed-transition) is probably wrong.
     """
     steps: dict[Handler, list[BehaviorStep]] = {}
@@ -108,8 +109,8 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
-    """The place where a fault in a step is reported: the handler, or the statement in `<onentry>` or `<onexit>` that is
-    executed."""
+    """The place where a fault in a step is reported: the name of `handler`, which takes the step, or the name of
+    `statement` if it is not inside the handler but in an `<onentry>` or `<onexit>` that the step executes."""
     if statement is not None and not _within(statement.element.span, handler.element.span):
         return statement.element.name_span
     return handler.element.name_span
@@ -120,7 +121,8 @@ def _within(inner: Span, outer: Span) -> bool:
 
 
 def target_of(step: BehaviorStep) -> Iterator[Related]:
-    """The target that a step leads to, if its handler has several targets; otherwise nothing."""
+    """The target that a step leads to, if its handler chooses one of several targets; nothing for other steps, and if
+    the step ignores the event."""
     if step.handler.is_probabilistic and not step.ignored:
         element = step.handler.targets[step.choice].element
         if element is not None:
@@ -129,7 +131,8 @@ def target_of(step: BehaviorStep) -> Iterator[Related]:
 
 def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: BehaviorStep) -> bool:
     """Whether an element that cannot be read might be the missing answer after a step, or handle an event that leads to
-    it. Such an element is in the handler, in a state that waits for the answer, or in a state that ignores an event."""
+    it. Only elements in the handler, in a state that waits for the answer, or in a state that ignores an event are
+    considered."""
     states = {state.id.value: state.element for state in behavior.chart.states if state.id}
     source = behavior.configurations[step.source]
     names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
@@ -213,7 +216,7 @@ class UnhandledState(NamedTuple):
     """A state in which a tick or halt may arrive and is not handled.
 
     Attributes:
-        name, span: the identifier of the state.
+        name, span: the identifier of the state, and its place.
         tree_status: the status of the node: `RUNNING`, `ENDED`, or `None` if it has not been ticked yet.
         needs_time: whether the machine leaves the state, but only after time has passed.
     """

@@ -60,7 +60,8 @@ def _edits(
 
 
 def _region(tick: Handler, states: Mapping[str, State]) -> list[State] | None:
-    """The states in which the plugin waits before it answers; `None` if one of them also has another purpose."""
+    """The states in which the plugin waits after `tick` before it answers. `None` if one of them is undefined or
+    incomplete, has an `<onentry>` or `<onexit>`, or handles ticks or halts."""
     region: list[State] = []
     waiting = [target.state for target in tick.targets]
     while waiting:
@@ -101,7 +102,7 @@ def _answers(handler: Handler) -> bool:
 
 
 def _is_tidy(handler: Handler) -> bool:
-    """Whether the handler has one target, given as an attribute."""
+    """Whether the handler is complete and has one target, given as an attribute."""
     return len(handler.targets) == 1 and handler.element.get("target") is not None and handler.element.complete
 
 

@@ -17,8 +17,9 @@ def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> I
     """The ports in `ports` that belong to nodes of this file, each with the place where it is bound and the name of the
     variable there.
 
-    The place is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node. A node with
-    several instances is included once. Ports whose name is invalid are left out; port-value reports them.
+    The place is the value of an attribute or, for a default of `<TreeNodesModel>`, the name of the node; the name of
+    the variable is then "". A node with several instances is included once. Ports that are bound to a variable with an
+    invalid name are left out; port-value reports them.
     """
     if not is_variable_name(variable):
         return

@@ -7,5 +7,6 @@ from roaml.language.grammar import ElementType
 
 
 def has_counted_children(type_: ElementType) -> bool:
-    """Whether the rule child-count reports errors in the children of an element, so that other rules do not."""
+    """Whether elements of the type `type_` are nodes of a tree, whose children child-count checks, so that other rules
+    do not report them."""
     return bool(type_.node)

@@ -17,8 +17,9 @@ class Covered(NamedTuple):
 
     Attributes:
         number: the index of the condition, from 0.
-        by: the indices of the earlier conditions that cover it alone; empty if only several together cover it.
-        same: whether one of these is the same condition.
+        by: the indices of the earlier conditions each of which holds wherever this one holds; empty if only several of
+            them together do.
+        same: whether one of the conditions in `by` is equivalent to this one.
     """
 
     number: int
@@ -27,10 +28,11 @@ class Covered(NamedTuple):
 
 
 def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> Iterator[Covered]:
-    """The conditions that never decide, in the order of `conditions`.
+    """The conditions that have no effect because of earlier ones, in the order of `conditions`.
 
     A condition that can never hold by itself is left out. `None`, a condition that cannot be read, and a condition that
-    draws a random number do not cover other conditions.
+    draws a random number do not cover other conditions. The search ends when the knowledge about the earlier conditions
+    has more than `MAX_CONJUNCTIONS` cases.
     """
     left: tuple[Knowledge, ...] = (NOTHING,)
     for number, condition in enumerate(conditions):

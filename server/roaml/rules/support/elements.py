@@ -22,7 +22,8 @@ def own_elements(document: Document) -> Iterator[Element]:
 
 
 def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Element, ElementType, Element | None]]:
-    """The elements that are where the grammar allows them, each with its declaration and its parent."""
+    """The elements that are where the grammar allows them, each with its declaration and its parent; the parent of the
+    root is `None`."""
     root, namespaces = document.root, dict(document.namespaces)
     if root is None or root.name not in grammar.roots:
         return

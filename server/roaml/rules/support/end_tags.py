@@ -17,7 +17,7 @@ def without_misnamed_ends(findings: Sequence[Finding]) -> tuple[Finding, ...]:
 
 
 def _is_certain(finding: Finding) -> bool:
-    """Whether a finding is an error about the name of an element, with a fix that changes both tags."""
+    """Whether a finding states that the name of an element is wrong, so that its fixes change both tags."""
     return finding.code == "unknown-element" or (finding.code == "unknown-node" and finding.severity is Severity.ERROR)
 
 

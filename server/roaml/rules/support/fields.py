@@ -16,7 +16,8 @@ def is_ros(struct: Struct) -> bool:
 
 
 def sent_part(context: MachineContext, statement: RosSend) -> Struct | None:
-    """The fields that a sending element may set, as a struct; `None` if their type is unknown."""
+    """The fields that a sending element may set, as a struct, which is empty for elements that send no fields; `None`
+    if the declaration or the type of the interface is unknown."""
     declaration = find_handle(context.machine, statement)
     if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
         return None

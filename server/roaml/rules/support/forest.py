@@ -21,8 +21,8 @@ def forest_of(context: TreeContext) -> Forest | None:
 
 
 def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTERS) -> str | None:
-    """The known name that differs from `name` in at most `most` letters, or only in upper and lower case or
-    underscores. `None` if there is none.
+    """The known name that differs from `name` only in upper and lower case or underscores, or in at most `most` letters
+    and at most a third of its letters. `None` if there is none.
 
     Users choose the names of nodes, and many are similar: `IsDoorClosed` is not a misspelling of `DoorClosed`. So
     a name that only has additional letters at one end may have at most one of them.

@@ -41,8 +41,8 @@ class Naming(Record, frozen=True):
 
 
 def named_here(context: MachineContext | TreeContext, kind: SymbolKind) -> Iterator[Naming]:
-    """The places where a file names topics, services or actions of a kind: in declarations, or as constants for
-    ports."""
+    """The places where a file names topics, services or actions for declarations of the kind `kind`: the declarations
+    of a machine, or the ports of the nodes of a tree file."""
     if context.system is None:
         return
     if isinstance(context, MachineContext):
@@ -112,7 +112,8 @@ def find_use(automaton: SystemAutomaton, declaration: Declaration) -> InterfaceU
 
 
 def name_span(declaration: Declaration) -> Span:
-    """The place where the topic, service or action is named; the handle if the name comes from a port."""
+    """The place where the topic, service or action is named. If the name comes from a port, this is the handle or,
+    without a handle, the name of the element."""
     if isinstance(declaration.interface, Name):
         return declaration.interface.span
     return declaration.handle.span if declaration.handle else declaration.element.name_span

@@ -16,7 +16,8 @@ from roaml.text import TextEdit
 
 
 def declared_for(context: MachineContext, value: TypedValue) -> Data | None:
-    """The declaration of the variable that receives a value; `None` if only a part of the variable receives it."""
+    """The declaration of the variable that receives a value; `None` if no variable, or only a part of one, receives
+    it."""
     data = value.place.chart.data
     if value.use is ValueUse.INITIAL:
         return next((declaration for declaration in data if declaration.element is value.element), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The constants to which the ports of the nodes of a tree file are set."""
+"""Helpers of the rules about constants to which ports of nodes are set."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from roaml.text import Decoded, Span
 
 
 def constant_settings(context: TreeContext) -> Iterator[tuple[TreeNode, str, str]]:
-    """Every constant setting of a node, with the name of its port and its value. Constants from subtrees and from
-    defaults of the tree model are included."""
+    """The nodes of a file, each with the name of one of its ports and the constant to which the port is set. Constants
+    from subtrees and from defaults of the tree model are included. The settings of nodes that are not executed are
+    included as written, with references to the blackboard."""
     executed: set[TreeNode] = set()
     for node, automaton in instances(context):
         executed.add(node)

@@ -15,7 +15,8 @@ from roaml.rules.support.conditions import covered
 from roaml.scxml.names import sanitise
 
 Trigger: TypeAlias = "tuple[ProtocolPart | None, str, int]"
-"""The part of the protocol that is received, its name, and the result code. Triggers can be compared within a state."""
+"""The part of the protocol that is received; the name of its topic, handle, event or child, or ""; and the result code
+of an action, or 0. Triggers can be compared within a state."""
 
 
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
@@ -41,7 +42,8 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
 
 
 def trigger(machine: Machine, handler: Handler) -> Trigger | None:
-    """The trigger of a handler, which can be compared with others of its state; `None` if it is not a constant.
+    """The trigger of a handler, which can be compared with others of its state; `None` if a name that it needs is
+    missing.
 
     Two handles of one topic wait for the same message; results with different codes are different triggers.
     """

@@ -45,7 +45,10 @@ def _property_files(context: SystemContext) -> Iterator[Finding]:
         if original is not listed and listed.input.src is not None:
             related = (Related(original.span, "the first `<input>` of this file"),)
             fix = remove(context.document, listed.input.element, "Remove this `<input>`", safe=True)
-            message = f"`{listed.input.src.value}` is listed twice, so each of its properties would exist twice"
+            message = (
+                f"`{listed.input.src.value}` is listed twice, so each of its properties would exist twice; remove this "
+                "`<input>`"
+            )
             yield RULE.at(listed.span, message, fix, related=related)
 
 

@@ -35,7 +35,8 @@ def _finding(context: SystemContext, largest: Share, message: str) -> Finding:
 
 
 def _place(context: SystemContext, largest: Share) -> Span:
-    """The place where the largest file is listed; a part without a file comes from the tree or the whole system."""
+    """The place where the file of the largest part is listed; if the part has no file, the place where the tree is
+    listed or, without a tree, the name of the root."""
     for listed in context.files:
         of_tree = not largest.path and listed.required_kind is FileKind.TREE
         if listed.input.src is not None and (of_tree or (largest.path and listed.path == largest.path)):

@@ -26,7 +26,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             "are executed; use subtrees less often, or divide the tree",
         )
     else:
-        yield RULE.at(place, f"{size.depth:,} subtrees are nested, but at most {MAX_SUBTREES:,} are expanded")
+        message = f"{size.depth:,} subtrees are nested, but at most {MAX_SUBTREES:,} are expanded; nest fewer subtrees"
+        yield RULE.at(place, message)
 
 
 def _count(number: int) -> str:

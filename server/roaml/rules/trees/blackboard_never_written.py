@@ -36,7 +36,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 @functools.cache
 def _hosted() -> frozenset[str]:
-    """The entries that are set by the programs of libraries, for example of Nav2."""
+    """The blackboard entries that the programs of libraries set, for example those of Nav2."""
     return frozenset(entry for name in LIBRARIES for entry in library(name).entries)
 
 

@@ -19,7 +19,7 @@ CONSTANT = (ValueUse.INITIAL, ValueUse.BOUND)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report places in which a port must hold a constant, but the tree binds the port to the blackboard
+    """Report reads of ports that the tree binds to the blackboard, in places where the blackboard cannot be read
     (docs/spec/plugins.md#get-input)."""
     bound = _bound(context)
     if not bound:
@@ -41,7 +41,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _bound(context: MachineContext) -> dict[str, str]:
-    """The ports that a node of the tree binds to the blackboard, with the variable in the tree."""
+    """The ports that a node of the tree binds to the blackboard, each with the binding as written in the tree, such as
+    `goal="{pose}"`."""
     bindings: dict[str, str] = {}
     for automaton in context.automata:
         for port in automaton.outline.ports:

@@ -17,7 +17,8 @@ from roaml.scxml.names import is_generated, sanitise
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
-    """Report repeated names of automata, and repeated names of plugins."""
+    """Report names that two ROS nodes or two plugins have, and names of ROS nodes that the translation gives to other
+    automata."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
     first: dict[tuple[SystemSection, str], ListedFile] = {}
     generated = _generated(context.system)

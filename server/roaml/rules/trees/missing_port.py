@@ -33,7 +33,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def missing_ports(node: TreeNode, plugin: MachineOutline, path: str) -> list[PortOutline]:
-    """The ports of a plugin that a node does not set and that have no default."""
+    """The ports that a node does not set although they are not optional. Defaults of `<TreeNodesModel>` are not
+    considered; ports that are only misspelled are left out."""
     known = set(optional_ports(plugin.name)) if path == "" else set()
     known.add(CHILDREN_COUNT)
     given = {attribute.name for attribute in node.element.attributes} | {setting.key.value for setting in node.ports}

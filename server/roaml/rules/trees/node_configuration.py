@@ -15,7 +15,8 @@ from roaml.rules.support.settings import constant_settings, integer_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common)."""
+    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common), ports
+    that are set under two names, and blackboard variables for ports that need a constant."""
     yield from _set_twice(context)
     is_library_tree = context.system is None or context.system.is_library_tree
     for node, key, text in constant_settings(context):

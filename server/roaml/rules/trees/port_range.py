@@ -28,7 +28,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _library_node(context: TreeContext, node: TreeNode) -> Node | None:
-    """The node of a library that `node` is; `None` if it is not from a library."""
+    """The declaration of the node in a library; `None` if no library declares it."""
     name = node.plugin.value if node.plugin is not None and not node.is_subtree else ""
     if context.system is not None:
         is_plugin = context.system.plugin(name)[0] != ""
@@ -60,7 +60,7 @@ def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str
 
 
 def _reason(limits: PortLimits, number: float, children: int) -> str:
-    """The numbers that are useful, if `number` is not one of them; otherwise ""."""
+    """A phrase for the numbers that are useful, such as "at least 1", if `number` is not one of them; otherwise ""."""
     if limits.counts_children:
         # `node-configuration` reports numbers that are too large.
         is_useful = number >= 1 or -max(children, 1) <= number <= -1
@@ -80,7 +80,8 @@ def _upper(limits: PortLimits) -> str:
 
 
 def _order(known: Node, limits: PortLimits, number: float, texts: Mapping[str, str]) -> str:
-    """The useful numbers, if `number` is greater than the number of the port that is its upper bound; otherwise ""."""
+    """A phrase for the useful numbers if `number` is too large for the number of the port that limits it, otherwise
+    ""."""
     other = known.port(_upper(limits))
     text = texts.get(other.name, other.default) if other is not None else None
     bound = _number(other, text) if other is not None and text is not None else None

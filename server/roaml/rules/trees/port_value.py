@@ -222,7 +222,7 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
         )
     low, high = INTEGER_RANGES.get(port.type, (None, None))
     if value is not None and low is not None and high is not None and not low <= value <= high:
-        message = f"{text} does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
+        message = f"`{text}` does not fit into the port `{port.key}`: the range of `{port.type}` is {low} to {high}"
         low, high = INTEGER_RANGES["int64"]
         return ConstantProblem(message, Severity.WARNING if low <= value <= high else Severity.ERROR)
     return None

@@ -114,9 +114,10 @@ def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tup
 
 
 def _no_tree(context: TreeContext, name: Name, known: Iterable[str]) -> Iterator[Finding]:
-    """Report a missing tree. Without a system, or if an include cannot be read, the tree may be in an unknown file.
+    """Report that there is no tree `name`; `known` are the names to suggest.
 
-    A misspelled `<BehaviorTree>` may also be the missing one.
+    Nothing is reported if the tree may be in a file that cannot be read or is unknown, or may be a misspelled
+    `<BehaviorTree>` or a tree without a name.
     """
     if context.missing_includes or _has_misspelled_tree(context) or _has_nameless_tree(context):
         return

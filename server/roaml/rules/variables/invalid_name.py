@@ -62,7 +62,8 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
 
 
 def check_tree(context: TreeContext) -> Iterator[Finding]:
-    """Check the names that ports pass. An error in a node with several instances is reported once."""
+    """Check the names of topics, services and actions that ports pass to plugins. An error in a node with several
+    instances is reported once."""
     findings: dict[Finding, None] = {}
     for node, automaton, use in named_by_ports(context):
         value = automaton.port(use.port)

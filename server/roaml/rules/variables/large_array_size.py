@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.rules.rule import Rule, SystemContext
 
 LARGE = 10_000
+"""The greatest `max_array_size`, in elements, that is not reported."""
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
@@ -16,7 +17,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
     given = context.file.parameter("max_array_size")
     last = given.get("value") if given else None
     if last is not None and size > LARGE:
-        message = f"every array without a bound gets {size} elements, which slows down translation and verification"
+        message = (
+            f"every array without a bound gets {size} elements, which slows down translation and verification; reduce "
+            "the value"
+        )
         yield RULE.at(last.value_span, message)
 
 

@@ -38,7 +38,8 @@ def check(context: StructsContext) -> Iterator[Finding]:
 
 
 def _other(context: StructsContext, declaration: StructDeclaration, first: Name) -> Iterator[Finding]:
-    """Report a second, different declaration of a struct, in this file or in another file of the system."""
+    """Report a second declaration of a struct in this file, or a different declaration in another file of the
+    system."""
     name, outline = declaration.name, declaration.outline
     assert name is not None
     same = [other for other in context.outlines if other.name == name.value]
@@ -67,7 +68,8 @@ def _cycles(
 
 
 def _too_large(declaration: StructDeclaration, sizes: Mapping[str, TypeExtent]) -> Iterator[Finding]:
-    """Report the member that makes a struct too large, in the innermost struct that is too large."""
+    """Report the member that makes a struct too large, or the struct itself if no member contains a struct. Only the
+    innermost struct that is too large is reported."""
     assert declaration.name is not None
     types = (m.type for m in declaration.members if m.type and m.type.name)
     inner = [(sizes[type_.name.base], type_) for type_ in types if type_.name and type_.name.base in sizes]

@@ -38,13 +38,16 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
     name = problem.name
     if name in LITERALS:
         literal = LITERALS[name]
-        return RULE.at(problem.span, f"write `{literal}` for `{name}`", *replacements(problem.span, (literal,)))
+        return RULE.at(
+            problem.span, f"there is no `{name}`; write `{literal}`", *replacements(problem.span, (literal,))
+        )
     if name in NO_VALUES:
         return RULE.at(problem.span, f"there is no `{name}`: every variable always has a value of its type")
     variables = context.typed.variables.get(value.place.chart.scope, {})
     if value.use in (ValueUse.INITIAL, ValueUse.BOUND):
         subject = f"the variable `{name}`" if name in variables else f"a name like `{name}`"
-        return RULE.at(problem.span, f"an initial value must be constant; it cannot use {subject}")
+        what = "a bound" if value.use is ValueUse.BOUND else "an initial value"
+        return RULE.at(problem.span, f"{what} must be constant; it cannot use {subject}")
     if name in STATUSES:
         number = str(STATUSES[name])
         message = f"`{name}` is only available in the condition of `<bt_child_status>`; write `{number}`"
@@ -61,7 +64,7 @@ def _finding(context: MachineContext, value: TypedValue, problem: UnknownName) -
 
 
 def _answers(value: TypedValue) -> Iterable[str]:
-    """The names of the statuses of a child, where they are available."""
+    """The names of the statuses of a child where expressions can use them; otherwise empty."""
     handler = value.place.handler
     is_known = (
         value.use is ValueUse.CONDITION and handler is not None and any(b.name == "_bt" for b in handler.type.binds)
@@ -77,8 +80,8 @@ def _declare(context: MachineContext, value: TypedValue, name: str) -> Iterator[
 
 
 def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scalar | None:
-    """The base type of an undeclared name, inferred from the values that are assigned to it, the variables that it is
-    assigned to, or the operands next to it. `None` if its type cannot be inferred."""
+    """The base type of an undeclared name, inferred from its use in `value`: the value assigned to it, the variable
+    that it is assigned to, or the operands next to it. `None` if the type cannot be inferred."""
     if not isinstance(value.value, Expression):
         return None
     tree = value.value.tree
@@ -131,7 +134,8 @@ def _closer(beside: Type, result_type: Type | None) -> Type:
 
 
 def _named(type_: Type | None) -> Scalar | None:
-    """The base type, if it has a name that can be declared."""
+    """The base type to declare for a scalar type: the type itself or, if it has no name, the default type of its kind.
+    `None` for other types."""
     if not isinstance(type_, Scalar):
         return None
     return type_ if type_.name else Scalar(type_.kind, DEFAULT_TYPES[type_.kind])

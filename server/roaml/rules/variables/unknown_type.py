@@ -30,7 +30,7 @@ def check_structs(context: StructsContext) -> Iterator[Finding]:
 
 
 def unknown(type_: TypeRef, structs: Iterable[str], *, complete: bool, alone: bool = False) -> Iterator[Finding]:
-    """The findings for a type that does not exist; none if the type is valid.
+    """The findings for a type that does not exist; none if the type is valid or may be a struct that cannot be read.
 
     Args:
         structs: the names of the known structs.

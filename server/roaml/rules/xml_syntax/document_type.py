@@ -12,7 +12,8 @@ from roaml.rules.rule import FileContext, Rule
 
 
 def check(context: FileContext) -> Iterator[Finding]:
-    """Report document type declarations; one without content, `<!DOCTYPE ascxml>`, is only superfluous."""
+    """Report document type declarations. A declaration without content, such as `<!DOCTYPE ascxml>`, has no effect, so
+    the severity is information."""
     for finding in parser_findings("document-type", context):
         declares = "[" in context.source.text[finding.span.start : finding.span.end]
         yield finding if declares else replace(finding, severity=Severity.INFORMATION)

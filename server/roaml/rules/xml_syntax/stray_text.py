@@ -12,7 +12,7 @@ from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
 
 DASHES = re.compile("-(?=-)")
-"""Character sequences that a comment may not contain."""
+"""Each hyphen before another hyphen; a comment may not contain `--`."""
 
 
 def check(context: FileContext) -> Iterator[Finding]:
