@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
+import type { Frame, Locator } from "playwright-core";
 import type { Stage } from "./support/stage";
 import type { Window } from "./support/window";
 import { ROOT } from "./support/paths";
@@ -9,11 +11,10 @@ import { temporaryFolder, write } from "./support/workbench";
 const PROPERTY = "never_placed_empty";
 
 /** A copy of the robot that drops the block. The configuration leaves the system to the active file. */
-function robot(): string {
+function robot(attributes: object): string {
     const folder = temporaryFolder("robot");
     fs.cpSync(path.join(ROOT, "examples/assembly_robot"), folder, { recursive: true });
-    const name = "Debug Counterexample";
-    const configuration = { type: "as2fm", request: "launch", name, property: PROPERTY, against: 1 };
+    const configuration = { type: "as2fm", request: "launch", name: "Debug", ...attributes };
     const configurations = { version: "0.2.0", configurations: [configuration] };
     write(path.join(folder, ".vscode/launch.json"), JSON.stringify(configurations));
     return folder;
@@ -21,8 +22,10 @@ function robot(): string {
 
 export function debugging(stage: Stage): void {
     stage.use();
+    const dropping = () => robot({ property: PROPERTY, against: 1 });
+    const fromStart = () => robot({ seed: 3 });
 
-    stage.test("F5 goes to the dropped block, and back to where chance decides otherwise", robot, async (window) => {
+    stage.test("F5 goes to the dropped block, and back to where chance decides otherwise", dropping, async (window) => {
         const { page } = window;
         await window.openFile("arm.ascxml");
         await window.running();
@@ -34,11 +37,9 @@ export function debugging(stage: Stage): void {
         const frame = page
             .locator(".debug-call-stack .monaco-list-row", { hasText: "Arm: <target> by chance" })
             .first();
-        const choices = page.locator(".pane").filter({ has: page.locator('.pane-header[aria-label^="Choices"]') });
+        const choices = choicesOf(window);
 
-        // A low window has no space for all views.
-        await page.locator('.pane-header[aria-label^="Watch"][aria-expanded="true"]').click();
-        await page.locator('.pane-header[aria-label^="Breakpoints"][aria-expanded="true"]').click();
+        await makeSpace(window);
 
         // The run stops before the arm drops the block.
         await frame.waitFor();
@@ -65,9 +66,161 @@ export function debugging(stage: Stage): void {
         await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
         await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
         await window.screenshot("debugging-choice");
-        await button(window, "Stop").click();
-        await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
+        await stop(window);
     });
+
+    stage.test("the timeline shows the run, and a click moves the debugger", fromStart, async (window) => {
+        const { page } = window;
+        await start(window, "main_with_bug.xml");
+        await page.keyboard.press("F5");
+        await choicesOf(window).getByText("The property block_placed holds in this run.").waitFor();
+        await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
+        const timeline = await window.picture(".drawing > svg");
+        for (const lane of ["Arm", "PickUp", "MoveToGoal", "Place"])
+            await timeline.locator(".names text", { hasText: lane }).first().waitFor();
+        const end = await stepOf(timeline);
+        await choicesOf(window).getByText(`step ${end},`).waitFor();
+        await timeline.locator(".event[data-step]").first().waitFor();
+        await window.screenshot("timeline");
+
+        // A click beside all events goes to the time there.
+        const rows = timeline.locator(".rows");
+        const { width } = await boxOf(rows);
+        await rows.click({ position: { x: width / 2, y: 3 } });
+        const step = await window.until(async () => [await stepOf(timeline)].find((step) => step !== end));
+        assert.ok(step > 0 && step < end, `step ${step} of ${end}`);
+        await choicesOf(window).getByText(`step ${step},`).waitFor();
+        await rows.press("ArrowLeft");
+        await choicesOf(window)
+            .getByText(`step ${step - 1},`)
+            .waitFor();
+
+        // A selected stretch is exported.
+        const { x, y } = await boxOf(rows);
+        await page.keyboard.down("Shift");
+        await page.mouse.move(x + width / 4, y + 3);
+        await page.mouse.down();
+        await page.mouse.move(x + width / 2, y + 3, { steps: 4 });
+        await page.mouse.up();
+        await page.keyboard.up("Shift");
+        await timeline.locator(".selected-stretch").waitFor();
+        await timeline.getByRole("button", { name: "Export the selection, or everything, as CSV" }).click();
+        const file = path.join(window.folder, "main_with_bug.run.csv");
+        const input = page.locator(".quick-input-widget:visible input[type=text]").first();
+        await window.until(async () => (await input.inputValue()) === file);
+        await window.press("Enter");
+        const text = await window.until(() => (fs.existsSync(file) ? fs.readFileSync(file, "utf8") : ""));
+        const lines = text.split("\n");
+        assert.ok(lines.length > 10 && lines.length < end, `${lines.length} lines`);
+        await stop(window);
+    });
+
+    stage.test("pictures of the whole system follow the run", fromStart, async (window) => {
+        await start(window, "main_with_bug.xml");
+        await window.run("AS2FM: Show Whole System");
+        const machines = await window.picture('.node[data-label="moving"]');
+        const tree = await window.picture('.node[data-label="RetryUntilSuccessful"]');
+        const graph = await window.picture('.node[data-label="/arm/command"]');
+        assert.equal(new Set([machines, tree, graph]).size, 3);
+        // The arm is drawn first; states of other machines may have the same names.
+        const lookOf = (state: string) =>
+            machines.locator(`.node[data-label="${state}"]`).first().getAttribute("data-look");
+        await window.until(async () => (await lookOf("still")) === "active");
+
+        // PickUp has sent its command to the arm.
+        await goToStep(window, 40);
+        await tree.locator('.node[data-label="PickUp"]:is([data-look="running"], [data-look="next"])').waitFor();
+        await graph.locator("[data-edges].active").first().waitFor({ state: "attached" });
+        await window.screenshot("whole-system");
+
+        // The arm moves, after it has received the second command.
+        await goToStep(window, 200);
+        await window.until(async () => (await lookOf("moving")) !== null);
+        await goToStep(window, 0);
+        await window.until(async () => (await lookOf("still")) === "active");
+        assert.equal(await lookOf("moving"), null);
+        await stop(window);
+        await window.until(async () => (await lookOf("still")) === null);
+        assert.equal(await tree.locator("[data-look]").count(), 0);
+    });
+
+    stage.test("a message that is published by hand is received", fromStart, async (window) => {
+        await start(window, "main_with_bug.xml");
+        const choices = choicesOf(window);
+        await publish(window, "/arm/command", "{data: 2}");
+        await choices.getByText("changed by hand").first().waitFor();
+        await choices.getByText("The property block_placed is not decided yet.").waitFor();
+        await choices.locator(".monaco-list-row", { hasText: "Arm receives a message" }).first().click();
+        await choices.getByText("step 2, 0.000 s").first().waitFor();
+        await choices.locator(".monaco-list-row", { hasText: "Arm receives a message" }).waitFor({ state: "detached" });
+        await window.screenshot("by-hand");
+
+        // Before the change, the run is one of the model again.
+        await button(window, "Step Back").click();
+        await choices.getByText("step 1, 0.000 s").first().waitFor();
+        await button(window, "Step Back").click();
+        await choices.getByText("step 0, 0.000 s").first().waitFor();
+        await choices.getByText("changed by hand").first().waitFor({ state: "detached" });
+        await stop(window);
+    });
+}
+
+/** Starts a run of the system that stops at its start. */
+async function start(window: Window, file: string): Promise<void> {
+    await window.openFile(file);
+    await window.running();
+    await window.page.keyboard.press("F5");
+    await choicesOf(window).getByText("step 0, 0.000 s").first().waitFor();
+    await makeSpace(window);
+}
+
+/** A low window has no space for all views. */
+async function makeSpace({ page }: Window): Promise<void> {
+    await page.locator('.pane-header[aria-label^="Watch"][aria-expanded="true"]').click();
+    await page.locator('.pane-header[aria-label^="Breakpoints"][aria-expanded="true"]').click();
+}
+
+async function stop(window: Window): Promise<void> {
+    await button(window, "Stop").click();
+    await window.page.locator(".debug-toolbar").waitFor({ state: "hidden" });
+}
+
+function choicesOf({ page }: Window): Locator {
+    return page.locator(".pane").filter({ has: page.locator('.pane-header[aria-label^="Choices"]') });
+}
+
+async function goToStep(window: Window, step: number): Promise<void> {
+    await window.run("AS2FM: Go to Step");
+    await window.page.locator(".quick-input-widget", { hasText: "number of steps" }).waitFor();
+    await window.type(String(step));
+    await window.press("Enter");
+    await choicesOf(window).getByText(`step ${step},`).first().waitFor();
+}
+
+/** Sends an event by hand, with the button of the view of choices. `fields` are missing if the event has none. */
+async function publish(window: Window, name: string, fields?: string): Promise<void> {
+    const { page } = window;
+    const choices = choicesOf(window);
+    await choices.locator(".pane-header").hover();
+    await choices.getByRole("button", { name: "Publish Message by Hand" }).click();
+    await page.locator(".quick-input-list .monaco-list-row", { hasText: name }).first().waitFor();
+    await window.type(name);
+    await page.locator(`.quick-input-list .focused[aria-label*="${name}"]`).first().waitFor();
+    await window.press("Enter");
+    if (fields === undefined) return;
+    await page.locator(".quick-input-widget", { hasText: "The fields of" }).waitFor();
+    await page.locator(".quick-input-widget input").first().fill(fields);
+    await window.press("Enter");
+}
+
+async function stepOf(timeline: Frame): Promise<number> {
+    return Number(await timeline.locator("body").getAttribute("data-step"));
+}
+
+async function boxOf(locator: Locator): Promise<{ x: number; y: number; width: number; height: number }> {
+    const box = await locator.boundingBox();
+    if (!box) throw new Error("the element is not visible");
+    return box;
 }
 
 function button(window: Window, name: string) {

@@ -2,9 +2,10 @@
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
-import type { Frame } from "playwright-core";
+import type { Frame, Locator, Page } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
 import { OUTPUT } from "./support/paths";
+import type { Window } from "./support/window";
 
 export function pictures(stage: Stage): void {
     stage.use();
@@ -83,6 +84,62 @@ export function pictures(stage: Stage): void {
     );
 
     stage.test(
+        "actions on a machine change its text, with the pointer and with the keyboard",
+        () => sample(MEND),
+        async (window) => {
+            const { page } = window;
+            await window.openFile("battery.ascxml");
+            await window.running();
+            await window.run("AS2FM: Show State Machine");
+            const picture = await window.picture();
+            const text = page.locator(".monaco-editor .view-lines").first();
+            const driving = picture.locator('.node[data-label="driving"]');
+
+            await driving.click({ button: "right", position: { x: 20, y: 12 } });
+            await menuItem(page, "Set as Initial State").waitFor({ state: "detached" });
+            await window.screenshot("picture-menu");
+            await chooseItem(window, "Add State…");
+            await answer(window, "The name of the new state", "resting");
+            await picture.locator('.node[data-label="resting"]').waitFor();
+
+            // The keyboard opens the menu of the selected node.
+            await picture.locator('.node[data-label="resting"]').click();
+            await window.statusItem("Ln 25, Col 5").waitFor();
+            await picture.locator("svg.picture").focus();
+            await window.press("Shift+F10");
+            await menuItem(page, "Add Transition…").waitFor();
+            await window.press("ArrowDown", "ArrowDown", "ArrowDown", "Enter");
+            await choose(window, "The target of the transition", "driving");
+            await choose(window, "The trigger of the transition", "timer second");
+            await picture.locator('[data-edges][aria-label^="resting → driving"]').first().waitFor();
+            await text.getByText("resting").first().waitFor();
+            await window.screenshot("picture-actions");
+
+            // A name that exists is refused while it is typed.
+            await picture.locator('.node[data-label="resting"]').click({ button: "right" });
+            await chooseItem(window, "Rename…");
+            await page.locator(".quick-input-widget", { hasText: "The new name of" }).waitFor();
+            await page.locator(".quick-input-widget input").first().fill("driving");
+            await page.locator(".quick-input-widget", { hasText: "already exists" }).waitFor();
+            await answer(window, "The new name of", "idle");
+            await picture.locator('.node[data-label="idle"]').waitFor();
+
+            await picture.locator('.node[data-label="idle"]').click({ button: "right" });
+            await chooseItem(window, "Set as Initial State");
+            await text.getByText("idle").first().waitFor();
+            await picture.locator('.node[data-label="idle"]').click({ button: "right" });
+            await chooseItem(window, "Delete");
+            await picture.locator('.node[data-label="idle"]').waitFor({ state: "detached" });
+
+            // Undo in the text restores the state.
+            await page.locator('.tab[data-resource-name="battery.ascxml"]').click();
+            await page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+            await window.press("Control+Z");
+            await picture.locator('.node[data-label="idle"]').waitFor();
+        },
+    );
+
+    stage.test(
         "a diagram is saved as SVG and as PNG",
         () => sample(MEND),
         async (window) => {
@@ -109,6 +166,31 @@ export function pictures(stage: Stage): void {
             keep(window.folder, "main.ros.svg", "main.ros.png");
         },
     );
+}
+
+function menuItem(page: Page, label: string): Locator {
+    return page.locator(".monaco-menu .action-label").getByText(label, { exact: true });
+}
+
+/** A menu that has just opened ignores clicks, so the click is repeated until the menu closes. */
+async function chooseItem(window: Window, label: string): Promise<void> {
+    const item = menuItem(window.page, label);
+    await item.waitFor();
+    await window.until(async () => {
+        if (await item.isVisible()) await item.click({ timeout: 1000 }).catch(() => undefined);
+        return !(await item.isVisible());
+    });
+}
+
+async function answer({ page }: Window, title: string, text: string): Promise<void> {
+    await page.locator(".quick-input-widget", { hasText: title }).waitFor();
+    await page.locator(".quick-input-widget input").first().fill(text);
+    await page.keyboard.press("Enter");
+}
+
+async function choose({ page }: Window, title: string, option: string): Promise<void> {
+    await page.locator(".quick-input-widget", { hasText: title }).waitFor();
+    await page.locator(".quick-input-list .monaco-list-row", { hasText: option }).first().click();
 }
 
 function labels(picture: Frame): Promise<string[]> {

@@ -17,6 +17,7 @@ import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
 import { PropertyTests } from "./editor/tests";
+import { PictureActions } from "./editor/pictureActions";
 import { PictureActivity } from "./editor/pictureActivity";
 import { TimelineView } from "./editor/timeline";
 import { modelsExist } from "./editor/activation";
@@ -56,6 +57,7 @@ export function activate(context: vscode.ExtensionContext): void {
         sessions,
         new ChoicesView(sessions, log),
         new TimelineView(context, sessions),
+        new PictureActions(server, pictures),
         new PictureActivity(sessions, pictures),
         ...debugging.register(),
         watchErrors(),

@@ -51,7 +51,8 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
     ): Promise<vscode.DebugConfiguration | undefined> {
         if (!isTrusted()) return undefined;
         const configuration = { ...given };
-        if (configuration.type === "") {
+        // Without a launch.json, the attributes are missing, although their types do not say so.
+        if (!configuration.type) {
             configuration.type = DEBUG_TYPE;
             configuration.request = "launch";
             configuration.name = vscode.l10n.t("Debug system");

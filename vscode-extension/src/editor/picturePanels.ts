@@ -57,6 +57,11 @@ export class PicturePanels implements vscode.Disposable {
         await panel.loaded;
     }
 
+    /** The document whose picture of a kind is shown. */
+    uriOf(kind: PictureKind): vscode.Uri | undefined {
+        return this.panels.get(kind)?.uri;
+    }
+
     /** Highlight nodes in all open pictures and in those that are opened later. Earlier highlights are removed. */
     async highlight(highlights: readonly Highlight[]): Promise<void> {
         this.highlights = highlights;
@@ -99,7 +104,7 @@ export interface ActiveNode {
 
 class PicturePanel implements vscode.Disposable {
     private readonly panel: vscode.WebviewPanel;
-    private uri: vscode.Uri | undefined;
+    uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
     private here: Part | null = null;
     /** The highlighted nodes of the step that was selected last, in all files. */
@@ -338,7 +343,7 @@ function words(): Words {
         savePng: vscode.l10n.t("Save as PNG"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, Enter opens the source, Space collapses a node of a tree, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         kinds: {

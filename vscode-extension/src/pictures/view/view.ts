@@ -27,6 +27,7 @@ import {
     type Sight,
 } from "./find";
 import { Minimap } from "./minimap";
+import { menuOf } from "./menu";
 import { element, pngData, sceneOf, type Scene } from "./scene";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
@@ -35,6 +36,8 @@ declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
 
 const editor = acquireVsCodeApi();
 const ZOOM = 1.25;
+/** The distance of the context menu from the corner of its node, in pixels. */
+const MENU_OFFSET = 8;
 /** How long a node whose look has changed is emphasised, in ms. */
 const EMPHASIS_MS = 500;
 
@@ -112,6 +115,8 @@ class View {
         const label = this.picture?.nodes[this.selected]?.label;
         this.clear();
         this.picture = picture;
+        // Beside all parts, the machine itself is meant.
+        this.svg.dataset["vscodeContext"] = menuOf([], picture.kind === "machine" ? ["addState"] : []);
         this.here = here;
         this.highlighted = highlighted;
         if (isNew) {
@@ -282,6 +287,14 @@ class View {
         if (this.picture?.kind === "tree" && id !== undefined) editor.postMessage({ type: "collapse", node: id });
     }
 
+    /** Open the context menu of the selected node, or that of the picture. VS Code listens to this event. */
+    private openMenu(): void {
+        const group = this.scene?.nodes.get(this.selected) ?? this.svg;
+        const { left, top } = group.getBoundingClientRect();
+        const place = { clientX: left + MENU_OFFSET, clientY: top + MENU_OFFSET };
+        group.dispatchEvent(new MouseEvent("contextmenu", { bubbles: true, cancelable: true, ...place }));
+    }
+
     private search(forward = false): void {
         if (!this.picture || !this.scene) return;
         const matches = search(this.picture, this.input.value);
@@ -357,7 +370,7 @@ class View {
     }
 
     /** Handle a key; return whether the view uses it. */
-    private key({ key, ctrlKey, metaKey }: KeyboardEvent): boolean {
+    private key({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): boolean {
         const typing = document.activeElement === this.input;
         if (typing) {
             if (key === "Enter") this.search(true);
@@ -371,6 +384,7 @@ class View {
         if (key === "/" || (key === "f" && (ctrlKey || metaKey))) this.input.focus();
         else if (ctrlKey || metaKey) return false;
         else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
+        else if (key === "ContextMenu" || (key === "F10" && shiftKey)) this.openMenu();
         else if (key === "Enter") this.jump(this.picture?.nodes[this.selected], false);
         else if (key === " ") this.collapse(this.selected);
         else if (key === "+" || key === "=") this.zoom(ZOOM);

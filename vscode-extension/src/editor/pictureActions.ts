@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The context menus of pictures: go to a part, or change the text at it. The server computes the edits. */
+
+import * as vscode from "vscode";
+import { PICTURE_ACTIONS, type MenuContext, type MenuPart, type PictureAction } from "../pictures/contract";
+import { pictureEdit, type PictureEdit, type PictureEditParams, type PictureQuestion } from "../protocol";
+import { jump, type PicturePanels } from "./picturePanels";
+import type { LanguageServer } from "./server";
+
+export class PictureActions implements vscode.Disposable {
+    private readonly commands: readonly vscode.Disposable[];
+
+    constructor(
+        private readonly server: LanguageServer,
+        private readonly pictures: PicturePanels,
+    ) {
+        this.commands = [
+            vscode.commands.registerCommand("as2fm.picture.goTo", async ({ as2fmParts }: MenuContext) => {
+                const part = await chooseOne(as2fmParts);
+                if (part) await jump(part.place, false);
+            }),
+            ...PICTURE_ACTIONS.map((action) =>
+                vscode.commands.registerCommand(`as2fm.picture.${action}`, ({ as2fmParts }: MenuContext) =>
+                    this.act(action, as2fmParts),
+                ),
+            ),
+        ];
+    }
+
+    dispose(): void {
+        for (const command of this.commands) command.dispose();
+    }
+
+    private async act(action: PictureAction, parts: readonly MenuPart[]): Promise<void> {
+        const possible = parts.filter(({ actions }) => actions.includes(action));
+        const part = await chooseOne(possible);
+        if (!part && possible.length > 0) return;
+        const uri = part?.place.uri ?? this.pictures.uriOf("machine")?.toString();
+        if (uri === undefined) return;
+        const answer = await this.ask({ textDocument: { uri }, range: part?.place.range ?? null, action, answers: [] });
+        const edit = await this.server.client?.protocol2CodeConverter.asWorkspaceEdit(answer?.edit ?? null);
+        if (!edit) return;
+        // The edit is shown, and can be undone, in the text.
+        if (part) await jump(part.place, false, true);
+        else await vscode.window.showTextDocument(vscode.Uri.parse(uri), { preserveFocus: true });
+        await vscode.workspace.applyEdit(edit);
+    }
+
+    /** Ask the server for an edit, and the user for what the server still needs. */
+    private async ask(params: PictureEditParams): Promise<PictureEdit | undefined> {
+        const answer = await this.server.ask(pictureEdit, params);
+        if (!answer?.question) {
+            if (answer && answer.problem !== "") void vscode.window.showErrorMessage(answer.problem);
+            return answer;
+        }
+        const extended = (text: string) => ({ ...params, answers: [...params.answers, text] });
+        const problem = async (text: string) => (await this.server.ask(pictureEdit, extended(text)))?.problem;
+        const text = await put(answer.question, problem);
+        return text === undefined ? undefined : this.ask(extended(text));
+    }
+}
+
+async function chooseOne(parts: readonly MenuPart[]): Promise<MenuPart | undefined> {
+    if (parts.length < 2) return parts[0];
+    const items = parts.map((part) => ({ label: part.label, part }));
+    return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which transition?") }))?.part;
+}
+
+/** Put a question to the user. `problem` returns why a text is no answer, or an empty text. */
+async function put(
+    { text, options, proposal }: PictureQuestion,
+    problem: (text: string) => Promise<string | undefined>,
+): Promise<string | undefined> {
+    if (options.length > 0) {
+        const items = options.map(({ label, answer }) => ({ label, answer }));
+        return (await vscode.window.showQuickPick(items, { title: text }))?.answer;
+    }
+    const validateInput = async (written: string) => (written === proposal ? undefined : await problem(written));
+    return vscode.window.showInputBox({ title: text, value: proposal, validateInput });
+}

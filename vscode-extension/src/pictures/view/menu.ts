@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/** The data of the context menus of parts, which VS Code shows. */
+
+import { PICTURE_ACTIONS, type MenuContext, type MenuPart, type Picture, type PictureAction } from "../contract";
+import { edgeHint } from "./words";
+
+/** The text for the attribute `data-vscode-context` of an element that shows some nodes and edges. */
+export function menuOf(parts: readonly MenuPart[], more: readonly PictureAction[] = []): string {
+    const isPossible = (action: PictureAction) =>
+        more.includes(action) || parts.some(({ actions }) => actions.includes(action));
+    const keys = PICTURE_ACTIONS.map((action) => [`as2fm_${action}`, isPossible(action)] as const);
+    const context: MenuContext = {
+        preventDefaultContextMenuItems: true,
+        as2fmParts: parts,
+        as2fmGoTo: parts.length > 0,
+        ...(Object.fromEntries(keys) as Record<`as2fm_${PictureAction}`, boolean>),
+    };
+    return JSON.stringify(context);
+}
+
+export function nodeParts(picture: Picture, index: number): MenuPart[] {
+    const node = picture.nodes[index];
+    return node?.place ? [{ label: node.label, place: node.place, actions: node.actions }] : [];
+}
+
+/** The parts of edges that share a line; the hover texts describe them. */
+export function edgeParts(picture: Picture, indexes: readonly number[]): MenuPart[] {
+    return indexes.flatMap((index) => {
+        const edge = picture.edges[index];
+        if (!edge?.place) return [];
+        const label = edgeHint(picture, edge).replaceAll("\n", " ");
+        return [{ label, place: edge.place, actions: edge.actions }];
+    });
+}
