@@ -43,7 +43,7 @@ def indent_of(text: str, element: Element) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=1)
 def level_of(document: Document) -> str:
     """The indentation of one level of nesting: that of the first indented element at the beginning of a line, relative
     to its parent; four spaces if there is none."""

@@ -15,7 +15,7 @@ from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, replacements
-from roaml.rules.support.entries import entries_of, names_of
+from roaml.rules.support.entries import names_of
 from roaml.rules.support.forest import forest_of
 from roaml.text import TextEdit
 
@@ -34,7 +34,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 continue
             wrong = list(_reference(setting))
             if not wrong and entry_of(setting) is None:
-                names = names_of(entries_of(forest), tree.id.value if tree.id else "") | forest.host_entries
+                names = names_of(forest, tree.id.value if tree.id else "") | forest.host_entries
                 wrong = list(_without_braces(node, port, setting, names))
             yield from wrong
             if known is not None and port is not None and not wrong and entry_of(setting) is None:

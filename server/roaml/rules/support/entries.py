@@ -4,18 +4,29 @@
 from __future__ import annotations
 
 import functools
+from collections import defaultdict
+from collections.abc import Mapping
 
 from roaml.forest.entries import Entries, find_entries
 from roaml.forest.forest import Forest
 
 
-@functools.lru_cache(maxsize=8)
+@functools.lru_cache(maxsize=1)
 def entries_of(forest: Forest) -> Entries:
-    """The entries of a forest. The result is cached: a forest is immutable and compared by identity."""
+    """The entries of a forest. The result for the last forest is cached, because several rules need it; a forest is
+    immutable and compared by identity."""
     return find_entries(forest)
 
 
-@functools.lru_cache(maxsize=64)
-def names_of(entries: Entries, tree: str) -> frozenset[str]:
+def names_of(forest: Forest, tree: str) -> frozenset[str]:
     """The names of the entries that the ports and scripts of a tree may create."""
-    return frozenset(use.name for use in entries.uses if use.tree == tree and use.creates)
+    return _names_by_tree(forest).get(tree, frozenset())
+
+
+@functools.lru_cache(maxsize=1)
+def _names_by_tree(forest: Forest) -> Mapping[str, frozenset[str]]:
+    names: dict[str, set[str]] = defaultdict(set)
+    for use in entries_of(forest).uses:
+        if use.creates:
+            names[use.tree].add(use.name)
+    return {tree: frozenset(of_tree) for tree, of_tree in names.items()}

@@ -4,8 +4,8 @@ that they are missing."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from functools import lru_cache
+from collections.abc import Callable, Collection, Iterable
+from functools import cache, lru_cache, partial
 from itertools import islice
 
 from roaml.language import HL_SCXML, ElementType, Grammar
@@ -38,11 +38,17 @@ def declaration(machine: Machine, tag: str, name: str) -> bool:
     This is true for a `<tag>` whose name is missing or misspelled, for a `<tag>` in a place where it is ignored, and
     for an unknown element in the place of a `<tag>`.
     """
-    names = _intended_names(machine, tag)
+    names = _intended_names_of(machine)(tag)
     return "" in names or name in names
 
 
-@lru_cache(maxsize=16)  # an unreadable declaration leads to a finding at each of its uses
+@lru_cache(maxsize=1)
+def _intended_names_of(machine: Machine) -> Callable[[str], frozenset[str]]:
+    """`_intended_names` for one machine, cached for each tag, because an unreadable declaration leads to a finding at
+    each of its uses. Only the last machine is kept: its elements need much memory."""
+    return cache(partial(_intended_names, machine))
+
+
 def _intended_names(machine: Machine, tag: str) -> frozenset[str]:
     """The names that unreadable elements are probably intended to declare with a `<tag>`. An empty string in the result
     means that the name could be any."""
