@@ -332,7 +332,6 @@ tree  <Walk topic="‸"/>
     /level : std_msgs/Int32 · Node, BT_plugin_1001_Walk, Other
 
 tree  <SubTree ID="‸"/>
-    Main
     Rest
     Home
 

@@ -83,6 +83,11 @@ def test_nodes_and_ports_of_models_are_offered() -> None:
     assert offered(inside)["Grasp"] == "action"
 
 
+def test_a_tree_is_not_offered_as_its_own_subtree() -> None:
+    trees = '<BehaviorTree ID="A"><SubTree ID="‸"/></BehaviorTree><BehaviorTree ID="B"><Sleep msec="1"/></BehaviorTree>'
+    assert offered(f'<root BTCPP_format="4">{trees}</root>').keys() == {"B"}
+
+
 def test_documentation_of_an_item() -> None:
     text = MODELS.replace("|", "")
     before, _, after = text.partition("‸")
@@ -97,6 +102,8 @@ def test_documentation_of_an_item() -> None:
 def test_hover_shows_ports_and_defaults() -> None:
     assert "How hard, in N." in hover_text(MODELS, 'for|ce="3"')
     assert "`5` if not set" in hover_text(MODELS, 'for|ce="3"')
+    empty = NAV2.replace("<Sub‸", "").replace("<ComputePathToPose", '<ComputePathToPose planner_id="Grid"')
+    assert "empty if not set" in hover_text(empty, 'planner|_id="')
     assert "in force : int = 5" in hover_text(MODELS, '<Gra|sp force="3"')
     assert "Plans a path to a pose." in hover_text(NAV2, "<Compute|PathToPose")
     assert "*Nav2*" in hover_text(NAV2, "<Compute|PathToPose")

@@ -248,8 +248,11 @@ def port_list(outline: MachineOutline) -> str:
 
 
 def _tree_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
+    """The names of trees; in a tree, without its own, because a tree cannot contain itself."""
+    around = [typed.element.get("ID") for typed in subject.parents if typed.element.name == "BehaviorTree"]
+    own = {id_.value for id_ in around if id_ is not None}
     for name, (path, _) in request.trees.trees.items():
-        if name:
+        if name and name not in own:
             file = path.replace("\\", "/").rpartition("/")[2]
             yield CompletionItem(
                 name, ItemKind.PLUGIN, detail=file, about=request.trees.tree_symbol(request.path, name)

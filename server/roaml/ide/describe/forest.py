@@ -27,7 +27,8 @@ def node(known: Node) -> str:
 def port(known: Node, described: Port) -> str:
     """The description of a port: type, default and meaning."""
     must = "must be set" if described.required else ""
-    default = f"{name(described.default)} if not set" if described.default is not None else ""
+    value = name(described.default) if described.default else "empty"
+    default = "" if described.default is None else f"{value} if not set"
     return paragraphs(code(_line(described)), lines(_text(described.text, known.library), must, default))
 
 
