@@ -10,7 +10,7 @@ from roaml.diagnostics import Diagnostic, Severity
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.record import replace
-from roaml.smc.forms import BOUNDS, bounds_in
+from roaml.smc.forms import BOUNDS, TIME_BOUNDS, time_bounds_in
 
 
 class OutputError(ValueError):
@@ -33,7 +33,7 @@ def check_not_an_input(path: str, system: api.LoadedSystem) -> None:
 
 
 def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
-    """A model without the properties that have bounds on time or rewards, and a warning for each of these bounds.
+    """A model without the properties that have bounds on time, and a warning for each of these bounds.
 
     JANI defines these bounds for timed models. In a model that counts steps, Storm reads a bound of 5 (seconds) as 5
     steps.
@@ -41,10 +41,10 @@ def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:
     warnings: list[Diagnostic] = []
     kept: list[Property] = []
     for property_ in model.properties:
-        bounds = list(bounds_in(property_))
-        for why, bound in bounds:
+        bounds = list(time_bounds_in(property_))
+        for bound in bounds:
             assert bound.origin is not None  # The property was read from a file of the system.
-            message = f"the property `{property_.name}` is left out of the JANI file: {why}"
+            message = f"the property `{property_.name}` is left out of the JANI file: {TIME_BOUNDS}"
             warnings.append(Diagnostic(bound.origin.path, BOUNDS, Severity.WARNING, bound.origin.span, message))
         if not bounds:
             kept.append(property_)

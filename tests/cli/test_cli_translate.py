@@ -132,21 +132,29 @@ def test_parts_of_properties_without_effect(command: Command, robot: Path) -> No
     ] * 2
 
 
-@pytest.mark.parametrize("kind", ["time-bounds", "reward-bounds"])
+def test_bounds_on_rewards_are_translated(command: Command, robot: Path) -> None:
+    path = robot / "properties.jani"
+    written = json.loads(path.read_text())
+    bounds = [{"exp": 1, "accumulate": ["steps"], "bounds": {"upper": 3}}]
+    written["properties"][0]["expression"]["values"]["exp"]["reward-bounds"] = bounds
+    path.write_text(json.dumps(written))
+    done = command("translate", "main.xml", "-o", "-")
+    assert done.status == 0
+    translated = {row["name"]: row["expression"]["values"]["exp"] for row in json.loads(done.out)["properties"]}
+    assert translated[written["properties"][0]["name"]]["reward-bounds"] == bounds
+
+
 @pytest.mark.parametrize("depth", [0, 1])
-def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
-    command: Command, robot: Path, kind: str, depth: int
-) -> None:
+def test_a_property_with_bounds_on_time_is_left_out_and_reported(command: Command, robot: Path, depth: int) -> None:
     """Without its bounds, the property would have another meaning; with them, Storm reads seconds as steps."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
-    bound = {"upper": 3} if kind == "time-bounds" else [{"exp": 1, "accumulate": ["steps"], "bounds": {"upper": 3}}]
     bounded, other = (row["name"] for row in written["properties"])
     formula = written["properties"][0]["expression"]["values"]["exp"]
     if depth:
         formula["exp"] = {"op": "F", "exp": formula["exp"]}
         formula = formula["exp"]
-    formula[kind] = bound
+    formula["time-bounds"] = {"upper": 3}
     path.write_text(json.dumps(written, indent=1))
     done = command("translate", "main.xml", "-o", "-")
     assert done.status == 0
@@ -155,8 +163,8 @@ def test_a_property_with_bounds_that_steps_cannot_have_is_left_out_and_told(
     assert translated[0] == other
     assert f"warning: the property `{bounded}` is left out of the JANI file: bounds on " in done.err
     assert "[ignored-bounds]" in done.err
-    line = next(n for n, text in enumerate(path.read_text().splitlines(), 1) if f'"{kind}"' in text)
-    assert f"properties.jani:{line + (kind == 'reward-bounds')}:" in done.err
+    line = next(n for n, text in enumerate(path.read_text().splitlines(), 1) if '"time-bounds"' in text)
+    assert f"properties.jani:{line}:" in done.err
     as_json = command("translate", "main.xml", "-o", "out.jani", "--format", "json")
     assert [row["code"] for row in json.loads(as_json.out)] == ["ignored-bounds"]
     (robot / "main.jani").unlink(missing_ok=True)

@@ -125,8 +125,21 @@ def bounded(random: Random) -> Json:
     path: Json = random.choice(({"op": "F", "exp": goal}, never, _until(_small_condition(random, SHARED), goal)))
     if random.random() < 0.5:
         path["step-bounds"] = {"upper": random.randint(3, 30)}
+    if random.random() < 0.4:
+        path["reward-bounds"] = [_reward_bound(random) for _ in range(random.randint(1, 2))]
     document["properties"][0]["expression"]["values"] = {"op": "Pmin", "exp": path}
     return document
+
+
+def _reward_bound(random: Random) -> Json:
+    """A bound on the accumulated number of steps, or on the accumulated value of a variable."""
+    bounds: Json = {}
+    if random.random() < 0.7:
+        bounds = {"upper": random.randint(0, 12), "upper-exclusive": random.random() < 0.3}
+    if random.random() < 0.4:
+        bounds |= {"lower": random.randint(0, 6), "lower-exclusive": random.random() < 0.3}
+    accumulate = random.choice((["steps"], ["exit"], ["steps", "exit"]))
+    return {"exp": random.choice((1, *SHARED)), "accumulate": accumulate, "bounds": bounds}
 
 
 def _until(left: Json, right: Json) -> Json:
@@ -219,6 +232,8 @@ def _document(random: Random, automata: list[Json], syncs: list[list[str | None]
     path: Json = {"op": random.choice("FG"), "exp": _condition(random, SHARED)}
     if random.random() < 0.3:
         path["step-bounds"] = {"upper": random.randint(0, 20)}
+    if random.random() < 0.2:
+        path["reward-bounds"] = [_reward_bound(random)]
     if random.random() < 0.1:
         path = {"op": "F", "exp": {"op": "deadlock"}}
     values = {"op": "Pmax", "exp": path}

@@ -139,6 +139,15 @@ class Solver:
         self._solve()
         return self.low[0], self.high[0]
 
+    def accumulated(self, steps: int) -> tuple[float, float]:
+        """Bounds of the expected reward of a number of steps. Where no step is possible, no more reward is earned."""
+        self.is_reward = 1
+        for state in range(self.states):
+            self.group[state] = state
+        for _ in range(steps):
+            self._sweep(0)
+        return self.low[0], self.low[0]
+
     def bounded(self, target: int, lower: int, upper: int) -> tuple[float, float]:
         """Bounds of the probability of an until with step bounds.
 

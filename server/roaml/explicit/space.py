@@ -112,7 +112,7 @@ def explore(
     steps, lower, depth = _bounds(goal)
     search = search_module.StateSearch(
         kernel_module.Kernel(program, goal),
-        tables_of(program, checker.legend, _transient(checker)),
+        tables_of(program, goal, checker.legend, _transient(checker)),
         steps,
         lower,
         depth,

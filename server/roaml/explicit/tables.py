@@ -15,7 +15,7 @@ from roaml.jani.model import Assignment
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
-from roaml.smc.program import Ints, Program
+from roaml.smc.program import Goal, Ints, Program
 from roaml.smc.registers import REAL, product
 
 
@@ -24,7 +24,7 @@ class Tables(Record, frozen=True, eq=False):
 
     Attributes:
         way_start, way_cell: the cells of variables that each way writes.
-        settled: the cells of transient variables.
+        settled: the cells that any step can change: those of transient variables and of accumulated rewards.
         cell_watch: for each cell of a variable, its number among the watched variables, or -1.
     """
 
@@ -34,8 +34,8 @@ class Tables(Record, frozen=True, eq=False):
     cell_watch: Ints
 
 
-def tables_of(program: Program, legend: Legend, transient: Iterable[Storage]) -> Tables:
-    """The tables of a program."""
+def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[Storage]) -> Tables:
+    """The tables of a program with a goal."""
     way_start, way_cell = [0], list[int]()
     instance_of = [number for number, _ in legend.locations]
     for way, (_, destination) in enumerate(legend.ways):
@@ -52,6 +52,7 @@ def tables_of(program: Program, legend: Legend, transient: Iterable[Storage]) ->
         for cell in _cells(storage, program):
             watch[cell] = storage.watch
     settled = [cell for storage in transient for cell in _cells(storage, program)]
+    settled += [program.instances + program.int_count + register for register in goal.sum_register]
     return Tables(array("i", way_start), array("i", way_cell), array("i", settled), array("i", watch))
 
 

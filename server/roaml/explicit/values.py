@@ -81,6 +81,11 @@ class _Question:
     def bounds(self, mode: int) -> Bounds:
         goal = self.goal
         is_until = len(goal.left) == 1 and goal.lower[0] != AT_END
+        if self.question.is_reward and goal.upper[0] >= 0:
+            steps = goal.upper[0]
+            if self.work is not None and steps * self.space.search.code_end > self.work:
+                raise NoValueError(_TOO_MUCH_WORK)
+            return self.closed(self.solver(mode), "accumulated", steps)
         if self.question.is_reward:
             return self.closed(self.solver(mode), "expected")
         if self.question.is_stuck:

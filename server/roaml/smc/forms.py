@@ -36,12 +36,13 @@ from roaml.smc.normal_form import NestingError, lasting_condition
 UNSUPPORTED = "unsupported-property"
 """The code under which `--check` and `verify` report an unsupported property."""
 BOUNDS = "ignored-bounds"
-"""The code under which bounds on time and rewards are reported."""
+"""The code under which bounds on time are reported."""
 
 ANSWERED = (
-    "supported are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with step bounds, of `F G` and `G F`, "
-    "of the nested forms `G (p ⇒ F q)`, `G (p ⇒ G q)`, `G (p ⇒ (q U r))`, `G (p ⇒ (q W r))`, `G (p ∧ F r ⇒ (q U r))` "
-    "and `¬p W (p ∧ …)`, all joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` and `reach`"
+    "supported are `Pmin` and `Pmax` of F, G, X, U, W and R over states, also with bounds on steps and rewards, of "
+    "`F G` and `G F`, of the nested forms `G (p ⇒ F q)`, `G (p ⇒ G q)`, `G (p ⇒ (q U r))`, `G (p ⇒ (q W r))`, "
+    "`G (p ∧ F r ⇒ (q U r))` and `¬p W (p ∧ …)`, all joined by ¬, ∧, ∨ and ⇒, and `Emin` and `Emax` with `accumulate` "
+    "and either `reach` or `step-instant`"
 )
 NOT_OBSERVABLE = (
     "a formula about paths inside another one is supported only if its variables have initial values and are not "
@@ -55,7 +56,7 @@ JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIE
 TIME_BOUNDS = (
     "bounds on time are not supported, because the model counts only steps (compare the clock's `sec` instead)"
 )
-REWARD_BOUNDS = "bounds on rewards are not supported"
+NO_TIME = "no time passes in this kind of model, so rewards can only be accumulated on `steps` or `exit`"
 _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
 
 
@@ -66,16 +67,15 @@ def faults_in(property_: Property, step: int | None = None) -> Iterator[FaultErr
         step: the step of the clock in ns; `None` if there is no clock.
     """
     for fault, node in _faults(property_.expression, step):
-        code = BOUNDS if fault in (TIME_BOUNDS, REWARD_BOUNDS) else UNSUPPORTED
+        code = BOUNDS if fault == TIME_BOUNDS else UNSUPPORTED
         yield FaultError(f"{fault}; {ANSWERED}", node.origin or property_.origin, code=code)
 
 
-def bounds_in(property_: Property) -> Iterator[tuple[str, Node]]:
-    """The bounds on time and rewards, anywhere in a property, and the reason why each is not supported. Each pair is
-    (reason, bound)."""
+def time_bounds_in(property_: Property) -> Iterator[Node]:
+    """The bounds on time, anywhere in a property."""
     for formula in walk(property_.expression):
-        if isinstance(formula, (UnaryPath, BinaryPath)):
-            yield from _in_bounds(formula)
+        if isinstance(formula, (UnaryPath, BinaryPath)) and formula.time_bounds is not None:
+            yield formula.time_bounds
 
 
 def check_form(property_: Property) -> None:
@@ -192,8 +192,7 @@ def _in_nested(path: UnaryPath | BinaryPath, step: int | None) -> Iterator[tuple
 
 def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
     """The errors in a state formula."""
-    while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
-        formula = formula.operand
+    formula = _without_negation(formula)
     if isinstance(formula, Predicate):
         if formula.predicate is not StatePredicate.DEADLOCK:
             yield f"the predicate `{formula.predicate.value}` is not supported here", formula
@@ -201,19 +200,35 @@ def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
         yield "a formula about paths inside another one is not supported in this form", formula
 
 
+def _without_negation(formula: Formula) -> Formula:
+    while isinstance(formula, UnaryFormula) and formula.operator is UnaryOperator.NOT:
+        formula = formula.operand
+    return formula
+
+
 def _in_bounds(formula: PathBounds) -> Iterator[tuple[str, Node]]:
     assert isinstance(formula, (UnaryPath, BinaryPath))
     if formula.time_bounds is not None:
         yield TIME_BOUNDS, formula.time_bounds
-    for bound in formula.reward_bounds or ():
-        yield REWARD_BOUNDS, bound
+    if not formula.reward_bounds:
+        return
+    for bound in formula.reward_bounds:
+        if Accumulation.TIME in bound.accumulate:
+            yield NO_TIME, bound
+    for operand in (formula.operand,) if isinstance(formula, UnaryPath) else (formula.left, formula.right):
+        condition = _without_negation(operand)
+        if isinstance(condition, Predicate):
+            yield "bounds on rewards are supported only if the operands are conditions on variables", condition
 
 
 def _in_reward(formula: Expectation) -> Iterator[tuple[str, Node]]:
-    others = (formula.step_instant, formula.time_instant, formula.reward_instants or None)
-    if formula.reach is None or formula.accumulate is None or any(other is not None for other in others):
-        yield "only rewards that are accumulated until a condition holds are supported", formula
-        return
-    if Accumulation.TIME in formula.accumulate:
-        yield "no time passes in this kind of model, so rewards can only be accumulated on `steps` or `exit`", formula
-    yield from _in_state(formula.reach)
+    if formula.accumulate is None or formula.time_instant is not None or formula.reward_instants:
+        yield "only rewards that are accumulated until a condition holds or up to a step are supported", formula
+    elif formula.step_instant is not None and formula.reach is not None:
+        yield "`reach` and `step-instant` are not supported together", formula
+    elif formula.step_instant is None and formula.reach is None:
+        yield "rewards are accumulated until a condition holds (`reach`) or up to a step (`step-instant`)", formula
+    elif Accumulation.TIME in formula.accumulate:
+        yield NO_TIME, formula
+    elif formula.reach is not None:
+        yield from _in_state(formula.reach)

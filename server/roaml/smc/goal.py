@@ -12,7 +12,7 @@ import enum
 import math
 from array import array
 
-from roaml.jani.expressions import Conditional, Expression, Integer, Name, Unary
+from roaml.jani.expressions import Binary, Conditional, Expression, Integer, Name, Unary
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     Accumulation,
@@ -30,6 +30,7 @@ from roaml.jani.properties import (
     ProbabilityOperator,
     ProperFormula,
     Property,
+    RewardBound,
     StatePredicate,
     UnaryFormula,
     UnaryPath,
@@ -41,8 +42,10 @@ from roaml.record import Record, replace
 from roaml.smc.compile import Compilation
 from roaml.smc.fault import FaultError
 from roaml.smc.forms import NOT_OBSERVABLE, UNSUPPORTED, Lasting, check_form, lasting_part
+from roaml.smc.names import Storage
 from roaml.smc.program import AT_END, Goal
 from roaml.smc.registers import Operand
+from roaml.smc.sums import conditions_of, limit_of, sum_names
 
 TRUE, FALSE, DEADLOCK, NO_DEADLOCK, STUCK = -1, -2, -3, -4, -5
 NOT, AND, OR = -1, -2, -3
@@ -191,6 +194,11 @@ def compile_stuck(compilation: Compilation) -> CompiledProperty:
         is_bounded=0,
         step_reward=-1,
         exit_reward=-1,
+        sum_register=array("i"),
+        sum_watch=array("i"),
+        sum_step=array("i"),
+        sum_exit=array("i"),
+        sum_limit=array("d"),
     )
     question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, (), is_stuck=True)
     return CompiledProperty(Property(STUCK_PROPERTY, formula), question, goal)
@@ -202,6 +210,7 @@ class _Writer:
         self.outputs = outputs
         self.names = compilation.layout.names
         self.property = property_
+        self.sums = sum_names(property_)
         self.left: list[int] = []
         self.right: list[int] = []
         self.lower: list[int] = []
@@ -254,6 +263,11 @@ class _Writer:
             is_bounded=self.is_bounded,
             step_reward=step_reward,
             exit_reward=exit_reward,
+            sum_register=array("i", [self.storage(name).base for name in self.sums.values()]),
+            sum_watch=array("i", [self.storage(name).watch for name in self.sums.values()]),
+            sum_step=array("i", [self.sum_code(bound, Accumulation.STEPS) for bound in self.sums]),
+            sum_exit=array("i", [self.sum_code(bound, Accumulation.EXIT) for bound in self.sums]),
+            sum_limit=array("d", [limit_of(bound.bounds, self.limit) for bound in self.sums]),
         )
         return CompiledProperty(self.property, question, goal)
 
@@ -313,26 +327,28 @@ class _Writer:
         match formula:
             case UnaryPath(operator=operator, operand=operand):
                 lower, upper = self.bounds(formula)
+                within, reached = self.sum_conditions(formula)
                 match operator:
                     case UnaryPathOperator.FINALLY:
-                        self.until(TRUE, self.condition(operand), lower, upper)
+                        self.until(self.all(within), self.condition(operand, reached), lower, upper)
                     case UnaryPathOperator.GLOBALLY:
-                        self.until(TRUE, self.condition(operand, negated=True), lower, upper)
+                        self.until(self.all(within), self.condition(operand, reached, negated=True), lower, upper)
                         self.formula.append(NOT)
                     case UnaryPathOperator.NEXT:
-                        self.until(TRUE, self.condition(operand), 1, 1)
+                        self.until(TRUE, self.condition(operand, reached), 1, 1)
             case BinaryPath(operator=operator, left=left, right=right):
                 lower, upper = self.bounds(formula)
+                within, reached = self.sum_conditions(formula)
                 match operator:
                     case BinaryPathOperator.UNTIL:
-                        self.until(self.condition(left), self.condition(right), lower, upper)
+                        self.until(self.condition(left, within), self.condition(right, reached), lower, upper)
                     case BinaryPathOperator.WEAK_UNTIL:
-                        self.until(self.condition(left), self.condition(right), lower, upper)
-                        self.until(TRUE, self.condition(left, negated=True), 0, upper)
+                        self.until(self.condition(left, within), self.condition(right, reached), lower, upper)
+                        self.until(self.all(within), self.condition(left, within, negated=True), 0, upper)
                         self.formula += (NOT, OR)
                     case BinaryPathOperator.RELEASE:
-                        condition = self.condition(left, negated=True)
-                        self.until(condition, self.condition(right, negated=True), lower, upper)
+                        condition = self.condition(left, within, negated=True)
+                        self.until(condition, self.condition(right, reached, negated=True), lower, upper)
                         self.formula.append(NOT)
             case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
                 self.path(operand)
@@ -378,20 +394,47 @@ class _Writer:
         self.read.append(self.unread)
         self.unread = set()
 
-    def condition(self, formula: Formula, negated: bool = False) -> int:
-        """The code of a state formula."""
+    def sum_conditions(self, path: PathBounds) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:
+        """That all accumulated rewards are within their upper bounds, and that they are within all bounds."""
+        conditions = conditions_of(path, self.sums, self.limit)
+        return conditions.within, conditions.reached
+
+    def storage(self, name: str) -> Storage:
+        storage = self.names.values[name]
+        assert isinstance(storage, Storage)
+        return storage
+
+    def sum_code(self, bound: RewardBound, accumulation: Accumulation) -> int:
+        """Code that returns the register of a reward; -1 if the reward is not accumulated in this way."""
+        if accumulation not in bound.accumulate:
+            return -1
+        return self.compilation.expressions.real_register(bound.reward, self.names, bound.origin)
+
+    def all(self, conditions: tuple[Expression, ...]) -> int:
+        """The code of a conjunction."""
+        return self.condition(conditions[0], conditions[1:]) if conditions else TRUE
+
+    def condition(self, formula: Formula, more: tuple[Expression, ...] = (), *, negated: bool = False) -> int:
+        """The code of a state formula.
+
+        Args:
+            more: further conditions, which must also hold.
+            negated: whether to negate `formula`, but not `more`.
+        """
         match formula:
             case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
-                return self.condition(operand, not negated)
+                return self.condition(operand, more, negated=not negated)
             case Predicate(StatePredicate.DEADLOCK):
                 self.is_bounded = 2
                 return NO_DEADLOCK if negated else DEADLOCK
             case _ if isinstance(formula, ProperFormula):
                 raise FaultError(NOT_OBSERVABLE, formula.origin or self.property.origin, code=UNSUPPORTED)
             case _:
-                self.conditions.append(formula)
-                self.unread.update(name for name, _ in identifiers(formula))
                 expression: Expression = Unary(UnaryOperator.NOT, formula) if negated else formula
+                for condition in more:
+                    expression = Binary(BinaryOperator.AND, expression, condition)
+                self.conditions.append(expression)
+                self.unread.update(name for name, _ in identifiers(expression))
                 return self.compilation.expressions.condition(
                     expression, self.names, formula.origin or self.property.origin
                 )
@@ -410,6 +453,10 @@ class _Writer:
     def end(self, interval: Interval, expression: Expression | None) -> float | None:
         if expression is None:
             return None
+        return self.limit(interval, expression)
+
+    def limit(self, interval: Interval, expression: Expression) -> float:
+        """The value of an end of an interval."""
         value = self.number(expression)
         if not abs(value) < 1 << 62:
             raise FaultError("this bound is too large", expression.origin or interval.origin)
@@ -418,9 +465,17 @@ class _Writer:
     # ------------------------------------------------------------ rewards
 
     def expectation(self, formula: Expectation) -> tuple[int, int]:
-        assert formula.reach is not None
         assert formula.accumulate is not None
-        self.until(TRUE, self.condition(formula.reach), 0, None)
+        if formula.step_instant is not None:
+            # `G≤n true` is decided after n steps, or earlier where no step is possible.
+            last = math.floor(self.limit(Interval(origin=formula.origin), formula.step_instant))
+            if last < 0:
+                raise FaultError("`step-instant` must not be negative", formula.step_instant.origin or formula.origin)
+            self.until(TRUE, FALSE, 0, last)
+            self.formula.append(NOT)
+        else:
+            assert formula.reach is not None
+            self.until(TRUE, self.condition(formula.reach), 0, None)
         code = self.compilation.expressions.real_register(formula.reward, self.names, formula.origin)
         return (
             code if Accumulation.STEPS in formula.accumulate else -1,

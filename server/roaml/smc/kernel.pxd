@@ -35,6 +35,10 @@ cdef class Kernel:
     cdef i64[::1] known_steps
     cdef i64[::1] lower, upper
     cdef int leaves, questions, status, is_bounded, step_reward, exit_reward
+    cdef int[::1] sum_register, sum_watch, sum_step, sum_exit, kept_slot, kept_way
+    cdef double[::1] sum_limit
+    cdef int sums, lasts
+    cdef u64 tried
     cdef int[::1] ready, ready_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0, position, position_0
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
@@ -106,9 +110,17 @@ cdef class Kernel:
     cdef void _settle_location(self, int instance) noexcept
     @cython.locals(i=int, k=int, vector=int, slot=int, pick=int, edge=int, way=int)
     cdef int _can_leave(self) noexcept
+    @cython.locals(is_open=int, i=int, parts=int, changes=int, vector=int)
+    cdef int _can_change(self) noexcept
+    @cython.locals(slot=int, pick=int, edge=int, way=int, changes=int)
+    cdef int _changes_from(self, int vector, int at) noexcept
+    @cython.locals(i=int)
+    cdef int _changes_variables(self, int vector) noexcept
+    @cython.locals(i=int, changed=int)
+    cdef int _restored(self) noexcept
     @cython.locals(register=int)
     cdef int _is_possible(self, int way) noexcept
-    @cython.locals(i=int, changed=int)
+    @cython.locals(i=int)
     cdef int _changes(self, int slot, int way) noexcept
     @cython.locals(status=int, i=int)
     cdef int _advance(self, i64 limit) noexcept
@@ -132,6 +144,8 @@ cdef class Kernel:
     cdef int _value(self, int start, int end) noexcept
     @cython.locals(register=int)
     cdef void _add_reward(self, int code) noexcept
+    @cython.locals(i=int, register=int, reward=double, total=double)
+    cdef void _accumulate(self, int[::1] codes) noexcept
     cdef void _fail(self, int fault, int at) noexcept
     cdef void _note(self, int variable) noexcept
     cdef int _call(self, int function, int real, int target) noexcept

@@ -117,6 +117,13 @@ class Kernel:
         self.is_bounded = goal.is_bounded
         self.step_reward = goal.step_reward
         self.exit_reward = goal.exit_reward
+        self.sum_register = goal.sum_register
+        self.sum_watch = goal.sum_watch
+        self.sum_step = goal.sum_step
+        self.sum_exit = goal.sum_exit
+        self.sum_limit = goal.sum_limit
+        self.sums = len(goal.sum_register)
+        self.lasts = 1 if goal.upper[0] >= 0 and (goal.step_reward >= 0 or goal.exit_reward >= 0) else 0
         self.verdict = goal.left[:]
         self.holds_left = goal.left[:]
         self.holds_right = goal.left[:]
@@ -147,6 +154,9 @@ class Kernel:
         self.note_count = 0
         self.part_slot = program.zero_instances[:]
         self.part_way = program.zero_instances[:]
+        self.kept_slot = program.zero_instances[:]
+        self.kept_way = program.zero_instances[:]
+        self.tried = 0
         self.parts = 0
         self.vector = -1
         self.moved = 0
@@ -697,6 +707,8 @@ class Kernel:
 
     def _execute_ways(self, vector: int) -> None:
         """Execute the assignments of the chosen ways, and change the locations."""
+        if self.sums != 0:
+            self._accumulate(self.sum_exit)
         if self.settle >= 0:
             self._execute(self.settle)
         if self.entangled[vector] == 0:
@@ -709,6 +721,8 @@ class Kernel:
             return
         if self.step_reward >= 0:
             self._add_reward(self.step_reward)
+        if self.sums != 0:
+            self._accumulate(self.sum_step)
         for i in range(self.parts):
             self.place[self.slot_instance[self.part_slot[i]]] = self.way_target[self.part_way[i]]
         if self.settle >= 0:
@@ -849,7 +863,80 @@ class Kernel:
                     for way in range(self.way_start[edge], self.way_start[edge + 1]):
                         if self._is_possible(way) != 0 and self._changes(slot, way) != 0:
                             return 1
+        return self._can_change()
+
+    def _can_change(self) -> int:
+        """Whether a combination of ways changes the state, although none of them does so alone: because they depend on
+        one another, or because the step has a reward that is accumulated."""
+        is_open = 0
+        for i in range(self.sums):
+            if self.reals[self.sum_register[i]] < self.sum_limit[i]:
+                is_open = 1
+        parts = self.parts
+        for i in range(parts):
+            self.kept_slot[i] = self.part_slot[i]
+            self.kept_way[i] = self.part_way[i]
+        changes = 0
+        self.tried = 0
+        for i in range(self.enabled_count):
+            vector = self.enabled[i]
+            if changes == 0 and (is_open != 0 or self.entangled[vector] != 0):
+                self.parts = 0
+                changes = self._changes_from(vector, self.active_start[vector])
+        self.parts = parts
+        for i in range(parts):
+            self.part_slot[i] = self.kept_slot[i]
+            self.part_way[i] = self.kept_way[i]
+        return changes
+
+    def _changes_from(self, vector: int, at: int) -> int:
+        """Whether a combination of edges and ways of `vector` changes the state. The parts of the slots before the
+        index `at` are chosen already."""
+        if at == self.active_start[vector + 1]:
+            self.tried += 1
+            # The answer 1 is always safe, because the trace then goes on.
+            return 1 if self.tried > MAX_DRAWN_COMBINATIONS else self._changes_variables(vector)
+        slot = self.active_slot[at]
+        for pick in range(self.ready[slot]):
+            edge = self._edge(slot, pick)
+            for way in range(self.way_start[edge], self.way_start[edge + 1]):
+                if self._is_possible(way) != 0:
+                    self.part_slot[self.parts] = slot
+                    self.part_way[self.parts] = way
+                    self.parts += 1
+                    changes = self._changes_from(vector, at + 1)
+                    self.parts -= 1
+                    if changes != 0:
+                        return 1
         return 0
+
+    def _changes_variables(self, vector: int) -> int:
+        """Whether the step that the parts describe, which changes no location, changes a variable."""
+        for i in range(self.int_count):
+            self.ints_before[i] = self.ints[i]
+        for i in range(self.real_count):
+            self.reals_before[i] = self.reals[i]
+        self._execute_ways(vector)
+        return self._restored()
+
+    def _restored(self) -> int:
+        """Restore the variables; return whether one of them had changed, or an operation was undefined."""
+        changed = 0
+        for i in range(self.int_count):
+            if self.ints_before[i] != self.ints[i]:
+                changed = 1
+            self.ints[i] = self.ints_before[i]
+        for i in range(self.real_count):
+            if self.reals_before[i] != self.reals[i]:
+                changed = 1
+            self.reals[i] = self.reals_before[i]
+        for i in range(self.note_count):
+            self.noted[self.notes[i]] = 0
+        self.note_count = 0
+        if self.fault != 0:
+            self.fault = 0
+            changed = 1
+        return changed
 
     def _is_possible(self, way: int) -> int:
         """Whether a way has a positive probability."""
@@ -872,22 +959,7 @@ class Kernel:
             self._execute(self.settle)
             for i in range(self.instances):
                 self._settle_location(i)
-        changed = 0
-        for i in range(self.int_count):
-            if self.ints_before[i] != self.ints[i]:
-                changed = 1
-            self.ints[i] = self.ints_before[i]
-        for i in range(self.real_count):
-            if self.reals_before[i] != self.reals[i]:
-                changed = 1
-            self.reals[i] = self.reals_before[i]
-        for i in range(self.note_count):
-            self.noted[self.notes[i]] = 0
-        self.note_count = 0
-        if self.fault != 0:
-            self.fault = 0
-            changed = 1
-        return changed
+        return self._restored()
 
     # ------------------------------------------------------------ the goal
 
@@ -919,8 +991,8 @@ class Kernel:
                 self.still = 0
             else:
                 self.still += 1
-                if self.still & (self.still - 1) == 0 and self._can_leave() == 0:
-                    return self._finish(self._ends(1))
+                if self.still & (self.still - 1) == 0 and self.lasts == 0 and self._can_leave() == 0:
+                    return self._finish(self._ends(0 if self.enabled_count == 0 else 1))
         return UNKNOWN
 
     def _finish(self, status: int) -> int:
@@ -1060,6 +1132,24 @@ class Kernel:
     def _add_reward(self, code: int) -> None:
         register = self._execute(code)
         self.reward += self.reals[register]
+
+    def _accumulate(self, codes: Any) -> None:
+        """Add the rewards of a step, which `codes` compute, to the variables that contain accumulated rewards."""
+        for i in range(self.sums):
+            if codes[i] < 0:
+                continue
+            register = self._execute(codes[i])
+            if self.fault != 0:
+                return
+            reward = self.reals[register]
+            if reward < 0.0:
+                self._fail(9, codes[i])
+                return
+            register = self.sum_register[i]
+            total = min(self.reals[register] + reward, self.sum_limit[i])
+            if total != self.reals[register]:
+                self.reals[register] = total
+                self._note(self.sum_watch[i])
 
     # ------------------------------------------------------------ the bytecode
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
+from roaml.jani.expressions import Name
 from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property
@@ -34,6 +35,7 @@ from roaml.smc.run import (
     summary,
 )
 from roaml.smc.size import check_size
+from roaml.smc.sums import sum_names, with_sums
 
 RECURSION_LIMIT = 15_000
 """Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""
@@ -82,7 +84,8 @@ class ModelChecker:
             check_size(model, chosen)
             read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
             read += [property_.expression for property_ in (*chosen, *assumptions.values())]
-            self._compilation = Compilation(model, read)
+            sums = [Name(name) for property_ in chosen for name in sum_names(property_).values()]
+            self._compilation = Compilation(with_sums(model, chosen), [*read, *sums])
             self.compiled_properties: tuple[CompiledProperty, ...] = ()
             self.refused: dict[str, FaultError] = {}
             for property_ in chosen:

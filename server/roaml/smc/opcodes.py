@@ -82,6 +82,7 @@ class FaultCode(enum.IntEnum):
     PROBABILITY = 6
     EMPTY = 7
     TOO_LARGE = 8
+    NEGATIVE = 9
 
 
 MESSAGES = {
@@ -93,4 +94,5 @@ MESSAGES = {
     FaultCode.PROBABILITY: "the probabilities of this edge do not add up to 1, or one is negative",
     FaultCode.EMPTY: "the array has no elements",
     FaultCode.TOO_LARGE: "the result is too large for a real number",
+    FaultCode.NEGATIVE: "a reward is negative, so bounds on its sum are not supported",
 }

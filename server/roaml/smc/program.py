@@ -115,6 +115,10 @@ class Goal(Record, frozen=True, eq=False):
         is_bounded: what the evaluation depends on: 0 changes of variables, 1 also the number of steps, 2 also the
             enabled edges.
         step_reward, exit_reward: code that returns the register of the reward of a step.
+        sum_register, sum_watch: the register and the number of each variable that contains an accumulated reward.
+        sum_step, sum_exit: code that returns the register of the reward that a step adds to this variable; evaluated
+            after or before the assignments of the step.
+        sum_limit: the greatest value of this variable; greater sums are not distinguished.
     """
 
     seen_start: Ints
@@ -131,6 +135,11 @@ class Goal(Record, frozen=True, eq=False):
     is_bounded: int
     step_reward: int
     exit_reward: int
+    sum_register: Ints
+    sum_watch: Ints
+    sum_step: Ints
+    sum_exit: Ints
+    sum_limit: Reals
 
 
 def merged(goals: Sequence[Goal]) -> Goal:
@@ -166,6 +175,11 @@ def merged(goals: Sequence[Goal]) -> Goal:
         max(goal.is_bounded for goal in goals),
         -1,
         -1,
+        _joined("i", [goal.sum_register for goal in goals]),
+        _joined("i", [goal.sum_watch for goal in goals]),
+        _joined("i", [goal.sum_step for goal in goals]),
+        _joined("i", [goal.sum_exit for goal in goals]),
+        array("d", [limit for goal in goals for limit in goal.sum_limit]),
     )
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.jani.node import Node
 from roaml.jani.properties import BinaryPath, UnaryPath, walk
 from roaml.model.property_links import clock_step
 from roaml.rules.rule import PropertiesContext, Rule
@@ -15,7 +14,6 @@ from roaml.smc.forms import BOUNDS, faults_in
 TIME = (
     "`verify` cannot decide this: the model counts only steps; to limit the time, use the clock's `sec` in the formula"
 )
-REWARD = "`verify` cannot decide this: the model has no rewards"
 
 
 def check(context: PropertiesContext) -> Iterator[Finding]:
@@ -27,20 +25,14 @@ def check(context: PropertiesContext) -> Iterator[Finding]:
             continue  # an observer measures these times
         for formula in walk(property_.expression):
             if isinstance(formula, (UnaryPath, BinaryPath)):
-                if formula.time_bounds is not None:
-                    yield from _ignored(formula.time_bounds, TIME)
-                for bound in formula.reward_bounds or ():
-                    yield from _ignored(bound, REWARD)
-
-
-def _ignored(bound: Node, message: str) -> Iterator[Finding]:
-    if bound.origin is not None:
-        yield RULE.at(bound.origin.span, message)
+                bound = formula.time_bounds
+                if bound is not None and bound.origin is not None:
+                    yield RULE.at(bound.origin.span, TIME)
 
 
 RULE = Rule(
     BOUNDS,
     Severity.WARNING,
-    "A property has bounds that `verify` and `translate` do not support.",
+    "A property has bounds on time, which `verify` and `translate` do not support.",
     properties=check,
 )
