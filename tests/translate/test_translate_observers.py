@@ -17,8 +17,8 @@ from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
 from roaml.jani.writer import write
+from roaml.scxml.names import TIME_OVER_ACTION
 from roaml.smc.run import EstimationMethod, Options
-from roaml.to_jani.end_of_time import TIME_OVER_ACTION
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
     <datamodel><data id="count" type="int32" expr="0" /></datamodel>

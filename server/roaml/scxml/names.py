@@ -273,6 +273,8 @@ _BLOCKING = re.compile(
 # ----------------------------------------------------------------------- actions
 
 CLOCK_ACTION = "global_timer_tick_action"
+TIME_OVER_ACTION = "__as2fm__time_is_over"
+"""The action of the last step of the clock. It is a separate action, because no time passes in this step."""
 
 
 def on_send(event: ScxmlEvent) -> str:

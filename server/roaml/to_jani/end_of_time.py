@@ -6,10 +6,7 @@ from __future__ import annotations
 
 from roaml.jani.model import Action, Edge, Model, Sync
 from roaml.record import replace
-from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER
-
-TIME_OVER_ACTION = "__as2fm__time_is_over"
-"""The action of the last step of the clock. It is a separate action, because no time passes in this step."""
+from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_IS_OVER, TIME_OVER_ACTION
 
 
 def with_end_of_time(model: Model) -> Model:

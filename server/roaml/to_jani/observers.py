@@ -34,12 +34,13 @@ from roaml.record import Record, replace
 from roaml.scxml.names import (
     CLOCK,
     CLOCK_ACTION,
+    TIME_OVER_ACTION,
     assumptions_of,
     named,
     on_send,
 )
 from roaml.scxml.observed import ObservedPort, ObservedProperty, PortEvent
-from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
+from roaml.to_jani.end_of_time import with_end_of_time
 from roaml.to_jani.observed_values import observed_values
 from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer
 from roaml.to_jani.shapes import ArrayShape

@@ -22,11 +22,11 @@ from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.observers.properties import PatternProperty, Since
 from roaml.observers.properties import walk as parts_of
 from roaml.record import replace
-from roaml.scxml.names import CLOCK, CLOCK_ACTION
+from roaml.scxml.names import CLOCK, CLOCK_ACTION, TIME_OVER_ACTION
 from roaml.smc.names import variables_in
 from roaml.smc.nested import ObservedFormula, without_nesting, without_nesting_before
 from roaml.smc.normal_form import NestingError, lasting_condition
-from roaml.to_jani.end_of_time import TIME_OVER_ACTION, with_end_of_time
+from roaml.to_jani.end_of_time import with_end_of_time
 from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer
 
 _LETTER, _TICK, _END = "__as2fm__letter", "__as2fm__tick", "__as2fm__end"

@@ -82,13 +82,12 @@ def _observers(model: Model) -> Iterator[tuple[str, str]]:
 
 def _parts(model: Model) -> Iterator[tuple[str, str]]:
     names = [automaton.name for automaton in model.automata]
-    nodes = {node[1]: name_of(name) for name in names if (node := NODE_AUTOMATON.fullmatch(name))}
     for automaton in model.automata:
         name = automaton.name
         if name.endswith(OBSERVER_SUFFIX):
             continue
         if is_event(automaton):
-            yield name, _event(name, names, nodes)
+            yield name, event_subject(name, names)
         elif conditions := _CONDITIONS.fullmatch(name):
             yield name, f"the conditions of {conditions[2]} (bt_{conditions[1]})"
         elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
@@ -97,15 +96,22 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
             yield name, actor(name)
 
 
-def _event(event: str, names: Collection[str], nodes: Mapping[str, str]) -> str:
+def event_subject(event: str, automata: Collection[str]) -> str:
+    """A noun phrase for an event, such as ``a message on the topic `/battery` ``.
+
+    Args:
+        automata: the names of all automata.
+    """
     tree = read_tree_event(event)
     if tree is not None:
-        return f"{_TREE_EVENTS[tree.kind]} {nodes.get(str(tree.number), f'bt_{tree.number}')}"
+        number = str(tree.number)
+        nodes = (node for name in automata if (node := NODE_AUTOMATON.fullmatch(name)) and node[1] == number)
+        return f"{_TREE_EVENTS[tree.kind]} {next((name_of(node[0]) for node in nodes), f'bt_{number}')}"
     if not is_timer(event):
-        client = client_of(event, names)
-        return event_phrase(event, names) + (f" at {name_of(client)}" if client else "")
+        client = client_of(event, automata)
+        return event_phrase(event, automata) + (f" at {name_of(client)}" if client else "")
     timer = event.removeprefix(TIMER_PREFIX)
-    for user in names:
+    for user in automata:
         if timer.endswith(f"__{safe_name(user)}"):
             if user.startswith(TREE_ROOT_PREFIX):
                 return "the next tick of the tree"

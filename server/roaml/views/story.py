@@ -11,9 +11,11 @@ from typing import NamedTuple
 from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
 from roaml.jani.node import Origin
+from roaml.scxml.names import CLOCK, TREE_ROOT_PREFIX
 from roaml.smc.end import End
 from roaml.smc.record import SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
 from roaml.smc.story import Story
+from roaml.views.observed import reads_observer
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
@@ -128,7 +130,9 @@ def heading(story: Story) -> str:
         return text
     count = len(turns(story))
     text += f"; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
-    return text + (f" (it reads {', '.join(story.variables)})" if story.variables else "")
+    automata = {automaton.name for automaton in story.automata}
+    variables = [name for name in story.variables if not reads_observer(name, automata)]
+    return text + (f" (it reads {', '.join(variables)})" if variables else "")
 
 
 def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
@@ -235,6 +239,12 @@ def _more(folded: range) -> str:
 
 
 def _what(turn: Turn) -> str:
+    if turn.observed:
+        return turn.observation
+    if turn.automaton == CLOCK and turn.heard is None:
+        return "advances the time"
+    if turn.automaton.startswith(TREE_ROOT_PREFIX) and turn.result:
+        return f"ends with {turn.result}"
     source, destination = turn.source, turn.destination
     # At the end, the automaton may be between two states, in a location without a name for users.
     stays = source == destination or (turn.ends and turn.heard is not None)
@@ -252,6 +262,11 @@ def _what(turn: Turn) -> str:
 
 
 def _details(turn: Turn) -> Iterator[str]:
+    if turn.observed:
+        yield from turn.effects
+        return
+    if turn.automaton == CLOCK:
+        return
     for part in turn.parts:
         if len(part.edge.destinations) > 1:
             yield _chance(part.destination.probability)

@@ -27,8 +27,9 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
-from roaml.views.actors import name_of
+from roaml.views.actors import actor
 from roaml.views.events import EventReader
+from roaml.views.observed import effects, is_observer, observation, observed_property
 
 _ENDS = ("SUCCESS", "FAILURE")
 
@@ -45,6 +46,8 @@ class Turn(Record):
         messages: the events that the automaton has sent.
         last: the number of its last step.
         ends: whether the trace ends with this turn.
+        observed: the property of the automaton if it is an observer; otherwise "".
+        observation: what an observer observes.
     """
 
     instance: int
@@ -58,6 +61,8 @@ class Turn(Record):
     matters: bool = False
     last: int = 0
     ends: bool = False
+    observed: str = ""
+    observation: str = ""
 
     @property
     def automaton(self) -> str:
@@ -77,8 +82,13 @@ class Turn(Record):
 
     @property
     def who(self) -> str:
-        """The name of the automaton for users. A node of a tree has its name and its number."""
-        return name_of(self.automaton)
+        """The name of the automaton for users. An observer has the name of its property."""
+        return self.observed or actor(self.automaton)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """What the turn of an observer means for its property."""
+        return tuple(effects(self.changes))
 
     @property
     def is_ticked(self) -> bool:
@@ -103,6 +113,13 @@ class Turn(Record):
         """The status that the node returns to the tree; "" if it returns none."""
         given = [message.values.get("status") for message in self.messages if self._answers(message)]
         return next((name for name, number in STATUSES.items() if number in given), "")
+
+    @property
+    def result(self) -> str:
+        """The status that the automaton receives from a node of the tree; "" if it receives none."""
+        if self.heard is None or _kind(self.heard.event) is not TreeEventKind.RESPONSE:
+            return ""
+        return next((name for name, number in STATUSES.items() if number == self.heard.values.get("status")), "")
 
     @property
     def is_calm(self) -> bool:
@@ -143,16 +160,20 @@ def turns(story: Story) -> list[Turn]:
     for index in range(len(story.steps)):
         reader.read(index)
     own = {f"{variable.rpartition('__')[0]}{OBSERVER_SUFFIX}" for variable in story.variables}
-    shown = (turn for turn in reader.turns if turn.ends or _is_shown(turn, reader.inner))
-    return [turn for turn in shown if not _observes_another(turn, own)]
+    return [turn for turn in reader.turns if _is_shown(turn, reader.inner, own)]
 
 
-def _observes_another(turn: Turn, own: Collection[str]) -> bool:
-    """Whether the automaton is the observer of another property than the explained one."""
-    return turn.automaton.endswith(OBSERVER_SUFFIX) and turn.automaton not in own
+def _is_shown(turn: Turn, inner: Collection[int], observers: Collection[str]) -> bool:
+    """Whether a turn is included.
 
-
-def _is_shown(turn: Turn, inner: Collection[int]) -> bool:
+    Args:
+        inner: see `_Reader`.
+        observers: the observers on which the property of the story depends.
+    """
+    if turn.observed:
+        return turn.automaton in observers and bool(turn.effects)
+    if turn.ends:
+        return True
     if is_generated(turn.automaton):
         return False
     if turn.instance in inner:
@@ -174,6 +195,9 @@ class _Reader:
     def __init__(self, story: Story) -> None:
         self._story = story
         self._relevant = frozenset(story.relevant)
+        self._automata = frozenset(automaton.name for automaton in story.automata)
+        observers = filter(is_observer, self._automata)
+        self._observer_prefixes = tuple(f"{name.removesuffix(OBSERVER_SUFFIX)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._messages: dict[str, Message] = {}
@@ -185,17 +209,21 @@ class _Reader:
         self._events.read(step)
         actors = self._events.actors(step)
         heard = self._heard(step)
+        last = next((part for part in reversed(actors) if not is_observer(part.automaton)), None)
         for part in actors:
             turn = self._current.get(part.instance)
             if turn is None or heard is not None or not self._events.hearing[part.instance]:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
+                if is_observer(part.automaton):
+                    turn.observed = observed_property(part.automaton, self._story.property)
+                    turn.observation = observation(step.action, self._automata)
                 self._current[part.instance] = turn
                 self.turns.append(turn)
             turn.parts.append(part)
             turn.last = step.number
             if part.instance not in self.inner:
-                turn.changes += self._changes(step, part, is_last=part is actors[-1])
+                turn.changes += self._changes(step, part, is_last=part is last)
             turn.matters |= index in self._relevant
             turn.ends |= index == len(self._story.steps) - 1
         event = sent_by(step.action or "")
@@ -213,12 +241,18 @@ class _Reader:
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
-        A change of a variable of the model is included once."""
+        A change of a variable of the model is included once: at the observer to which the variable belongs, or at the
+        last automaton that takes part and is not an observer."""
+        own = f"{part.automaton.removesuffix(OBSERVER_SUFFIX)}__" if is_observer(part.automaton) else ""
         for change in step.changes:
             instance, name = change.variable
-            is_lasting = instance < 0 and is_last and not self._events.carries_event(name)
+            is_lasting = instance < 0 and (name.startswith(own) if own else is_last and not self._is_others(name))
             if (instance == part.instance or is_lasting) and not is_length(name):
                 yield change
+
+    def _is_others(self, name: str) -> bool:
+        """Whether a variable of the model belongs to an event or an observer."""
+        return self._events.carries_event(name) or name.startswith(self._observer_prefixes)
 
 
 def is_inner(automaton: Automaton) -> bool:

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The steps of an observer (docs/spec/jani.md#observers) in words: what it observes, and what this means for its
+property."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+
+from roaml.scxml.names import (
+    CLOCK_ACTION,
+    OBSERVER_SUFFIX,
+    OPEN,
+    PENDING,
+    SATISFIED,
+    TIME_OVER_ACTION,
+    VIOLATED,
+    observer_prefix,
+    sent_by,
+)
+from roaml.smc.record import VariableChange
+from roaml.views.actors import event_subject
+
+_UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
+_BECOMES_TRUE = {
+    VIOLATED: "the property is violated",
+    SATISFIED: "the property is satisfied",
+    OPEN: "the time ends before the deadline of the property",
+    PENDING: "the property requires an event from now on",
+}
+
+
+def is_observer(automaton: str) -> bool:
+    return automaton.endswith(OBSERVER_SUFFIX)
+
+
+def observed_property(observer: str, property_: str) -> str:
+    """The name of the property of an observer.
+
+    Args:
+        property_: the property that a trace is explained for. Its observers have its name without some characters; the
+            other observers belong to its assumptions and have their names.
+    """
+    prefix = observer.removesuffix(OBSERVER_SUFFIX)
+    return property_ if prefix.rstrip("_") == _UNSAFE.sub("_", property_).rstrip("_") else prefix
+
+
+def observation(action: str | None, automata: Collection[str]) -> str:
+    """What an observer observes in a step with an action of the model.
+
+    Args:
+        automata: the names of all automata.
+    """
+    if action == CLOCK_ACTION:
+        return "observes a step of the clock"
+    if action == TIME_OVER_ACTION:
+        return "observes the end of time"
+    event = sent_by(action or "")
+    return f"observes {event_subject(event, automata)}" if event else "observes a step"
+
+
+def effects(changes: Sequence[VariableChange]) -> Iterator[str]:
+    """What the changes of the variables of an observer mean for its property."""
+    values = {_ending(change): change.after for change in changes}
+    yield from (text for ending, text in _BECOMES_TRUE.items() if values.get(ending) is True)
+    if values.get(PENDING) is False and not values.get(VIOLATED) and not values.get(OPEN):
+        yield "the required event has occurred"
+
+
+def _ending(change: VariableChange) -> str:
+    return change.variable.name.rpartition("__")[2]
+
+
+def reads_observer(variable: str, automata: Collection[str]) -> bool:
+    """Whether a variable of the model belongs to an observer."""
+    prefix = observer_prefix(variable, VIOLATED, SATISFIED, PENDING, OPEN)
+    return bool(prefix) and f"{prefix}{OBSERVER_SUFFIX}" in automata
