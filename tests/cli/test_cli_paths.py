@@ -299,7 +299,10 @@ def test_ros_path(check: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert str(tmp_path / "inside") in done.rows[0]["message"], "it says where it has looked"
     assert check("inside", "--ros-path", "there").rows == []
     assert check("inside", "--ros-path", "nowhere", "--ros-path", "there").rows == []
-    assert "nowhere (no such folder) from --ros-path" in check("inside", "--ros-path", "nowhere").rows[0]["message"]
+    assert (
+        "nowhere` (the folder does not exist) from `--ros-path`"
+        in check("inside", "--ros-path", "nowhere").rows[0]["message"]
+    )
     assert check(".").rows == [], "the workspace itself is looked into"
     share = tmp_path / "install" / "share"
     share.mkdir(parents=True)

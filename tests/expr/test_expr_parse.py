@@ -387,12 +387,12 @@ a[]
 """,
     """
 'abc
-^^^^ the string has no closing '
+^^^^ the string has no closing `'`
 => 'abc'
 """,
     """
 a == "b + 1
-     ^^^^^^ the string has no closing "
+     ^^^^^^ the string has no closing `"`
 => (== a 'b + 1')
 """,
     """

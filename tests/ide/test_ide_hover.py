@@ -56,7 +56,7 @@ robot  main.xml  src="ty|pes.xml"  Structs Pose
 robot  properties.jani  "|go.valid  go.valid : bool | has been sent | event go
 robot  properties.jani  go__to__|x  go__to__x : float64 | member of struct Pose
 robot  properties.jani  ros_fields__d|ata  int32 data | Field of std_msgs/Int32
-robot  properties.jani  "|∧"  go.valid ∧ | Both hold
+robot  properties.jani  "|∧"  go.valid ∧ | Both operands hold
 robot  properties.jani  "na|me"  Name of the property
 robot  properties.jani  "name": "|p"  go.valid ∧ (
 robot  properties.jani  "|op"  Operator

@@ -125,9 +125,9 @@ def test_a_state_is_added_to_a_machine_without_states() -> None:
     ("name", "reason"),
     [
         ("on", "a state `on` already exists"),
-        ("a b", "`a b` cannot name a state"),
-        ("", "`` cannot name a state"),
-        ('a"/>', '`a"/>` cannot name a state'),
+        ("a b", "`a b` is not a valid name of a state"),
+        ("", "`` is not a valid name of a state"),
+        ('a"/>', '`a"/>` is not a valid name of a state'),
     ],
 )
 def test_names_that_a_new_state_cannot_have(name: str, reason: str) -> None:
@@ -196,7 +196,7 @@ def test_a_random_target_is_deleted_with_its_state() -> None:
 def test_the_only_state_is_not_deleted() -> None:
     analysis, picture = machine('<ascxml name="M" version="1.0" initial="a">\n    <state id="a" />\n</ascxml>\n')
     assert respond(analysis, node(picture, "a"), "delete") == ActionRefusal(
-        "it is the only state, and a state machine needs one"
+        "this is the only state, and a state machine needs at least one"
     )
 
 

@@ -144,8 +144,8 @@ def test_renaming(robot: Robot, file: str, piece: str, new: str, expected: list[
     ("file", "piece", "new", "reason"),
     [
         ("properties.xml", 'state_var id="lev|el"', "measured", "a port variable `measured` already exists"),
-        ("properties.xml", 'state_var id="lev|el"', "a-b", "`a-b` cannot name a port variable"),
-        ("properties.xml", 'state_var id="lev|el"', "true", "`true` cannot name a port variable"),
+        ("properties.xml", 'state_var id="lev|el"', "a-b", "`a-b` is not a valid name of a port variable"),
+        ("properties.xml", 'state_var id="lev|el"', "true", "`true` is not a valid name of a port variable"),
         ("properties.xml", 'property id="cha|rges"', "polite", "a property `polite` already exists"),
         ("properties.xml", 'property id="cha|rges"', "fills", "a property `fills` already exists"),
         ("properties.xml", 'field="stamp.s|ec"', "x", "`sec` is defined by ROS, not by this model"),

@@ -44,18 +44,18 @@ a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript
 a.ascxml         id="|p" type            a__b      separates the parts of names
 a.ascxml         event="|go" target      topic_x   the translation uses this name for an event that it generates
-types.xml        id="|Pose"              int32     cannot name a struct
-types.xml        id="|Pose"              true      cannot name a struct
-types.xml        id="|x"                 false     cannot name a member
+types.xml        id="|Pose"              int32     is not a valid name of a struct
+types.xml        id="|Pose"              true      is not a valid name of a struct
+types.xml        id="|x"                 false     is not a valid name of a member
 tree.xml         <|Walk                  Sequence  is the name of a node of BehaviorTree.CPP
 tree.xml         <|Walk                  A         a state machine `A` already exists
 tree.xml         ID="|Sub"               Main      a behavior tree `Main` already exists
-tree.xml         {|own}"                 true      cannot name a blackboard variable
+tree.xml         {|own}"                 true      is not a valid name of a blackboard variable
 tree.xml         {|own}"                 g         a blackboard variable `g` already exists
 plugin.ascxml    key="|goal"             out       a port `out` already exists
-plugin.ascxml    key="|goal"             ID        cannot name a port
+plugin.ascxml    key="|goal"             ID        is not a valid name of a port
 a.ascxml         topic="/|a/b"           /c        a topic `c` already exists
-a.ascxml         topic="/|a/b"           c d       cannot name a topic
+a.ascxml         topic="/|a/b"           c d       is not a valid name of a topic
 """
 
 

@@ -215,7 +215,7 @@ p/action/Go g
     """,
     """
 a/b/c/D d
-^^^^^^^ a message type is written `package/Name`
+^^^^^^^ `a/b/c/D` is not the name of a message type; write `package/Name`
     """,
     """
 [3] x
@@ -269,7 +269,7 @@ int32 x[5]
     # names
     """
 int32
-^^^^^ `int32` has no name; a field is written `type name`
+^^^^^ the field of type `int32` has no name; a field is written `type name`
     """,
     """
 int32 myValue
@@ -293,7 +293,7 @@ int32 a_
     """,
     """
 int32 class
-      ^^^^^ `class` is a keyword of C++; the code that ROS 2 generates will not compile
+      ^^^^^ `class` is a keyword of C++, so ROS 2 generates invalid code; rename this field
     """,
     """
 int32 lambda
@@ -301,7 +301,7 @@ int32 lambda
     """,
     """
 uint8 structure_needs_at_least_one_member
-      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ this name is reserved for the member that ROS 2 adds to an empty message
+      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ `structure_needs_at_least_one_member` is reserved for the member
     """,
     """
 int32 Max=3
@@ -322,7 +322,7 @@ int32 = 3
     """
 int32 a
 string a
-       ^ `a` is defined twice; rename one of them
+       ^ `a` is defined twice; rename or remove one definition
     """,
     # constants
     """
@@ -344,15 +344,15 @@ int32 X=
     # values
     """
 uint8 x 256
-        ^^^ 256 does not fit into `uint8`, whose range is 0 to 255
+        ^^^ `256` does not fit into `uint8`, whose range is 0 to 255
     """,
     """
 int8 X=-129 # too small
-       ^^^^ -129 does not fit into `int8`, whose range is -128 to 127
+       ^^^^ `-129` does not fit into `int8`, whose range is -128 to 127
     """,
     """
 byte x -1
-       ^^ -1 does not fit into `byte`, whose range is 0 to 255
+       ^^ `-1` does not fit into `byte`, whose range is 0 to 255
     """,
     """
 int32 x 1.0
@@ -368,11 +368,11 @@ char c 'a'
     """,
     """
 float32 x 1e39
-          ^^^^ 1e39 is out of the range of `float32`
+          ^^^^ `1e39` is out of the range of `float32`
     """,
     """
 float64 x 1e999
-          ^^^^^ 1e999 is out of the range of `float64`
+          ^^^^^ `1e999` is out of the range of `float64`
     """,
     """
 float64 x 1.0f
@@ -388,11 +388,11 @@ bool x yes
     """,
     """
 string s "abc # def
-         ^^^^ the string has no closing "
+         ^^^^ the string has no closing `"`
     """,
     """
 string s "abc" def
-              ^^^^ the string ends before this text; inside a string, write \\" for "
+              ^^^^ the string ends before this text; inside a string, write `\\"` for `"`
     """,
     """
 string<=2 s abc
@@ -428,8 +428,8 @@ int32[<=2] x [1, 2, 3]
     """,
     """
 uint8[] x [1, 300, -1,]
-              ^^^ 300 does not fit into `uint8`
-                   ^^ -1 does not fit into `uint8`
+              ^^^ `300` does not fit into `uint8`
+                   ^^ `-1` does not fit into `uint8`
                       | a value of type `uint8` is missing
     """,
     """
@@ -440,7 +440,7 @@ string<=1[] x ["a", "bc"]
     """
 int32 a
 ---
-^^^ a message has no `---`; only services (.srv) and actions (.action) have sections
+^^^ only services (.srv) and actions (.action) have sections; remove this `---`
 int32 a
     """,
     """srv

@@ -153,7 +153,7 @@ NOT_FOUND = [
         Reason.UNKNOWN_PACKAGE,
         "there is no package `geometry`; did you mean `geometry_msgs/Twist`?",
     ),
-    ("msg", "his_own/Thing", Reason.UNKNOWN_PACKAGE, "there is no package `his_own`; searched the workspace /"),
+    ("msg", "his_own/Thing", Reason.UNKNOWN_PACKAGE, "there is no package `his_own`; searched the workspace `/"),
     (
         "msg",
         "std_msgs/Int33",
@@ -174,27 +174,27 @@ NOT_FOUND = [
         "msg",
         "Int32",
         Reason.MALFORMED_NAME,
-        "`Int32` is not the name of a message type, `package/Name`; did you mean `example_int",
+        "`Int32` is not the name of a message type of the form `package/Name`; did you mean `example_int",
     ),
     (
         "msg",
         "std_msgs.msg.Int32",
         Reason.MALFORMED_NAME,
-        "`std_msgs.msg.Int32` is not the name of a message type, `package/Name`; did you mean `std_msgs/Int32`",
+        "`std_msgs.msg.Int32` is not the name of a message type of the form `package/Name`; did you mean `std_msgs/Int",
     ),
     (
         "msg",
         "std_msgs::msg::Bool",
         Reason.MALFORMED_NAME,
-        "`std_msgs::msg::Bool` is not the name of a message type, `package/Name`; did you mean `std_msgs/Bool`?",
+        "`std_msgs::msg::Bool` is not the name of a message type of the form `package/Name`; did you mean `std_msgs/Bo",
     ),
     (
         "srv",
         "std_srvs/empty",
         Reason.MALFORMED_NAME,
-        "`std_srvs/empty` is not the name of a service type, `package/Name`; did you mean `std_srvs/Empty`?",
+        "`std_srvs/empty` is not the name of a service type of the form `package/Name`; did you mean `std_srvs/Empty`?",
     ),
-    ("msg", "", Reason.MALFORMED_NAME, "`` is not the name of a message type, `package/Name`"),
+    ("msg", "", Reason.MALFORMED_NAME, "`` is not the name of a message type of the form `package/Name`"),
     ("msg", "../../etc/passwd", Reason.MALFORMED_NAME, "`../../etc/passwd` is not the name of a message type"),
 ]
 
@@ -224,4 +224,4 @@ def test_a_file_that_went(tmp_path: Path, registry: Registry) -> None:
     answer = registry.message("my_msgs", "Place")
     assert isinstance(answer, NotFound)
     assert (answer.reason, answer.path) == (Reason.UNREADABLE, str(path))
-    assert answer.message == f"the definition of `my_msgs/Place` cannot be read: {path}"
+    assert answer.message == f"the file `{path}`, which defines `my_msgs/Place`, cannot be read"

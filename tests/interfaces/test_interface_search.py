@@ -109,7 +109,7 @@ def test_number_of_folders(tmp_path: Path, write: Write, monkeypatch: pytest.Mon
     search = SearchPath([str(tmp_path)])
     assert search.locate("a_msgs", "msg", "A")
     assert search.locate("b_msgs", "msg", "A") is None
-    assert search.looked_in()[0] == f"the workspace {tmp_path} (its first 2 folders)"
+    assert search.looked_in()[0] == f"the workspace `{tmp_path}` (its first 2 folders)"
 
 
 def test_folders_of_the_running_system_are_not_looked_into(
@@ -189,9 +189,9 @@ def test_refresh(tmp_path: Path, write: Write) -> None:
 def test_places_in_words(tmp_path: Path) -> None:
     search = SearchPath([str(tmp_path)], [str(tmp_path / "gone"), ""], [str(tmp_path), str(tmp_path)])
     assert search.looked_in() == (
-        f"the workspace {tmp_path}",
-        f"{tmp_path / 'gone'} (no such folder) from --ros-path",
-        f"{tmp_path} from AMENT_PREFIX_PATH",
+        f"the workspace `{tmp_path}`",
+        f"`{tmp_path / 'gone'}` (the folder does not exist) from `--ros-path`",
+        f"`{tmp_path}` from `AMENT_PREFIX_PATH`",
         "the standard packages included in this tool",
     )
 

@@ -82,7 +82,7 @@ def last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
 def remove(
     document: Document, element: Element, title: str = "", *, preferred: bool = False, safe: bool = False
 ) -> Fix:
-    """A fix that removes an element."""
+    """A fix that removes an element. Its default title names the element. A safe fix is also preferred."""
     plan = (removal(document.text, element.span),)
     return Fix(title or f"Remove this `<{element.name}>`", plan, preferred or safe, safe)
 
@@ -153,8 +153,8 @@ def removals(document: Document, elements: Iterable[Element]) -> Iterator[Edit]:
 
 
 def _with_comments(parent: Element, child: Element) -> int:
-    """The beginning of the comments directly above a child element, on lines of their own; of the child if there are
-    none."""
+    """The offset at which the comments directly above a child element begin, each on a separate line; the offset of the
+    child if there are none."""
     start = child.span.start
     index = parent.nodes.index(child)
     while index >= 2:
@@ -178,7 +178,8 @@ def _contains(span: Span, other: Span) -> bool:
 
 
 def set_attribute(element: Element, name: str, value: str) -> TextEdit:
-    """An edit that gives an attribute a value without special characters; a new attribute is the first one."""
+    """An edit that sets an attribute. `value` must not contain special characters of XML. A new attribute is inserted
+    before the others."""
     attribute = element.get(name)
     if attribute is not None and attribute.has_value:
         return TextEdit(attribute.value_span, value)
@@ -203,8 +204,8 @@ def rename_tag(element: Element, name: str, *, preferred: bool = True) -> Fix:
 
 
 def halts(document: Document, root: Element, states: Iterable[Element]) -> tuple[Edit, ...]:
-    """Edits that add a `<bt_halt>` with the initial state as its target to each of `states` that handles ticks but not
-    halts."""
+    """Edits that add a `<bt_halt>`, whose target is the initial state, to each `<state>` of `states` that handles ticks
+    but not halts; empty if `root` has no attribute `initial`."""
     initial = root.get("initial")
     edits: list[Edit] = []
     for state in states:

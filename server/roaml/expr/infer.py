@@ -71,7 +71,7 @@ class UnknownMember(Record, frozen=True):
 
 
 class BadIndex(Record, frozen=True):
-    """Either `indexed` is not an array, or the index (of type `index`) is not an integer."""
+    """Either `indexed` is neither an array nor a string, or the index (of type `index`) is not an integer."""
 
     span: Span
     indexed: Type
@@ -102,7 +102,7 @@ class BadComparison(Record, frozen=True):
 
 class UnknownFunction(Record, frozen=True):
     """A name that is called or read, but is not a function or constant of the language. `name` is as written, including
-    `Math.`."""
+    `Math.`; "" if the called expression is not a name."""
 
     span: Span
     name: str
@@ -192,8 +192,8 @@ def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, t
 
 
 def constant(expr: Expr) -> int | float | None:
-    """The value of a numeric expression of literals; `None` for other expressions. Division is real division, as in
-    JANI."""
+    """The value of a numeric expression of literals; `None` for other expressions, and if the value is not finite.
+    Division is real division, as in JANI."""
     match expr:
         case Number():
             return expr.value
@@ -412,7 +412,8 @@ class _Inference:
         return Array(element, len(expr.elements))
 
     def common(self, first: Type, other: Expr) -> Type:
-        """The common type of values of type `first` and `other`."""
+        """The common type of a value of type `first` and the expression `other`. If there is none, the problem is
+        recorded."""
         second = self.type_of(other)
         common = join(first, second)
         if common is None:

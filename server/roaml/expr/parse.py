@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text -> expression tree, by operator precedence (Pratt 1973), for any text.
 
-- Never fails: every error is a finding with a position, and the tree contains an `ErrorExpr` there.
+- Never fails: every error is a finding with a span, and the tree contains an `ErrorExpr` there.
 - Accepts the grammar of docs/spec/expressions.md#grammar and, beyond the reference translator, `===`, `!==`, unary `+`
   and `?:` (docs/spec/differences.md#accepted-expressions).
 - Reports valid ECMAScript outside the subset as "unsupported-expression", not as a syntax error.
@@ -120,7 +120,7 @@ _WORDS = PREFIXES | STATEMENTS | _LITERALS.keys() | {"this"}
 _CLOSERS = frozenset((")", "]", "}"))
 _OPENERS = frozenset(("(", "[", "{"))
 _PRIMARY = (Call, Index, Member, Name, Number)
-"""Expressions that need no parentheses in any context."""
+"""Expressions that need no parentheses as arguments."""
 _KINDS = {kind.value: kind for kind in ExpressionTokenKind}
 _OPERAND_KINDS = frozenset(ExpressionTokenKind) - {ExpressionTokenKind.PUNCTUATOR, ExpressionTokenKind.JUNK}
 
@@ -157,7 +157,7 @@ def _parse(source: Decoded) -> tuple[Expr, tuple[Finding, ...]]:
 
 @lru_cache(maxsize=5000)
 def _sound(text: str) -> Expr | None:
-    """The tree of an expression; `None` if it has errors. The spans in the tree are positions in `text`.
+    """The tree of an expression; `None` if it has errors. The spans in the tree are offsets in `text`.
 
     The result is cached: files repeat the same expressions, and after each keystroke nearly all of them are unchanged.
     """
@@ -184,7 +184,7 @@ def _power(base: Expr, exponent: Expr) -> Fix:
 
 
 class _TooDeepError(Exception):
-    """Unwinds the parser's recursion; never leaves this module."""
+    """Ends the recursion of the parser at `MAX_DEPTH`; `_Parser.whole` catches it."""
 
 
 class _Parser:
@@ -410,8 +410,8 @@ class _Parser:
         quote = token.text[0]
         opening = self.source.span(token.start, token.start + 1)
         written = quote if opening.end - opening.start == 1 else _QUOTES[quote]
-        close = Fix(f"Insert {quote}", (TextEdit(Span(span.end, span.end), written),), preferred=False)
-        self.report(span, f"the string has no closing {quote}", SYNTAX, close)
+        close = Fix(f"Insert `{quote}`", (TextEdit(Span(span.end, span.end), written),), preferred=False)
+        self.report(span, f"the string has no closing `{quote}`", SYNTAX, close)
         return String(span, _string_value(token.text[1:]))
 
     def number(self, token: ExpressionToken, span: Span) -> Expr:

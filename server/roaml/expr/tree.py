@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The syntax tree of an expression.
 
-- Every node has a `span` in the source file, with escapes of the surrounding XML resolved.
+- Every node has a `span` in the source file, where characters may be written as entities of XML.
 - A missing or invalid part is an `ErrorExpr`, so the rest of the tree stays usable.
 - No tree is deeper than `roaml.expr.parse.MAX_DEPTH`: functions over trees may recurse.
 """
@@ -59,7 +59,7 @@ class Member(Record, frozen=True):
 
 
 class Index(Record, frozen=True):
-    """An access `object[index]` to an element of an array."""
+    """An access `object[index]` to an element of an array or a character of a string."""
 
     span: Span
     object: Expr
@@ -179,7 +179,7 @@ def walk(expr: Expr) -> list[Expr]:
 
 
 def placed(expr: Expr, source: Decoded) -> Expr:
-    """`expr` with spans in the file. The spans of `expr` are positions in the text of `source`."""
+    """`expr` with spans in the file. The spans of `expr` are offsets in the text of `source`."""
     span = source.span(*expr.span)
     match expr:
         case Name():

@@ -24,7 +24,7 @@ class ScalarKind(Vocabulary):
 
 
 class Scalar(Record, frozen=True):
-    """A base type; `name` is its spelling, "" for the type of a literal."""
+    """A base type; `name` is its spelling, "" for a number without a declared width, such as a literal."""
 
     kind: ScalarKind
     name: str = ""
@@ -166,7 +166,8 @@ def leaves(type_: Type, prefix: tuple[str, ...] = ()) -> Iterator[tuple[tuple[st
     """The leaf members of a type in declaration order, depth first, with the names of the members that lead to them
     (docs/spec/types.md#leaves).
 
-    Brackets of enclosing levels come first: a `Vec[4]` member `x: float64[]` gives `float64[4][]`.
+    The dimensions of enclosing arrays come first: in a member of type `Vec[4]`, the member `x: float64[]` of `Vec`
+    gives `float64[4][]`.
     """
     inner, bounds = unwrap(type_)
     if isinstance(inner, Struct):
@@ -216,7 +217,7 @@ def fits(value: Type, target: Type) -> bool:
 
 def join(left: Type, right: Type) -> Type | None:
     """The common type of values of two types; `None` if there is none. The common type of two arrays has the greater
-    bound."""
+    bound, or none if one of the two has none."""
     if isinstance(left, Array) and isinstance(right, Array):
         element = join(left.element, right.element)
         bounded = left.bound is not None and right.bound is not None
@@ -230,7 +231,8 @@ def join(left: Type, right: Type) -> Type | None:
 
 
 def same_kind(left: Type, right: Type) -> bool:
-    """Whether the translation stores values of both types in the same JANI type. Bounds are not compared."""
+    """Whether the translation stores values of both types in the same JANI type. Bounds are not compared; an unknown
+    type is equal to every type, and a struct to none."""
     match left, right:
         case (Unknown(), _) | (_, Unknown()) | (EmptyArray(), EmptyArray() | Array()) | (Array(), EmptyArray()):
             return True

@@ -19,4 +19,4 @@ OPERATORS = frozenset(("in", "instanceof"))
 PREFIXES = frozenset(("await", "delete", "typeof", "void", "yield"))
 """The reserved words that are written before an operand."""
 STATEMENTS = (RESERVED | CONTEXTUAL) - LITERALS - OPERATORS - PREFIXES - {"this"}
-"""The reserved words that begin or belong to statements and functions."""
+"""The other reserved words, such as those of statements, functions and classes."""

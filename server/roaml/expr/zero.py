@@ -13,8 +13,8 @@ _NOWHERE = Span(0, 0)
 
 
 def zero(type_: Type) -> Expr:
-    """The neutral value of a type: 0, 0.0, false, '', [], or a struct of these; 0 if the type is unknown. The positions
-    in the result have no meaning."""
+    """The neutral value of a type: 0, 0.0, false, '', [], or a struct of these; 0 if the type is unknown. The spans in
+    the result have no meaning."""
     if isinstance(type_, Struct):
         members = (ObjectMember(name, _NOWHERE, zero(member)) for name, member in type_.members)
         return ObjectLiteral(_NOWHERE, tuple(members))

@@ -28,7 +28,8 @@ from roaml.text import Location, Span
 
 
 class Lens(Record, frozen=True):
-    """The position of a lens. `span` is the declaration; `symbol` is the declared symbol, whose uses are counted."""
+    """The position of a lens. `span` is the declaration of `symbol`, or the first use of an event, which has no
+    declaration."""
 
     span: Span
     symbol: Symbol
@@ -95,8 +96,9 @@ def _is_plugin(analysis: Analysis, path: str) -> bool:
 
 
 def counted(analysis: Analysis, symbol: Symbol, path: str) -> Counted:
-    """The number of uses of a symbol of a file, and their places. The uses are counted for each system that contains
-    the file; if the numbers differ, the text names the systems."""
+    """The text of the lens of a symbol of a file. For a property in XML, this is its sentence. For other symbols, it is
+    the number of uses, with their places: the uses are counted for each system that contains the file; if the numbers
+    differ, the text names the systems."""
     if symbol.kind is SymbolKind.PROPERTY:
         file = analysis.property_file(path)
         return Counted(plain(sentences(file).get(symbol.name, "")) if file is not None else "", ())

@@ -293,7 +293,8 @@ class _Machine:
             yield InlayHint(_behind(handler.event), HintKind.EVENTS, (*parts, InlayHintLabelPart(")")))
 
     def handle(self, user: Handler | RosSend) -> Iterator[InlayHint]:
-        """The hint with the interface of a handle, unless the handle is the name of the interface."""
+        """The hint with the interface of a handle, unless the handle is the name of the interface, or with the rate of
+        a timer."""
         declaration = find_handle(self.machine, user)
         if user.handle is None or declaration is None or is_implicit(declaration):
             return

@@ -23,7 +23,8 @@ class JaniView(Record, frozen=True):
 
 
 def jani_view(text: str) -> JaniView:
-    """The view of a JANI file. Each member or item has its own line, but an object or list that fits is on one line.
+    """The view of a JANI file. Each member or item has its own line, but an object or list that is on one line in the
+    file and fits stays on one line.
 
     Args:
         text: the text of the file; text with syntax errors is not changed.

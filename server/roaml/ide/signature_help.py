@@ -27,7 +27,8 @@ class SignatureHelp(Record, frozen=True):
     Attributes:
         label: the text of the signature.
         parameters: the beginnings and ends of the parameters in `label`.
-        active: the index of the parameter that is being typed; `None` if the function has fewer parameters.
+        active: the index of the parameter that is being typed; `None` if the call has more arguments than there are
+            parameters.
         documentation: the description of the function, in Markdown.
     """
 

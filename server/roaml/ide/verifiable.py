@@ -78,7 +78,7 @@ def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
 
 def fingerprint(analysis: Analysis, system: str) -> Texts:
     """The digests of the files of a system. Results of a verification are valid as long as the digests are the same.
-    They do not include the expectations of properties, which do not change the results."""
+    The digests do not depend on the expectations of properties in XML, which do not change the results."""
     sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
     return tuple((path, _digest(analysis, path, source)) for path, source in sources if source is not None)
 

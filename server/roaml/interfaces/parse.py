@@ -3,10 +3,10 @@
 
 - Never fails and takes time linear in the text: every error becomes a finding with its span, and parsing continues.
 - Readable parts are kept: a field with an invalid name or type is still a field, so that uses of the field cause no
-  further errors. If two elements have the same name, only the second is left out.
-- Comments are attached as in `rosidl`. The comment at the beginning of a section belongs to the section. Comment lines
-  directly above an element, after it on its line, or indented below it belong to the element. An empty line ends a
-  comment.
+  further errors. If two fields or constants have the same name, only the second is left out.
+- Comments are attached as in `rosidl`. The comment at the beginning of a section belongs to the section. A comment
+  directly above a field or constant, after it on the same line, or indented below it belongs to this field or constant.
+  An empty line ends a comment.
 
 Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `rosidl_adapter`.
 """
@@ -137,7 +137,7 @@ class _Parser:
         names = SECTION_NAMES[self.kind]
         if len(self.sections) >= len(names):
             if self.kind == "msg":
-                message = "a message has no `---`; only services (.srv) and actions (.action) have sections"
+                message = "only services (.srv) and actions (.action) have sections; remove this `---`"
             else:
                 message = (
                     f"{_a(self.kind)} has {len(names)} sections, {_and(names)}; this `---` begins an additional one"
@@ -230,7 +230,9 @@ class _Parser:
         if first is not self.last:
             related = Related(first.item.name_span, "first defined here")
             self.report.add(
-                item.name_span, f"`{shorten(item.name)}` is defined twice; rename one of them", related=(related,)
+                item.name_span,
+                f"`{shorten(item.name)}` is defined twice; rename or remove one definition",
+                related=(related,),
             )
 
     # ----------------------------------------------------------------- names
@@ -240,17 +242,19 @@ class _Parser:
             self.report.add(head.name_span, "a name is missing; a constant is written `type NAME=value`")
         elif head.type_is_known:
             written = self.text[head.type_span.start : head.type_span.end]
-            self.report.add(head.type_span, f"`{shorten(written)}` has no name; a field is written `type name`")
+            message = f"the field of type `{shorten(written)}` has no name; a field is written `type name`"
+            self.report.add(head.type_span, message)
 
     def check_field_name(self, head: _Head) -> str:
         """Report errors in the name of a field; return the name to use for the field."""
         name, span = head.name, head.name_span
         if FIELD_NAME.fullmatch(name):
             if language := keyword_of(name):
-                message = f"`{name}` is a keyword of {language}; the code that ROS 2 generates will not compile"
+                message = f"`{name}` is a keyword of {language}, so ROS 2 generates invalid code; rename this field"
                 self.report.add(span, message, severity=Severity.WARNING)
             elif name == _PLACEHOLDER:
-                self.report.add(span, "this name is reserved for the member that ROS 2 adds to an empty message")
+                message = f"`{name}` is reserved for the member that ROS 2 adds to an empty message; rename this field"
+                self.report.add(span, message)
             return name
         if sized := _NAME_AND_SIZE.fullmatch(name):
             right = f"{self.text[head.type_span.start : head.type_span.end]}{sized[2]} {sized[1]}"

@@ -31,9 +31,9 @@ class Reason(enum.Enum):
 
     MALFORMED_NAME = "malformed name"
     UNKNOWN_PACKAGE = "unknown package"
-    UNKNOWN_TYPE = "the package has no such type"
+    UNKNOWN_TYPE = "the package does not contain the type"
     UNREADABLE = "the file cannot be read"
-    TOO_LARGE = "it has too many fields"
+    TOO_LARGE = "the type is too large"
 
 
 class NotFound(Record, frozen=True):
@@ -62,7 +62,7 @@ class NotFound(Record, frozen=True):
         package, _, name = self.type_name.partition("/")
         match self.reason:
             case Reason.MALFORMED_NAME:
-                return f"`{self.type_name}` is not the name of a {kind} type, `package/Name`{hint}"
+                return f"`{self.type_name}` is not the name of a {kind} type of the form `package/Name`{hint}"
             case Reason.UNKNOWN_PACKAGE:
                 return f"there is no package `{package}`{hint or '; searched ' + ', '.join(self.looked_in)}"
             case Reason.UNKNOWN_TYPE if self.other_kind:
@@ -70,7 +70,7 @@ class NotFound(Record, frozen=True):
             case Reason.UNKNOWN_TYPE:
                 return f"the package `{package}` has no {kind} `{name}`{hint}"
             case Reason.UNREADABLE:
-                return f"the definition of `{self.type_name}` cannot be read: {self.path}"
+                return f"the file `{self.path}`, which defines `{self.type_name}`, cannot be read"
             case Reason.TOO_LARGE:
                 return f"`{self.type_name}` is too large: with all nested messages, it has {self.size}"
 
@@ -85,7 +85,7 @@ class Parsed(Record, frozen=True):
 class Registry:
     """All interface definitions that can be found.
 
-    `read` returns the current text of the file at a path, or `None`.
+    `read` returns the current content of the file at a path; `None` if the file cannot be read.
     """
 
     def __init__(self, search_path: SearchPath, read: Callable[[str], SourceFile | None]) -> None:
@@ -109,7 +109,7 @@ class Registry:
         return self.find("action", package, name)
 
     def resolve(self, kind: Kind, type_name: str) -> Definition | NotFound:
-        """The definition of a type such as `std_msgs/Int32`."""
+        """The definition of the type with a name such as `std_msgs/Int32`, or why there is none."""
         names = split_type_name(type_name, kind)
         if names is None:
             return self._malformed(kind, type_name)

@@ -71,8 +71,9 @@ class SearchPath:
     def repetitions(self, package: str, kind: Kind, name: str) -> tuple[str, ...]:
         """All files that define `package/name`; the first one is used.
 
-        The standard packages are left out, because every other definition replaces them intentionally. For the same
-        reason, only the first ament prefix that has the type is included.
+        The standard packages are left out, because every other definition replaces them intentionally. An ament prefix
+        also replaces definitions of later prefixes intentionally, so only the first prefix that has the type is
+        included.
         """
         folders: list[str] = []
         in_prefix = False
@@ -104,16 +105,16 @@ class SearchPath:
         """Phrases for the places that are searched, for the message that a type was not found."""
         places = (
             *(f"the workspace {self._described(path)}" for path in self._workspace),
-            *(f"{self._described(path)} from --ros-path" for path in self._ros_paths),
-            *(f"{self._described(path)} from AMENT_PREFIX_PATH" for path in self._ament_prefixes),
+            *(f"{self._described(path)} from `--ros-path`" for path in self._ros_paths),
+            *(f"{self._described(path)} from `AMENT_PREFIX_PATH`" for path in self._ament_prefixes),
         )
         return (*places, "the standard packages included in this tool")
 
     def _described(self, path: str) -> str:
         if not os.path.isdir(path):
-            return f"{path} (no such folder)"
+            return f"`{path}` (the folder does not exist)"
         is_cut = any(isinstance(place, _Tree) and place.folder == path and place.is_cut for place in self._places())
-        return f"{path} (its first {MAX_FOLDERS:,} folders)" if is_cut else path
+        return f"`{path}` (its first {MAX_FOLDERS:,} folders)" if is_cut else f"`{path}`"
 
     def refresh(self) -> None:
         """Discard all listings: files or folders were created or deleted."""
@@ -170,7 +171,8 @@ class _Share:
 
 
 class _Tree:
-    """A folder that is a package or contains packages at any depth; all of it is listed at the first request."""
+    """A folder that is a package or contains packages at a depth up to `MAX_DEPTH`; all of it is listed at the first
+    request."""
 
     def __init__(self, folder: str) -> None:
         self.folder = folder
@@ -199,8 +201,8 @@ class _Tree:
 
 
 class _Listing(NamedTuple):
-    """The packages of a place, the files that are hidden by other files of the same types, and whether there are more
-    folders than were searched."""
+    """The packages of a place; the files that are not used because another file of the place defines the same type; and
+    whether there are more folders than were searched."""
 
     files: Mapping[str, _Files]
     hidden: Mapping[tuple[str, Kind, str], tuple[str, ...]]

@@ -106,7 +106,7 @@ def _name_with_package(written: str, span: Span, report: FileFindings) -> str:
             f"{'a service' if middle == ['srv'] else 'an action'}",
         )
     elif middle not in ([], ["msg"]):
-        report.add(span, "a message type is written `package/Name`")
+        report.add(span, f"`{shorten(written)}` is not the name of a message type; write `package/Name`")
     elif not PACKAGE_NAME.fullmatch(package):
         report.add(span, f"`{shorten(package)}` is not a valid package name; package names are lower_snake_case")
     elif not TYPE_NAME.fullmatch(name):

@@ -70,8 +70,8 @@ class FieldType(Record, frozen=True):
     """The type of a field or constant.
 
     `name` is a primitive (`PRIMITIVES`) or the name of a message, `package/Name`; in a file with errors it may be
-    neither, and is then treated as an unknown type. `string_bound` is the maximum number of characters of
-    a `string<=N`. `size` is set for the array kinds FIXED and BOUNDED.
+    neither, and is then treated as an unknown type. `string_bound` is the maximum number of characters of a `string<=N`
+    or `wstring<=N`. `size` is set for the array kinds FIXED and BOUNDED.
     """
 
     name: str
@@ -159,7 +159,7 @@ class Section(PartlyCompared, frozen=True):
 class Definition(Record, frozen=True):
     """A message, service or action type. It has all the sections of `SECTION_NAMES[kind]`, in that order.
 
-    `path` is the file from which it was read; it may be empty.
+    `path` is the file that contains the definition; "" if the definition was not read from a file.
     """
 
     package: str
@@ -175,7 +175,7 @@ class Definition(Record, frozen=True):
 
     @property
     def comment(self) -> str:
-        """The comment in the file about the type as a whole."""
+        """The comment at the beginning of the file, which describes the whole type."""
         return self.sections[0].comment
 
     def section(self, name: str) -> Section:

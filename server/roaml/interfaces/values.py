@@ -38,7 +38,7 @@ def skip_blanks(text: str, start: int, end: int) -> int:
 def value_end(text: str, start: int, line_end: int) -> int:
     """The end of the value that begins at `start`: before the comment, if any, and the white space before it.
 
-    A `#` inside quotes does not begin a comment.
+    A `#` inside the quotes of a string or of an element of a list does not begin a comment.
     """
     comment_from = start
     if opening := _STRING.match(text, start, line_end) or _LIST.match(text, start, line_end):
@@ -145,7 +145,7 @@ def _integer(written: str, span: Span, type_name: str, report: FileFindings) -> 
     base = 10 if digits.isdecimal() else 0
     value = int(written, base) if len(written) <= _MAX_DIGITS else None
     if value is None or not low <= value <= high:
-        report.add(span, f"{shorten(written)} does not fit into `{type_name}`, whose range is {low} to {high}")
+        report.add(span, f"`{shorten(written)}` does not fit into `{type_name}`, whose range is {low} to {high}")
         return None
     return value
 
@@ -156,7 +156,10 @@ def _float(written: str, span: Span, type_name: str, report: FileFindings) -> fl
         return None
     value = float(written)
     if abs(value) > _GREATEST_FLOAT[type_name]:
-        report.add(span, f"{shorten(written)} is out of the range of `{type_name}`")
+        greatest = f"{_GREATEST_FLOAT[type_name]:.2g}"
+        report.add(
+            span, f"`{shorten(written)}` is out of the range of `{type_name}`, whose greatest value is {greatest}"
+        )
         return None
     return value
 
@@ -166,12 +169,12 @@ def _string(written: str, span: Span, type_: FieldType, report: FileFindings) ->
     if written.startswith(('"', "'")):
         quoted = _STRING.match(written)
         if not quoted:
-            report.add(span, f"the string has no closing {written[0]}")
+            report.add(span, f"the string has no closing `{written[0]}`")
             return None
         if quoted.end() < len(written):
             rest = Span(span.start + quoted.end(), span.end)
             report.add(
-                rest, f"the string ends before this text; inside a string, write \\{written[0]} for {written[0]}"
+                rest, f"the string ends before this text; inside a string, write `\\{written[0]}` for `{written[0]}`"
             )
             return None
         value = _ESCAPE.sub(_unescape, written[1:-1])

@@ -25,7 +25,7 @@ _R = "{urn:roaml:roles}"
 
 
 class ValueChoice(Record, frozen=True):
-    """One value of an enumeration. `use` is the value that replaces it if it is deprecated, otherwise ""."""
+    """One value of an enumeration. If the value is deprecated, `use` is the value that replaces it, otherwise ""."""
 
     value: str
     documentation: str
@@ -56,10 +56,10 @@ class PortType(Record, frozen=True):
     """A port of a tree node.
 
     Attributes:
-        type: a base type or "any".
+        type: a base type, such as "int32", or "any".
         required: whether the port must be set.
         default: the value of the port if it is not set.
-        constant: whether its value must be a constant.
+        constant: whether the value of the port must be a constant.
         alias_of: the port of which this is another name, or "".
     """
 
@@ -81,7 +81,7 @@ class AttributeType(Record, frozen=True):
         value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
         ignored: `None` if the attribute has an effect; otherwise, `False` if a rule reports that it has none, and
             `True` if no rule reports this.
-        use: the attribute that replaces it if it is deprecated, otherwise "".
+        use: the attribute that replaces this one if this one is deprecated, otherwise "".
         port: the port of a tree node that the attribute sets, if any.
     """
 
@@ -125,7 +125,7 @@ class ElementType(Record, frozen=True):
         sends, receives: the part of an interface or of the tree protocol that the element sends or receives, if any.
         code: the result code of an action that corresponds to the element, or 0.
         ignored: whether the element has no effect on the model.
-        use: the element that replaces it if it is deprecated, otherwise "".
+        use: the element that replaces this one if this one is deprecated, otherwise "".
         node: the kind of node if the element is a node of a tree.
         translated: false for tree nodes that are known but cannot be translated.
         program_only: whether a tree node can be translated only as a program (docs/spec/nodes.md#library).
@@ -165,7 +165,7 @@ class ElementType(Record, frozen=True):
 
 
 class Grammar(Record, frozen=True, dict=True):
-    """One language: the schema file and the names of its root elements."""
+    """One language: the name of its schema file, the names of its root elements, and its title."""
 
     schema: str
     roots: tuple[str, ...]
@@ -201,7 +201,8 @@ class Grammar(Record, frozen=True, dict=True):
         return None
 
     def element_at(self, names: list[str]) -> ElementType | None:
-        """The type of the element at the end of a path of names that begins at a root."""
+        """The type of the element at the end of a path of names that begins at a root; `None` if the grammar does not
+        allow an element on the path."""
         if not names or names[0] not in self.roots:
             return None
         element: ElementType | None = self.elements[names[0]]
@@ -221,7 +222,7 @@ class Grammar(Record, frozen=True, dict=True):
         return {element.name: element for element in reversed(tuple(self._everywhere))}
 
     def parents(self, name: str) -> tuple[str, ...]:
-        """The names of the elements in which `name` is allowed."""
+        """The names of the elements that declare a child `name`."""
         return tuple(dict.fromkeys(element.name for element in self._everywhere if name in element.children))
 
     @cached_property

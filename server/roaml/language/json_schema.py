@@ -20,6 +20,7 @@ from roaml.record import Record
 Schema: TypeAlias = Mapping[str, Any]
 
 _MAX_DEPTH = 40
+"""The maximum number of parts of a schema that `applying` returns, because references may form cycles."""
 
 
 class Key(Record, frozen=True):
@@ -88,7 +89,7 @@ class JsonGrammar(Record, frozen=True, dict=True):
         return {"allOf": [part["items"] for part in self.applying(schema, value) if "items" in part]}
 
     def choices(self, schema: Schema) -> tuple[str, ...]:
-        """The allowed values; `()` if any value is allowed."""
+        """The values that the schema lists by `enum` or `const`; `()` if it lists none."""
         for part in self.applying(schema, None):
             if "enum" in part:
                 return tuple(part["enum"])
@@ -108,7 +109,7 @@ class JsonGrammar(Record, frozen=True, dict=True):
         return self._annotation(schema, "title")
 
     def text(self, schema: Schema) -> str:
-        """The documentation of a place, in Markdown."""
+        """The documentation of a place, in Markdown; "" if there is none."""
         return self._annotation(schema, "description")
 
     def is_a(self, schema: Schema, definition: str) -> bool:

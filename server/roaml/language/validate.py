@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The places where a document violates its grammar.
 
-- libxml2 decides whether a document is valid; the tables of the grammar provide the error, its position and its
-  message.
-- `xmlschema` explains what libxml2 rejects and the tables do not explain (`SchemaViolation`), so that every violation
-  of the schema is reported. If the XML itself is not well-formed, only the tables are used.
+- The tables of the grammar find nearly all violations, with their positions.
+- If they find none, libxml2 decides whether the document is valid, and `xmlschema` explains why it is not
+  (`SchemaViolation`). If the XML itself is not well-formed, only the tables are used.
 - Elements and attributes of foreign namespaces are ignored.
 """
 
@@ -48,8 +47,8 @@ class MisplacedElement(Record, frozen=True):
 
 
 class TooManyElements(Record, frozen=True):
-    """An element that exceeds the allowed number `most` of elements with its name in `parent`; `first` is the first of
-    them."""
+    """An element that exceeds `most`, the number of elements with its name, or of elements with any name, that `parent`
+    allows; `first` is the first of these elements."""
 
     element: Element
     first: Element
@@ -96,7 +95,7 @@ class StrayText(Record, frozen=True):
 
 
 class SchemaViolation(Record, frozen=True):
-    """Any other violation of the schema."""
+    """Any other violation of the schema; `reason` is the message of `xmlschema`."""
 
     element: Element
     reason: str
@@ -116,7 +115,7 @@ Violation: TypeAlias = (
 
 
 def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
-    """All places where `document` violates `grammar`. A root of another grammar is not reported here."""
+    """The places where `document` violates `grammar`; empty if the root belongs to another grammar."""
     root = document.root
     if root is None or root.name not in grammar.roots:
         return ()
@@ -243,7 +242,8 @@ def _counts(element: Element, type_: ElementType, counts: dict[str, list[Element
 
 
 def unmet(simple: SimpleType, value: str) -> str:
-    """A noun phrase for the values that `simple` allows; "" if `value` is one of them."""
+    """A noun phrase for the values that `simple` allows, "something" if there is no specific phrase; "" if `value` is
+    one of these values."""
     text = value.strip(SPACE)
     if simple.choices:
         choices = [choice.value for choice in simple.choices if not choice.use]
@@ -293,8 +293,8 @@ def _one_of(choices: list[str]) -> str:
 
 
 def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]:
-    """The tree for libxml2, without namespaces, comments and white space, and the mapping back to the elements of the
-    document."""
+    """The tree for libxml2, and the mapping back to the elements of the document. The tree contains no namespaces,
+    elements in foreign namespaces, comments, or white space around texts."""
     namespaces = dict(document.namespaces)
     top = _new(None, root)
     back = {top: root}

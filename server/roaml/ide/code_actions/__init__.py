@@ -38,7 +38,8 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[
 
 
 def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """All fixes of a diagnostic: first those of its rule, then those that change other files."""
+    """All fixes of a diagnostic: first those of its rule, then those of `code_actions.quick_fixes`, which a rule cannot
+    offer."""
     for fix in diagnostic.fixes:
         yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
     titles = {fix.title for fix in diagnostic.fixes}
@@ -52,7 +53,8 @@ def _made(path: str, fix: Fix) -> WorkspaceEdit:
 
 
 def _fix_all_of(snapshot: Snapshot, path: str, diagnostics: Iterable[Diagnostic], code: str) -> Iterator[CodeAction]:
-    """An action that fixes all findings of a rule in the file, if more than one of them has a preferred fix."""
+    """An action that applies the preferred fixes of all findings of a rule in the file; none if fewer than two findings
+    have a preferred fix."""
     fixable = [diagnostic for diagnostic in diagnostics if diagnostic.code == code and preferred_fix(diagnostic)]
     if len(fixable) > 1:
 

@@ -59,7 +59,7 @@ def known(change: WorkspaceEdit) -> Callable[[], WorkspaceEdit]:
 
 
 def text_edits(before: str, after: str) -> tuple[TextEdit, ...]:
-    """One edit that changes `before` to `after` and keeps their common beginning and end."""
+    """One edit that changes `before` to `after` and keeps their common beginning and end; none if they are equal."""
     if before == after:
         return ()
     least = min(len(before), len(after))

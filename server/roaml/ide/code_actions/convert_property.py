@@ -56,7 +56,8 @@ _RELATIONS = {
 
 
 def actions(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
-    """The conversion of the property at the caret, if it has an equivalent in the other format."""
+    """The conversion of the property at the caret, if exactly one system lists its file, and if the property has an
+    equivalent in the other format."""
     owners = analysis.memberships.get(path, ())
     if len(owners) != 1:
         return  # other systems may have other ports and clocks
@@ -68,7 +69,8 @@ def actions(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
 
 
 def _file_of(analysis: Analysis, system: str, kind: FileKind) -> str | None:
-    """The first property file of the kind `kind` that no other system lists and to which a property can be added."""
+    """The first property file of the kind `kind` that no other system lists and to which a property can be added;
+    `None` if there is none."""
     for listed in analysis.listed(system):
         if not listed.usable or listed.required_kind is not kind or analysis.kind(listed.path) is not kind:
             continue
@@ -263,7 +265,7 @@ def _without(file: PropertyFile, property_: LinkedProperty) -> Iterator[Edit]:
 
 
 def _array(analysis: Analysis, path: str) -> JsonArray | None:
-    """The list of properties of a property file without errors in its JSON."""
+    """The list of properties of a property file; `None` if its JSON has errors or contains no list of properties."""
     document = analysis.json(path)
     if document is None or document[1] or not isinstance(document[0], JsonObject):
         return None

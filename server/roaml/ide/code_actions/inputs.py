@@ -12,8 +12,8 @@ from roaml.text import TextEdit
 
 
 def add_input(analysis: Analysis, system: str, section: SystemSection, type_: str, path: str) -> tuple[TextEdit, ...]:
-    """The edits that list a file at the end of a section of a system file; empty if the file is already listed. A
-    missing section is created."""
+    """The edits that list a file at the end of a section of a system file; empty if the section already lists the file.
+    A missing section is created."""
     file, document, source = analysis.system_file(system), analysis.document(system), analysis.source(system)
     if file is None or document is None or source is None:
         return ()

@@ -122,7 +122,7 @@ def _compared(property_: Property, text: str, document: JsonValue) -> MovableExp
 
 
 def _function_span(filter_: Formula, document: JsonValue) -> Span:
-    """The place of the function of a filter."""
+    """The span of the function of a filter, `fun`."""
     objects = (value for value in values(document) if isinstance(value, JsonObject))
     written = next(value for value in objects if filter_.origin is not None and value.span == filter_.origin.span)
     function = written.get("fun")

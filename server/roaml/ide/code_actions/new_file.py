@@ -24,12 +24,12 @@ def stem_of(path: str) -> str:
 
 
 def camel_case(stem: str) -> str:
-    """The machine name for `battery_above`: `BatteryAbove`."""
+    """The name of the machine in a file whose name without extension is `stem`: `BatteryAbove` for `battery_above`."""
     return "".join(part[:1].upper() + part[1:] for part in stem.split("_"))
 
 
 def file_name(machine: str) -> str:
-    """The file name for `BatteryAbove`: `battery_above.ascxml`."""
+    """The name of the file for a machine: `battery_above.ascxml` for `BatteryAbove`."""
     return _CAMEL.sub("_", machine).lower() + ".ascxml"
 
 
@@ -51,7 +51,7 @@ def relative(path: str, system: str, written: Iterable[str] = ()) -> str:
 
 
 def node(name: str) -> str:
-    """A machine without behavior."""
+    """The text of a machine with one state and without behavior."""
     return f"""{_DECLARATION}<ascxml name="{name}" version="1.0" initial="run">
     <state id="run" />
 </ascxml>
@@ -59,8 +59,8 @@ def node(name: str) -> str:
 
 
 def plugin(name: str, ports: Iterable[tuple[Direction, str, str]] = (), *, child: bool = False) -> str:
-    """A plugin that reads its input ports, sets its output ports and returns SUCCESS, or, if it has a child, the status
-    of the child.
+    """The text of a plugin that reads its input ports, sets its output ports and returns SUCCESS, or, if it has a
+    child, the status of the child.
 
     Args:
         name: the name of the plugin.
@@ -144,7 +144,7 @@ _WITH_CHILD = f"""\
 
 
 def tree() -> str:
-    """A tree with one node that succeeds."""
+    """The text of a file with a tree of one node, which succeeds."""
     return f"""{_DECLARATION}<root BTCPP_format="4" main_tree_to_execute="MainTree">
     <BehaviorTree ID="MainTree">
         <AlwaysSuccess />

@@ -28,12 +28,14 @@ from roaml.xml_syntax.escapes import escape
 DEFAULT = Mock(ALL, 0.9, Fraction(1000))
 """The mock that is created for every leaf, and that the user can change."""
 MAX_TIME_S = 600
+"""The parameter `max_time` of a created system, in s."""
 TICK_RATE = 10
+"""The parameter `bt_tick_rate` of a created system, in Hz."""
 
 
 def actions(snapshot: Snapshot, path: str, node: TreeNode | None, is_top: bool) -> Iterator[CodeAction]:
-    """Actions that create mocks for the leaf at the caret or for all leaves of the system, or a system for a tree
-    without one.
+    """Actions that create mocks for the leaf at the caret, or for all leaves of the system that have no plugin. For a
+    tree that belongs to no system, the action creates a system with mocks.
 
     Args:
         node: the node at the caret; `None` if there is none.
@@ -101,7 +103,7 @@ def _input(source: str) -> str:
 
 
 def _new_system(snapshot: Snapshot, path: str) -> WorkspaceEdit:
-    """Creates a system for a tree, with mocks of its leaves and a property file."""
+    """The change that creates a system for a tree, with mocks of its leaves and a property file."""
     analysis = snapshot.analysis
     folder, stem = folder_of(path), split_name(name_of(path))[0]
     main = free_path(analysis, folder, f"{stem}_system.xml")
@@ -147,8 +149,8 @@ def _system_text(tree: str, properties: str, plugins: Iterable[str]) -> str:
 
 
 def _properties_text(system: System, leaves: Set[str]) -> str:
-    """A property file that requires that the tree succeeds and that each leaf is reached. `leaves` are the types of the
-    leaves."""
+    """The text of a property file that requires that the tree succeeds and that each node whose type is in `leaves` is
+    ticked, except siblings with equal names."""
     ports: list[str] = []
     guarantees: list[str] = []
     for number, text in short_paths(system).items():

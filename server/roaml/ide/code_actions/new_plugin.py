@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a plugin for a node of a tree that has none. Its file is listed in all systems of the tree."""
+"""Creates a plugin for a node without a plugin. The new file is listed in all systems of the tree that contains the
+node."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ def skeletons(analysis: Analysis, path: str, node: TreeNode) -> Iterator[tuple[s
 
 
 def free_path(analysis: Analysis, system: str, name: str) -> str:
-    """A path for a new plugin in the folder of the other plugins of the system, or in that of the system file."""
+    """A path for a new plugin in the folder of the first plugin of the system; in the folder of the system file if the
+    system has no plugins."""
     plugins = [
         f.path
         for f in analysis.listed(system)

@@ -40,7 +40,7 @@ from roaml.suggest import close_names
 from roaml.text import SourceFile, Span, TextEdit
 
 _MAX_FILES = 3
-"""The maximum number of files that are offered instead of a missing file."""
+"""The maximum number of files that are offered for a diagnostic."""
 
 _Edits = dict[str, tuple[TextEdit, ...]]
 
@@ -198,7 +198,7 @@ def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """Actions that list a property file from the folder in a system without properties."""
+    """Actions for a system file without properties: each lists a property file from the folder of the system file."""
     facts = diagnostic.facts
     if (
         isinstance(facts, MissingChild)

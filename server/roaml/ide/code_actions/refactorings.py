@@ -46,7 +46,7 @@ def _edited(analysis: Analysis, path: str, *edits: Edit) -> WorkspaceEdit:
 
 
 def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """Actions that add a `<bt_halt>` to the state at the caret, or to all states that handle ticks."""
+    """Actions that add a `<bt_halt>` to the state at the caret, or to all states that handle ticks but not halts."""
     document, root = analysis.document(path), machine.element
     state = _state_at(machine, place)
     if document is None or state is None:
@@ -61,7 +61,8 @@ def _halt(analysis: Analysis, path: str, machine: Machine, place: Span) -> Itera
 
 
 def _results(analysis: Analysis, path: str, machine: Machine, place: Span) -> Iterator[CodeAction]:
-    """Actions that add handlers for all results of a ROS action to the state at the caret."""
+    """Actions that add handlers to the state at the caret, for the results of a ROS action that the state does not
+    handle."""
     document, state = analysis.document(path), _state_at(machine, place)
     if document is None or state is None or state.id is None or not state.element.complete:
         return

@@ -147,7 +147,8 @@ def _new_document(snapshot: Snapshot, path: str) -> Completions | None:
 
 
 def _shortened(text: str, offset: int, span: Span, items: Iterable[CompletionItem]) -> Completions:
-    """The items that match the typed text, the best first; at most `MAX_ITEMS`."""
+    """All items, the best first. If there are more than `MAX_ITEMS`, only the first `MAX_ITEMS` of those that match the
+    typed text are returned."""
     before, after = text[span.start : offset], text[offset : span.end]
     span = Span(offset - len(before.rpartition("\n")[2]), offset + len(after.partition("\n")[0]))  # in one line
     unique = {(item.label, item.insert): item for item in items}.values()

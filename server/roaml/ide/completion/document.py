@@ -22,8 +22,9 @@ def document(analysis: Analysis, about: Symbol) -> str:
     """The documentation of the subject of an item, as Markdown; "" if there is none.
 
     In addition to the symbols that `describe` supports, `about` may be a part of the languages. The kinds are `element`
-    (`path` is the name of the parent, `scope` the schema), `attribute` (`path` is `PARENT/ELEMENT`), `choice` (`path`
-    is `PARENT/ELEMENT/ATTRIBUTE`), `function`, `event-variable`, `base-type` and `json` (`scope` is the documentation).
+    (`path` is the name of the parent, `scope` the schema), `attribute` (`path` is `PARENT/ELEMENT`),
+    `enumeration-value` (`path` is `PARENT/ELEMENT/ATTRIBUTE`), `function`, `event-variable`, `base-type` and `json`
+    (`scope` is the documentation).
     """
     grammar = _GRAMMARS.get(about.scope)
     match about.kind:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The initial content of new files."""
+"""Completion in empty files: the initial content of a file of each kind."""
 
 from __future__ import annotations
 

@@ -25,6 +25,7 @@ from roaml.roles import NodeKind, SymbolKind, ValueRole
 from roaml.xml_syntax import Element
 
 _MAX_CHOICES = 20
+"""The maximum number of values that a placeholder suggests."""
 
 
 def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
@@ -98,7 +99,7 @@ def snippet(request: Request, type_: ElementType, parents: tuple[Typed, ...]) ->
 
 
 def likely(request: Request, subject: CompletionSubject, attribute: AttributeType) -> list[str]:
-    """The likely values of an attribute; empty if there are many."""
+    """The likely values of an attribute; empty if there are more than `_MAX_CHOICES`, and for ROS types."""
     if attribute.value is ValueRole.ROS_TYPE:
         return []
     labels = [item.label for item in candidates(request, subject, attribute) if not item.deprecated]
@@ -153,7 +154,8 @@ def _has_no_handle(request: Request, type_: ElementType) -> bool:
 
 
 def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
-    """Items for the plugins of the system, the nodes of BehaviorTree.CPP, and subtrees."""
+    """Items for the plugins of the system, subtrees, and the nodes of BehaviorTree.CPP; for a tree that belongs to no
+    system, also the nodes that libraries and models declare."""
     grammar = request.file.grammar
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)

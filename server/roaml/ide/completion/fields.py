@@ -19,7 +19,8 @@ from roaml.xml_syntax import Element
 
 
 def field_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The names that a `<field>` may have. Fields that are not set yet come first."""
+    """The names that a `<field>` may have, without those that other `<field>` elements of the message have. Fields that
+    must be set come first."""
     holder = subject.parents[-1].element if subject.parents else None
     statement = request.ros_send_of(holder) if holder is not None else None
     if statement is None:
@@ -35,7 +36,8 @@ def field_names(request: Request, subject: CompletionSubject) -> Iterator[Comple
 
 
 def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem]:
-    """The `<field>` elements for a sending element: each missing field, and all of them at once."""
+    """The `<field>` elements for a sending element: one item for each missing field that must be set, and one item for
+    all of them."""
     statement = request.ros_send_of(element)
     if statement is None:
         return
@@ -56,7 +58,8 @@ def fields_to_add(request: Request, element: Element) -> Iterator[CompletionItem
 
 
 def sending(request: Request, type_: ElementType) -> Iterator[CompletionItem]:
-    """Items for a sending element with a handle and all fields of its message, one for each handle that it may use."""
+    """Items for a sending element, one for each handle that it may use, with the handle and all fields that must be
+    set."""
     name = type_.attributes.get("name")
     if name is None or "field" not in type_.children:
         return

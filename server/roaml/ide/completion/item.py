@@ -47,7 +47,7 @@ class CompletionItem(Record, frozen=True):
     """One completion item.
 
     Attributes:
-        insert: the text that replaces the range, in the snippet syntax of LSP; "" if it is the label.
+        insert: the text that replaces `Completions.span`, in the snippet syntax of LSP; "" if it is the label.
         detail: a few words beside the label, such as a type.
         about: the subject of the documentation (`roaml.ide.completion.document`).
         filter: the text that is matched with the typed text; "" if it is the label.

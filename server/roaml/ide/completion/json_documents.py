@@ -24,8 +24,8 @@ _GRAMMARS = {FileKind.PROPERTIES: PROPERTIES, FileKind.JSON_STRUCTS: JSON_STRUCT
 
 
 def in_json(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[CompletionItem]] | None:
-    """The span that the completions at a caret replace, and the completions; `None` in other files, or if there are
-    none."""
+    """The span that the completions at a caret replace, and the completions. `None` if no completion is possible, or if
+    the file is neither a property file in JANI nor contains struct declarations in JSON."""
     kind = next(analysis.kind_in(path, system) for system in analysis.systems_of(path))
     grammar = _GRAMMARS.get(kind)
     read = analysis.json(path) if grammar else None
@@ -193,7 +193,7 @@ def _compared_values(place: _Place) -> Iterator[CompletionItem]:
 
 
 def _operators(grammar: JsonGrammar, kind: str) -> Iterator[CompletionItem]:
-    """An object for each operator, with all its required members."""
+    """Items that insert an object for each operator, in the spelling of JANI, with all required members."""
     for operator, described in grammar.operators(kind):
         if operator in _ALIASES:
             continue

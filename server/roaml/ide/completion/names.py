@@ -30,7 +30,7 @@ def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> 
 
 
 def undefined(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """Suggestions for the name of a new definition: names that are used but not defined."""
+    """Suggestions for the name of a new definition, such as names that are used but not defined."""
     if kind is SymbolKind.EVENT:
         yield from _events_to_send(request)
     elif kind is SymbolKind.PARAMETER:
@@ -138,7 +138,7 @@ def _missing_ports(request: Request) -> Iterator[CompletionItem]:
 
 
 def _events_received(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """Events that a handler can wait for: the events that machines send."""
+    """Events that a handler can wait for. Events that machines send come first."""
     for system in request.systems:
         for event in system.events.values():
             senders = dict.fromkeys(automaton.name for automaton, _ in event.senders)
@@ -241,7 +241,7 @@ def _plugin_names(request: Request, subject: CompletionSubject) -> Iterator[Comp
 
 
 def port_list(outline: MachineOutline) -> str:
-    """The directions, keys and types of the ports of a plugin, in one line."""
+    """The directions, keys and types of the ports of a plugin, in one line, without the port `CHILDREN_COUNT`."""
     return ", ".join(
         f"{port.direction} {port.key}: {port.type}" for port in outline.ports if port.key != CHILDREN_COUNT
     )

@@ -20,7 +20,7 @@ def parameter_names(request: Request, subject: CompletionSubject) -> Iterator[Co
 
 
 def parameters_to_add(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The `<param>` elements for a `<send>`: each missing parameter, and all of them at once."""
+    """The `<param>` elements for a `<send>`: one item for each missing parameter, and one item for all of them."""
     for statement in request.chart.statements if request.chart else ():
         if not isinstance(statement, Send) or statement.element is not subject.element:
             continue

@@ -30,7 +30,8 @@ _BY_TYPE = {
 
 
 def paths(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The files that the attribute may name. Files to which this file does not refer yet come first."""
+    """The files that the attribute may name. Files to which the file of the attribute does not refer yet come first;
+    machines of the wrong kind, node or plugin, come last."""
     analysis = request.analysis
     kinds, plugin = _expected_kinds(subject)
     named = set(analysis.includes(request.path)) | {listed.path for listed in analysis.listed(request.path)}

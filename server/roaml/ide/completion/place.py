@@ -30,7 +30,8 @@ class StartTag(Record, frozen=True, eq=False):
 
 
 class EndTag(Record, frozen=True, eq=False):
-    """The name of an end tag. `name` is the name of the innermost open element, "" if there is none."""
+    """The name of an end tag. `name` is the name of the innermost open element, "" if there is none. `bare` is true if
+    no `>` follows the caret."""
 
     name: str
     span: Span
@@ -94,7 +95,8 @@ def _is_skipped(document: Document, path: tuple[Typed, ...], offset: int) -> boo
 
 
 def _in_start_tag(text: str, path: tuple[Typed, ...], offset: int) -> tuple[Place | None] | None:
-    """The place in the start tag at the caret; `None` if the caret is not in it."""
+    """A tuple of the place in the start tag of the innermost element, or of `None` if nothing can be completed there;
+    `None` instead of a tuple if the caret is not in this tag."""
     typed, parents = path[-1], path[:-1]
     element = typed.element
     end = element.open_span.end

@@ -39,7 +39,8 @@ class SettablePort(Record, frozen=True):
 
 
 def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[SettablePort, ...]:
-    """The ports of the plugin with this name, or of the node of BehaviorTree.CPP that `type_` describes."""
+    """The ports of a node whose type is `name`: a type that a library or model declares for a tree without a system,
+    the node of BehaviorTree.CPP that `type_` describes, or a plugin."""
     known = request.forest.node(name) if request.forest else None
     if known is not None:
         return tuple(_of_library(known))
@@ -163,7 +164,8 @@ def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> I
 
 
 def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The attributes for ports that are not set: one item for each port, and one for all required ports."""
+    """The attributes for ports that are not set: one item for each port, and one for all required ports if there are
+    several."""
     element = subject.element
     assert element is not None
     given = {attribute.name for attribute in element.attributes}
@@ -186,7 +188,7 @@ def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[Compl
 
 def add_port(snippet: Snippet, port: SettablePort) -> None:
     """Add an attribute `key="…"` to a snippet. The suggested value of an output is a variable with the name of the
-    port."""
+    port, that of an input its default."""
     snippet.text(f'{port.key}="').stop([f"{{{port.key}}}"] if port.direction is Direction.OUT else [port.default]).text(
         '"'
     )

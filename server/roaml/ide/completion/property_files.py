@@ -26,9 +26,6 @@ from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
-_RARE_ATTRIBUTES = ("origin", "target", "time", "after", "logic", "expect")
-"""Attributes that new elements rarely need."""
-
 _COMPARED = re.compile(r"([A-Za-z_]\w*)\s*(?:[=!]==?|&lt;=?|&gt;=?|>=?)\s*\Z", re.ASCII)
 _FORMULA_OPERATORS = {
     "H": "at all times until now",
@@ -49,7 +46,8 @@ def is_property_file(request: Request) -> bool:
 
 
 def skeletons(request: Request, parents: tuple[Typed, ...]) -> Iterator[CompletionItem]:
-    """Complete ports for the messages and events of the system, and complete properties for each pattern."""
+    """Complete ports for the messages and events of the system, complete properties for each pattern, and time
+    intervals for a property."""
     if not is_property_file(request) or not parents:
         return
     match parents[-1].element.name:
@@ -196,7 +194,7 @@ def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> 
 
 
 def _ends(system: System, port: Port | None) -> Iterator[CompletionItem]:
-    """The machines that use the topic, service, action or event that a port names."""
+    """The machines that use the topic, service or action that a port names; all machines if none uses it."""
     kind = SYMBOL_KINDS.get(port.kind) if port is not None else None
     channels = system.channels(kind).values() if kind is not None else ()
     named = [channel for channel in channels if port is not None and _is_named(channel, port)]
@@ -305,7 +303,8 @@ def _written(request: Request) -> Mapping[str, LinkedVariable]:
 
 
 def compared_values(request: Request, start: int) -> Iterator[CompletionItem]:
-    """The named values of the variable that a value is compared with: statuses of nodes, codes of results."""
+    """Values for the right side of a comparison with a variable: its named values (statuses of nodes, codes of
+    results), and the neutral value of its type."""
     compared = _COMPARED.search(request.file.document.text[start : request.offset])
     variable = _linked(request).get(compared[1]) if compared is not None else None
     if variable is None:

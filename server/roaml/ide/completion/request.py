@@ -49,7 +49,8 @@ class Request(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def system_path(self) -> str | None:
-        """The path of the system in which types are resolved: the first of the systems of the file."""
+        """The path of the system in which types are resolved: the first of the systems of the file; `None` if the file
+        belongs to no system."""
         return self.analysis.systems_of(self.path)[0]
 
     @cached_property

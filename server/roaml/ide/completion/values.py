@@ -31,8 +31,8 @@ _OF_ROS = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 def in_attribute(
     request: Request, subject: CompletionSubject, name: str, span: Span
 ) -> tuple[Span, list[CompletionItem]] | None:
-    """The span that the items replace, and the possible values of the attribute `name`. `span` is the span of its
-    value."""
+    """The span that the items replace, and the possible values of the attribute `name`; `None` if nothing is known
+    about the attribute. `span` is the span of its current value."""
     known = subject.type.attributes.get(name)
     if property_files.is_property_file(request) and (subject.type.name, name) == ("property", "expr"):
         in_formula = property_files.in_formula(request, span)
@@ -149,7 +149,7 @@ def _constants(request: Request, subject: CompletionSubject) -> Iterator[Complet
 
 
 def _bounds(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The smallest and the greatest value of an integer type."""
+    """The smallest and the greatest value of the integer type of a variable."""
     inner, _ = unwrap(_data_type(request, subject))
     for number in INTEGER_RANGES.get(inner.name, ()) if isinstance(inner, Scalar) else ():
         yield CompletionItem(str(number), ItemKind.VALUE, detail=str(inner))

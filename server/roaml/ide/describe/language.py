@@ -56,7 +56,7 @@ def port(key: str, type_: PortType) -> str:
 
 
 def attribute(type_: AttributeType) -> str:
-    """The description of an attribute: the kind of its value, its meaning, and its values if there are few."""
+    """The description of an attribute: the kind of its value, its meaning, and the values of an enumeration."""
     if type_.port:
         must = "must be set" if type_.port.required else ""
         constant = "must be a constant" if type_.port.constant else ""
@@ -202,7 +202,7 @@ def length(of: str) -> str:
 
 
 def value_range(type_: Type) -> str:
-    """The smallest and greatest value of the numbers in a type, as a clause; "" if the type has no range."""
+    """The smallest and greatest value of the numbers in a type, as a phrase; "" if the type has no range."""
     inner, _ = unwrap(type_)
     if not isinstance(inner, Scalar) or inner.name not in INTEGER_RANGES:
         return ""
@@ -211,7 +211,7 @@ def value_range(type_: Type) -> str:
 
 
 def number(value: int) -> str:
-    """A number with a thin space between groups of three digits."""
+    """A number; if it has at least five digits, with a thin space between groups of three digits."""
     return f"{value:,}".replace(",", "\u202f").replace("-", "−") if abs(value) >= 10000 else str(value)
 
 
@@ -226,7 +226,7 @@ def type_(type_: Type) -> str:
 
 
 def array_size(bounds: tuple[int | None, ...]) -> str:
-    """The number of elements of an array, as a clause; "" if it is not an array."""
+    """The maximum number of elements of an array with the bounds `bounds`, as a phrase; "" if there are no bounds."""
     if not bounds:
         return ""
     size = " times ".join("`max_array_size`" if bound is None else str(bound) for bound in bounds)

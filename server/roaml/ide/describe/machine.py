@@ -350,7 +350,7 @@ def _from_port(value: Name | PortRead | None, subject: str) -> str:
 
 
 def rate(text: str) -> str:
-    """The rate and the period of a timer, for a message; "" if `text`, its rate in Hz, is not a positive number."""
+    """The rate and the period of a timer, as text; "" if `text`, its rate in Hz, is not a positive number."""
     hertz = exact_number(text)
     if hertz is None or hertz <= 0:
         return ""
@@ -435,7 +435,7 @@ _VERBS = {
     SymbolKind.SERVICE_SERVER: "Serves",
     SymbolKind.SERVICE_CLIENT: "Calls",
     SymbolKind.ACTION_SERVER: "Offers",
-    SymbolKind.ACTION_CLIENT: "Pursues",
+    SymbolKind.ACTION_CLIENT: "Sends goals to",
 }
 
 

@@ -17,15 +17,17 @@ from roaml.model.value_types import GOAL_STATUSES
 from roaml.scxml.names import FLAG, flagged_by
 
 _DEPTH = 12
+"""The maximum depth of nesting that the text of a formula shows."""
 _LENGTH = 400
+"""The maximum number of characters of the text of a formula."""
 
 _SAYS: Mapping[str, str] = {
     "∨": "At least one operand holds.",
-    "∧": "Both hold.",
+    "∧": "Both operands hold.",
     "⇒": "If the left operand holds, the right one does as well.",
     "¬": "The operand does not hold.",
     "=": "Both operands are equal.",
-    "≠": "Both differ.",
+    "≠": "The operands differ.",
     "<": "The left operand is less than the right one.",
     "≤": "The left operand is less than or equal to the right one.",
     ">": "The left operand is greater than the right one.",
@@ -113,7 +115,7 @@ def global_variable(variable: GlobalVariable) -> str:
 
 
 def formula(value: JsonValue) -> str:
-    """A formula in the usual notation, in one line."""
+    """A formula in the usual notation, in one line of at most `_LENGTH` characters."""
     text = _formula(value, 0)
     return text if len(text) <= _LENGTH else f"{text[: _LENGTH - 1]}…"
 
@@ -140,7 +142,7 @@ def _operation(parts: Mapping[str, JsonValue], depth: int) -> str:
         return _formula(parts.get(key), depth + 1)
 
     def inner(key: str) -> str:
-        """The text of an operand, in parentheses if its operator binds less tightly than the enclosing operator."""
+        """The text of an operand, in parentheses if it consists of two operands and an operator between them."""
         value = parts.get(key)
         has_two = isinstance(value, JsonObject) and value.get("left") is not None
         text = part(key)

@@ -22,7 +22,8 @@ from roaml.text import Location
 from roaml.views.tree import ports_of, title_of
 
 AUTOREMAPPED = "_autoremap"
-"""The line of a subtree whose other names are those of the surrounding tree."""
+"""The line in the card of a subtree with automatic remapping: names that the `<SubTree>` does not set refer to the
+entries of the surrounding tree."""
 _KINDS: Mapping[str, DiagramNodeKind] = {
     "control": DiagramNodeKind.CONTROL,
     "decorator": DiagramNodeKind.DECORATOR,
@@ -32,8 +33,8 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 
 def tree_picture(analysis: Analysis, path: str) -> Picture | None:
-    """The diagram of a system's tree; `path` is the system file or any other file of the system. `None` if there is no
-    tree."""
+    """The diagram of the tree of a system, or of a tree file that belongs to no system; `None` if there is no tree.
+    `path` is any file of the system, or the tree file."""
     system = next((owner for s in analysis.systems_of(path) if s and (owner := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances, uses = system.tree_paths, system.instances, system.tree_uses
@@ -96,7 +97,8 @@ class _Tree:
         return entered[::-1]
 
     def subtree(self, use: int) -> DiagramNode:
-        """The card of a subtree: the entries and constants that it is given, and its conditions and scripts."""
+        """The node of the diagram for a subtree: the values that its `<SubTree>` sets, and its conditions and
+        scripts."""
         name, tree = self.uses[use].name, self.uses[use].tree
         places = (
             Location(path, written.element.span)
@@ -109,7 +111,7 @@ class _Tree:
         return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, details, place=next(places, None))
 
     def given(self, frame: Frame) -> Iterator[str]:
-        """What the `<SubTree>` of a frame gives to the subtree, one line for each name."""
+        """The names and values that the `<SubTree>` of a frame sets, one line for each name."""
         file = self.files.get(frame.use.path) if frame.use is not None else None
         node = node_at(file, frame.use) if file is not None and frame.use is not None else None
         if node is None:

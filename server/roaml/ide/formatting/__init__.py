@@ -41,7 +41,7 @@ def format_edits(
     Args:
         analysis: the state of the workspace.
         path: the file.
-        layout: the layout; a property file keeps its width of two or four columns.
+        layout: the layout; a JSON file that is indented by two or four spaces keeps this width.
         within: if given, only edits in the lines that this span touches are returned.
     """
     source = analysis.source(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The layout of JSON: one member or item per line, and two or four columns per level, whichever the file uses.
+"""The layout of JSON: one member or item per line. A file that is indented by two or four spaces keeps this width.
 
 - An object or list on one line stays on one line if it fits. Several blank lines become one.
 - The formatter works on tokens, not on the tree, because JSON may be nested more deeply than functions can recurse.
@@ -21,7 +21,7 @@ _WIDTHS = (2, 4)
 
 
 def gaps(text: str, layout: FileLayout) -> Iterator[Spacing]:
-    """The white space between the tokens of a text without syntax errors."""
+    """The new white space before, between and after the tokens of a text without syntax errors."""
     spans = [Span(*match.span()) for match in _TOKEN.finditer(text)]
     if not spans:
         return

@@ -24,7 +24,7 @@ _MARKERS = {"else", "elseif"}
 
 
 def gaps(document: Document, layout: FileLayout) -> Iterator[Spacing]:
-    """The white space of a document; empty if it has syntax errors."""
+    """The new white space of a document; empty if the document has syntax errors."""
     if document.root is not None and all(finding.code in _HARMLESS for finding in document.findings):
         yield from _Formatter(document.text, layout).document(document)
 

@@ -72,8 +72,8 @@ def outgoing(analysis: Analysis, symbol: Symbol) -> tuple[HierarchyCall, ...]:
 
 
 def _is_message(symbol: Symbol) -> bool:
-    """Whether the symbol of an item is an event, topic, service or action. The calls of these items have the place of
-    their name."""
+    """Whether the symbol of an item is an event, topic, service or action. A call by one of these items has the place
+    of the name of the item."""
     return symbol.kind is SymbolKind.EVENT or symbol.kind in _INTERFACES
 
 
@@ -165,7 +165,8 @@ def interfaces_of(analysis: Analysis, handle: Symbol) -> Iterator[Symbol]:
 
 
 def _places(analysis: Analysis, system: str, automaton: SystemAutomaton, use: InterfaceUse) -> tuple[Span, ...]:
-    """The places where a machine uses a declaration; if there are none, the place of the declaration."""
+    """The places where a machine sends or receives by a declared interface; if there are none, the places where it only
+    names the interface, such as its declaration."""
     known = uses(analysis, automaton.path, system).by_symbol
     occurrences = list(known.get(automaton.symbol(use), ()))
     if use.name and not occurrences:  # the name of the interface is used as the handle

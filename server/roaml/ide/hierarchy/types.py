@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The type hierarchy: messages and structs.
 
-The subtypes of a type are the types of its fields or members; its supertypes are the types that contain it. The only
-ROS types are those that the machines of the workspace use, and the types inside them.
+The subtypes of a type are the types of its fields or members; its supertypes are the types that contain it. Supertypes
+are found only among the ROS types that the machines of the systems declare, and the types inside these.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from roaml.text import Location
 
 
 class TypeItem(Record, frozen=True):
-    """A message, service, action or struct. `detail` lists the fields that have this type; if there are none, it is the
-    kind of the type."""
+    """A message, service, action or struct. In results about another type, `detail` lists the fields that connect both
+    types; otherwise, it is the kind of the type."""
 
     symbol: Symbol
     detail: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hover texts for the parts of an expression that are not names: functions, operators, event variables."""
+"""Hover texts for the parts of an expression that no model defines: functions, operators, event variables, statuses."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class Place(Record, frozen=True):
         text: the text of the file.
         kind: the kind of the file.
         systems: the systems of the file; `(None,)` if it belongs to no system.
-        names: the symbols of the name at the place, in each system.
+        names: the occurrences of the name at the place, in each system; empty if there is no name.
         elements: the enclosing XML elements, outermost first.
         expression: the enclosing expression.
     """

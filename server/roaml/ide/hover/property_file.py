@@ -38,7 +38,8 @@ def global_variable(place: Place) -> tuple[Span, str] | None:
 
 
 def in_json(place: Place) -> tuple[Span, str] | None:
-    """The description of the key or operator at a place, or the formula of the property at a place."""
+    """The description of the key, number or operator at a place, or the formula of the property whose name is there;
+    `None` if there is none."""
     value, offset = place.analysis.json(place.path), place.offset
     if value is None:
         return None
@@ -67,7 +68,7 @@ def in_json(place: Place) -> tuple[Span, str] | None:
 
 
 def value_at(value: JsonValue, offset: int) -> JsonValue | None:
-    """The innermost value around an offset; `None` at keys and between values."""
+    """The innermost value around an offset; `None` at a key, and between a key and its value."""
     innermost: JsonValue | None = value
     while innermost is not None:
         if isinstance(innermost, JsonObject):

@@ -46,7 +46,7 @@ class Frame(Record, frozen=True, eq=False):
         prefix: the parts of the prefix of its variables in the translation.
         settings: the values of its ports, from the attributes of the subtree node and from defaults.
         outer: the instance of the tree that contains the subtree node; `None` for the main tree.
-        names: the names of the variables that occur in the tree or in defaults of its ports.
+        names: the names of the variables that occur in the tree or in defaults of the ports of its nodes.
         is_alone: whether the tree belongs to no system.
     """
 
@@ -208,7 +208,7 @@ class Trees:
         return prefix, {name: value for name, value in settings.items() if not name.startswith("_")}
 
     def _names(self, tree: Tree) -> frozenset[str]:
-        """The names of the variables to which a tree refers, directly or by defaults of ports."""
+        """The names of the variables to which a tree refers, directly or by defaults of the ports of its nodes."""
         names = set(self.names_in(tree))
         for node in nodes(tree):
             plugin = node.plugin.value if node.plugin else ""

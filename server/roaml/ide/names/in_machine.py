@@ -46,8 +46,6 @@ from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES, sanitise
 from roaml.text import Span
 
-"""Kind of ROS type -> the kind of symbol that a declaration of this type names."""
-
 _EVENT_VARIABLES = frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
 _WORD = re.compile(r"\S+")
 

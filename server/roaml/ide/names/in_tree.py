@@ -117,7 +117,7 @@ class _Tree:
         return None if start < 0 else decoded.span(start, start + len(name))
 
     def scripts(self, node: TreeNode, inside: str) -> Iterator[Occurrence]:
-        """The variables in scripts, which are read only if the tree belongs to no system."""
+        """The variables in the scripts of a node, for a tree that belongs to no system."""
         for attribute in script_attributes(node):
             script, _ = parsed(self.document.decoded(attribute.value_span))
             targets: set[int] = set()

@@ -4,8 +4,8 @@
 A `Symbol` identifies a definition. Its `path` determines its scope:
 - a state, variable, handle, port or machine is local to its file, whichever systems list it;
 - a blackboard variable and a named tree node are local to the tree (`scope`) in the file that contains them;
-- events, parameters, topics, services, actions, trees, structs and members are part of a system: `path` is its file, or
-  the file itself if it is analysed alone;
+- events, parameters, topics, services, actions, trees, structs and members are part of a system: `path` is the system
+  file, or the file that contains the name if this file is analysed alone;
 - definitions of ROS or BehaviorTree.CPP belong to no file of the user: `path` is "".
 
 The same text may refer to different symbols in different systems, and even to two symbols in one system: the key of a
@@ -81,7 +81,7 @@ def tree_node(path: str, tree: str, position: int, name: str) -> Symbol:
 
 
 def fields(name: Name, part: Type, access: Access) -> Iterator[Occurrence]:
-    """The fields on a dotted path into a message or a part of an interface."""
+    """The occurrences of the fields on a dotted path into a message or a part of an interface."""
     if len(name.value) != name.span.end - name.span.start:
         return
     start, owner = name.span.start, part
@@ -101,5 +101,5 @@ def base_span(span: Span, base: str) -> Span:
 
 
 def without_slash(name: Name) -> Span:
-    """The span of the name of a topic without a leading slash, which has no meaning in a model."""
+    """The span of the name of a topic without the slash at its beginning, which has no meaning in a model."""
     return Span(name.span.start + 1, name.span.end) if name.value.startswith("/") else name.span

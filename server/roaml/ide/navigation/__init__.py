@@ -23,15 +23,16 @@ INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 
 
 class DocumentHighlight(Record, frozen=True):
-    """A use of a symbol in the same file. `access` is its kind; a definition is a write access."""
+    """A use of the symbol at a caret, in the file of the caret. `access` is the kind of the use; a definition is a
+    write access."""
 
     span: Span
     access: Access
 
 
 def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
-    """The definitions of the symbol at a caret. Those of an event are its senders, those of a topic its publishers, and
-    those of a service or action its servers."""
+    """The definitions of the symbol at a caret, or the file whose path is at the caret. Those of an event are its
+    senders, those of a topic its publishers, and those of a service or action its servers."""
     file = _file_at(analysis, path, offset)
     if file is not None:
         return (Location(file, Span(0, 0)),)
@@ -69,7 +70,8 @@ def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location
 
 
 def references(analysis: Analysis, path: str, offset: int, *, with_declaration: bool = True) -> tuple[Location, ...]:
-    """All uses of the symbol at a caret, in all files, sorted."""
+    """All uses of the symbol at a caret, in all files, sorted by file and place; `with_declaration` includes its
+    definitions."""
     group = symbol_group_at(analysis, path, offset)
     if group is None:
         return ()
@@ -78,7 +80,7 @@ def references(analysis: Analysis, path: str, offset: int, *, with_declaration: 
 
 
 def highlights(analysis: Analysis, path: str, offset: int) -> tuple[DocumentHighlight, ...]:
-    """All uses of the symbol at a caret, in this file."""
+    """All uses of the symbol at a caret, in the file of the caret."""
     group = symbol_group_at(analysis, path, offset)
     uses: Iterable[SymbolUse] = group.uses if group else ()
     return tuple(_highlight(use) for use in uses if use.path == path)

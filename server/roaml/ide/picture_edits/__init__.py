@@ -93,7 +93,7 @@ def answer(
     if document is None or source is None or part is None:
         return ActionRefusal("the file has changed; try again on the new picture")
     if not _allows(part, action):
-        return ActionRefusal("this is not possible here")
+        return ActionRefusal("this part of the picture does not allow this action")
     if action is PictureAction.RENAME:
         return _rename(analysis, path, part, answers)
     edits = _edits(analysis, path, document, part, action, answers)

@@ -31,7 +31,7 @@ class UserQuestion(Record, frozen=True):
 
 
 class ActionRefusal(Record, frozen=True):
-    """An action that is not possible. `reason` is a clause for the user."""
+    """An action that is not possible. `reason` states why, as a clause for the user."""
 
     reason: str
 

@@ -59,7 +59,7 @@ def add_transition(
     if not others:
         return UserQuestion("The trigger of the transition", tuple(Option(text, tag) for tag, text in triggers.items()))
     if others[0] not in triggers:
-        return ActionRefusal("this trigger does not exist any more")
+        return ActionRefusal("this trigger does not exist any more; try again on the new picture")
     name = others[0].partition(" ")[0]
     targets = " ".join(f"{attribute}={quoteattr(target)}" for attribute in _target_attributes(HL_SCXML.elements[name]))
     return (last_in(document, part.state.element, f"<{others[0]} {targets} />"),)
@@ -67,7 +67,7 @@ def add_transition(
 
 def set_initial(chart: Chart, state: State) -> EditAnswer:
     if state.id is None:
-        return ActionRefusal("the state has no name")
+        return ActionRefusal("the state has no name; add the attribute `id`")
     return (set_attribute(chart.element, "initial", state.id.value),)
 
 
@@ -76,7 +76,7 @@ def delete_state(document: Document, part: StatePart) -> EditAnswer:
     chart, state = part.chart, part.state
     others = [other for other in chart.states if other is not state]
     if not others:
-        return ActionRefusal("it is the only state, and a state machine needs one")
+        return ActionRefusal("this is the only state, and a state machine needs at least one")
     name = state.id.value if state.id else ""
     if any(other.id is not None and other.id.value == name for other in others):
         return tuple(removals(document, [state.element]))
@@ -113,15 +113,16 @@ def choose_transition(
         return UserQuestion("The transition", tuple(Option(text, str(index)) for index, text in enumerate(texts)))
     index = int(answers[0]) if answers and answers[0].isdecimal() else 0
     if index >= len(state.handlers):
-        return ActionRefusal("this transition does not exist any more")
+        return ActionRefusal("this transition does not exist any more; try again on the new picture")
     return HandlerPart(state.handlers[index])
 
 
 def _without_targets(
     document: Document, handler: Handler, targets: Sequence[Target]
 ) -> tuple[list[Element], list[Edit]]:
-    """The elements to remove, and the changes of others. If all remaining targets have a probability, the last one
-    loses it and receives the rest, so that the probabilities have the sum 1."""
+    """The elements to remove, and the changes of other elements, so that a handler loses `targets`. If all remaining
+    targets have a probability, the last one loses it and receives the rest, so that the probabilities have the sum
+    1."""
     rest = [target for target in handler.targets if target not in targets]
     elements = [target.element for target in targets if target.element is not None]
     # Without a `<target>`, the targets are attributes that a transition needs.
@@ -153,8 +154,9 @@ def _has_empty_lines(chart: Chart) -> bool:
 
 
 def _triggers(analysis: Analysis, path: str, machine: Machine, chart: Chart) -> Iterator[tuple[str, str]]:
-    """The start tags of transitions without their targets, and their texts: those of all declared interfaces, of the
-    tree if the machine is a plugin, and of the plain events that the systems send."""
+    """The start tags of transitions without their targets, and their texts: those for all declared interfaces, for the
+    parts of the tree protocol and the plain events that the machine already handles, for the plain events that its
+    systems send, and for a transition without an event."""
     used = {handler.trigger for own in machine.charts for state in own.states for handler in state.handlers}
     for name in HL_SCXML.elements["state"].children:
         type_ = HL_SCXML.elements.get(name)

@@ -89,7 +89,8 @@ def _of_trees(trees: tuple[Tree, ...]) -> Iterator[tuple[Span, Part]]:
 
 
 def name_offset(part: Part) -> int | None:
-    """A position in the name that a picture shows for a part; `None` if it shows no name of the file."""
+    """An offset in the name that a picture shows for a part; `None` if the picture shows no name that is written in the
+    file."""
     match part:
         case ChartPart(machine, chart):
             name = machine.name if chart is machine.chart else None

@@ -289,7 +289,7 @@ def _between(
         case Pattern.RESPONSE:
             stays = _answered(left, right, close)
         case _:
-            return None  # these are required once in a stretch, not once for each letter that may open it
+            return None  # these are required once in a stretch, not after each step that may open it
     if is_weak:
         return globally(_implies(opening, weak(stays, close)))
     return globally(_implies(joined(False, opening, finally_(close)), until(stays, close)))

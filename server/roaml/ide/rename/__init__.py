@@ -38,7 +38,7 @@ _OF_THE_NODE = ("name", "ID", CHILDREN_COUNT)
 
 
 class RenameRefusal(Record, frozen=True):
-    """A rename that is not possible. `reason` is a clause for the user."""
+    """A rename that is not possible. `reason` states why, as a clause for the user."""
 
     reason: str
 
@@ -51,7 +51,7 @@ class Prepared(Record, frozen=True):
 
 
 class Renaming(Record, frozen=True):
-    """The edits of a rename, sorted, by the path of the file."""
+    """The edits of a rename: path of a file -> its edits, in the order of the text."""
 
     edits: Mapping[str, tuple[TextEdit, ...]]
 
@@ -106,7 +106,7 @@ def _fixed(group: SymbolGroup) -> str:
         if symbol.kind in DEFINED_BY_ROS:
             return f"`{name}` is defined by ROS, not by this model"
         if symbol.kind is SymbolKind.PLUGIN and not symbol.path:
-            return f"`{name}` is a node of BehaviorTree.CPP"
+            return f"`{name}` is a node of BehaviorTree.CPP, whose name is fixed"
         if symbol.kind is SymbolKind.PORT and name in _OF_THE_NODE:
             return f"the port `{name}` has a special meaning in a tree"
         if symbol.kind is SymbolKind.TOPIC and name == CLOCK_TOPIC:

@@ -2,8 +2,7 @@
 """Decides whether a symbol may have a new name: the name is valid, and no other symbol in its scope has it.
 
 The decision is stricter than the rules: a valid name is also rejected if it would change the meaning of another name,
-    in
-the models or in the translation.
+in the models or in the translation.
 """
 
 from __future__ import annotations
@@ -59,7 +58,7 @@ def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
 
 def state_problem(name: str) -> str:
     """Why a new state cannot have a name, as a clause; "" if it can."""
-    return "" if _is_word(name) else f"`{name}` cannot name a state"
+    return "" if _is_word(name) else f"`{name}` is not a valid name of a state"
 
 
 def _is_word(name: str) -> bool:
@@ -113,7 +112,7 @@ def _declared(machine: Machine | None, name: str) -> tuple[Declaration, ...]:
 def _form(kind: SymbolKind, new: str, group: SymbolGroup) -> str:
     """Why `new` is not a valid name for symbols of a kind; "" if it is valid."""
     kind_name = _article(kind)
-    cannot = f"`{new}` cannot name {kind_name}"
+    cannot = f"`{new}` is not a valid name of {kind_name}"
     if kind in _JOINED and "__" in new and not any("__" in symbol.name for symbol in group.symbols):
         return f"{cannot}: `__` separates the parts of names in the translation"
     right: object

@@ -17,7 +17,7 @@ _INDENT = 10.0
 
 
 class TextLine(Record, frozen=True):
-    """A line of a row; `indent` is in pixels."""
+    """A line of a row; `size`, the size of the letters, and `indent` are in pixels."""
 
     text: str
     size: float = SMALL
@@ -61,7 +61,8 @@ class Row(Record, frozen=True):
 
 class Card(Record, frozen=True):
     """A column of rows. `ruled` is true if a line separates the first row from the others. `side` is the free width on
-    the left of the first row, for a badge."""
+    the left of the first row, for a badge, and `padding` the distance of the rows from the edge of the card, both in
+    pixels."""
 
     rows: tuple[Row, ...]
     ruled: bool = False
@@ -121,14 +122,15 @@ def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
 
 
 def title(text: str, width: float) -> tuple[TextLine, ...]:
-    """The lines of a title in bold letters, wrapped to a width; at most 3 lines."""
+    """The lines of a title in bold letters, wrapped to a width in pixels; at most 3 lines."""
     return tuple(TextLine(line, MEDIUM, "title", bold=True) for line in wrap(text, MEDIUM, width, bold=True, limit=3))
 
 
 def paragraph(
     text: str, width: float, role: str = "text", *, limit: int = 0, bold: bool = False
 ) -> tuple[TextLine, ...]:
-    """The lines of a text in small letters, wrapped to a width. All lines except the first are indented."""
+    """The lines of a text in small letters, wrapped to a width in pixels; at most `limit` lines, or any number if
+    `limit` is 0. All lines except the first are indented."""
     if not text:
         return ()
     lines = wrap(text, SMALL, width - _INDENT, bold=bold, limit=limit)

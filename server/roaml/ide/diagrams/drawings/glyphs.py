@@ -11,6 +11,7 @@ from roaml.figures.geometry import Box, Point
 from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind
 
 BADGE = 18.0
+"""The width and height of a symbol, in pixels."""
 _Strokes = tuple[tuple[Point, ...], ...]
 
 

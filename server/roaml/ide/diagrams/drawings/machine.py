@@ -83,7 +83,7 @@ class _Chart:
         }
 
     def _inlined_choices(self) -> frozenset[str]:
-        """The choices whose only target is the state from which they come."""
+        """The ids of the choices whose only target is the state from which they come."""
         origin = {edge.target: edge.source for _, edge in self._edges if not edge.probabilistic}
         choices = {
             name for name, index in self._index.items() if self._picture.nodes[index].kind is DiagramNodeKind.CHOICE
@@ -189,7 +189,7 @@ def _label(edges: Sequence[tuple[int, DiagramEdge]]) -> Card:
 
 
 def _split(edge: DiagramEdge) -> tuple[str, list[str]]:
-    """The labels of an edge without its conditions, which are written in bold, and the conditions."""
+    """The labels of an edge that are not conditions, as one text, and the conditions."""
     guards = [text for text in edge.labels if text.startswith("[")]
     return " ".join(text for text in edge.labels if text not in guards), guards
 

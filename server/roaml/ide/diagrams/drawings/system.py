@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drawing of all machines of a system, each in a frame with its name. `machine` draws the machines."""
+"""The drawing of all machines of a system, each in a frame with its name. The module `machine` draws the machines."""
 
 from __future__ import annotations
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drawing of a behavior tree.
 
-A node is a card with the symbol and the color of its kind, its name, its plugin, its number and its ports. Ports that
-are bound to the blackboard are rows of the card, and so are its conditions and scripts; the entries of the blackboard
-are listed below the tree.
+A node is a card with the symbol and the color of its kind, its name, its plugin and its number. Its ports, conditions
+and scripts are further rows of the card. The entries of the blackboard are drawn below the tree.
 """
 
 from __future__ import annotations
