@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
-// `--measure` takes measurements instead; `--pictures` also renews the pictures of the README and of the walkthrough.
+// `--measure` measures the start instead, `--measure timeline` the timeline of a long run; `--pictures` also renews the
+// pictures of the README and of the walkthrough.
 import { execFileSync, spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";
@@ -14,9 +15,10 @@ const out = path.join(here, "out", "e2e");
 fs.rmSync(out, { recursive: true, force: true });
 const [first, ...others] = process.argv.slice(2);
 const measures = first === "--measure";
+const measure = others[0] === "timeline" ? "measureTimeline" : "measure";
 await esbuild.build({
     absWorkingDir: here,
-    entryPoints: [measures ? "e2e/measure.ts" : "e2e/all.test.ts"],
+    entryPoints: [measures ? `e2e/${measure}.ts` : "e2e/all.test.ts"],
     outdir: out,
     bundle: true,
     platform: "node",
@@ -26,9 +28,9 @@ await esbuild.build({
     external: ["playwright-core"],
     logLevel: "warning",
 });
-const file = path.join(out, measures ? "measure.mjs" : "all.test.mjs");
+const file = path.join(out, measures ? `${measure}.mjs` : "all.test.mjs");
 const options = measures ? [] : ["--test", "--test-reporter=spec"];
-const names = [first, ...others].filter((name) => name !== undefined && !name.startsWith("--"));
+const names = measures ? [] : [first, ...others].filter((name) => name !== undefined && !name.startsWith("--"));
 const patterns = names.map((name) => `--test-name-pattern=${name}`);
 const env = first === "--pictures" ? { ...process.env, AS2FM_PICTURES: "yes" } : process.env;
 const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit", env });

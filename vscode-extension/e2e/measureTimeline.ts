@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * Frames while the timeline of a long run scrolls and zooms: the time between them, and the time in which the view
+ * handles the input and lays out the page.
+ */
+
+import type { Frame } from "playwright-core";
+import { MEND, sample } from "./support/stage";
+import { Workbench } from "./support/workbench";
+
+const STEPS = 100_000;
+const FRAMES = 300;
+
+/** A robot that carries parcels for a long time. */
+const LONG = {
+    ...MEND,
+    "main.xml": (text: string) => text.replace('max_time value="60"', 'max_time value="100000"'),
+    "plugins/deliver.ascxml": (text: string) => text.replace("delivered + 1", "(delivered + 1) % 2"),
+};
+
+const workbench = await Workbench.start();
+const window = await workbench.open(sample(LONG));
+const { page } = window;
+await window.openFile("main.xml");
+const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
+const running = window.statusItem("AS2FM: 0.1.0");
+await offer.or(running).first().waitFor();
+if (await offer.isVisible()) await offer.click();
+await window.running();
+await page.keyboard.press("F5");
+await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
+const timeline = await window.picture(".drawing > svg");
+await window.run("AS2FM: Go to Step");
+await page.locator(".quick-input-widget", { hasText: "number of steps" }).waitFor();
+await window.type(String(STEPS));
+await window.press("Enter");
+await timeline.locator(`body[data-step="${STEPS}"]`).waitFor();
+
+// The whole run becomes visible, then a hundredth of it.
+await timeline.getByRole("button", { name: "Fit", exact: true }).click();
+console.log(`zooming: ${await frames(timeline, { deltaX: 0, deltaY: -4, ctrlKey: true })}`);
+console.log(`scrolling: ${await frames(timeline, { deltaX: -40, deltaY: 0, ctrlKey: false })}`);
+await workbench.stop();
+
+/** Sends one event of the wheel in each frame; the median and the 95th percentile of the times in ms. */
+async function frames(view: Frame, wheel: { deltaX: number; deltaY: number; ctrlKey: boolean }): Promise<string> {
+    const measured = await view.evaluate(
+        ({ wheel, count }) =>
+            new Promise<{ between: number[]; inside: number[] }>((resolve) => {
+                const rows = document.querySelector(".rows");
+                const { left = 0, width = 0, top = 0 } = rows?.getBoundingClientRect() ?? {};
+                const [between, inside]: [number[], number[]] = [[], []];
+                let previous = performance.now();
+                const frame = () => {
+                    const begin = performance.now();
+                    between.push(begin - previous);
+                    previous = begin;
+                    const place = { clientX: left + width / 2, clientY: top + 5 };
+                    rows?.dispatchEvent(
+                        new WheelEvent("wheel", { bubbles: true, cancelable: true, ...place, ...wheel }),
+                    );
+                    document.body.getBoundingClientRect(); // computes the layout
+                    inside.push(performance.now() - begin);
+                    if (between.length < count) requestAnimationFrame(frame);
+                    else resolve({ between: between.slice(1), inside });
+                };
+                requestAnimationFrame(frame);
+            }),
+        { wheel, count: FRAMES },
+    );
+    const late = measured.between.filter((time) => time > 1000 / 30).length;
+    return (
+        `between frames ${summary(measured.between)}, ${late} of ${FRAMES} after more than 33 ms; ` +
+        `input and layout ${summary(measured.inside)}`
+    );
+}
+
+function summary(times: readonly number[]): string {
+    const sorted = times.toSorted((a, b) => a - b);
+    const at = (part: number) => (sorted[Math.floor(part * (sorted.length - 1))] ?? NaN).toFixed(1);
+    return `${at(0.5)} ms, 95th percentile ${at(0.95)} ms`;
+}
