@@ -188,8 +188,8 @@ def test_expectations_in_the_configuration(command: Command, tmp_path: Path) -> 
     ("written", "message"),
     [
         ('expect = ["x"]', "`verify.expect` must be a table"),
-        ('expect.heads = "often"', "the expectation of `heads` must compare with a number"),
-        ("expect.heads = 1", "the expectation of `heads` must compare with a number"),
+        ('expect.heads = "often"', "the expectation of `heads` must be a comparison with a number"),
+        ("expect.heads = 1", "the expectation of `heads` must be a comparison with a number"),
         ("expects = 1", "there is no setting `verify.expects`; valid settings are `expect` and `scheduler`"),
     ],
 )

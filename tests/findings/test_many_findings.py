@@ -22,13 +22,14 @@ def messages(name: str, size: int) -> list[tuple[str, str]]:
 def test_as_many_as_are_shown() -> None:
     rows = messages("unknown-attributes", MAX_FINDINGS)
     assert len(rows) == MAX_FINDINGS
-    assert not any("there are more" in message for _, message in rows)
+    assert not any("only the first" in message for _, message in rows)
 
 
 def test_more_than_are_shown() -> None:
     rows = messages("unknown-attributes", MAX_FINDINGS + 500)
     assert len(rows) == MAX_FINDINGS + 1
-    assert rows[-1] == ("unknown-attribute", "the first 1,000 findings of this kind are shown; there are more")
+    assert rows[-1][0] == "unknown-attribute"
+    assert rows[-1][1] == "only the first 1,000 findings of `unknown-attribute` in this file are shown"
 
 
 def test_comments_that_suppress_nothing() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ types of ports as written in models, and the texts that the library converts to them
+"""The C++ types of ports as written in models, and the texts that BehaviorTree.CPP converts to them
 (docs/spec/lone-trees.md#literals)."""
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ _LIST = re.compile(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
 
 
 def normal(written: str) -> str:
-    """The normal name of a type; `any` for "" and for templates of the library."""
+    """The normal name of a type, such as `int` for `int32_t`; `any` for "" and for the types of BehaviorTree.CPP that
+    accept any value."""
     name = re.sub(r"\b(?:std|BT)::|\bconst\b|[\s&]", "", written)
     name = re.sub(r"_t\b", "", name)
     match = _LIST.match(name)
@@ -105,7 +106,9 @@ def _integer(name: str, text: str) -> Mismatch | None:
         return wrong
     low, high = _RANGES[name]
     if len(text) > 25 or not low <= int(text) <= high:
-        return Mismatch("must not be negative" if low == 0 and text.startswith("-") else f"must be {low} to {high}")
+        return Mismatch(
+            "must not be negative" if low == 0 and text.startswith("-") else f"must be from {low} to {high}"
+        )
     return None
 
 

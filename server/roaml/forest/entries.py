@@ -51,7 +51,7 @@ class Use(Record, frozen=True):
     Attributes:
         path: the file.
         tree: the name of the tree.
-        name: as written, including a leading `@`.
+        name: the name of the entry as written, including a leading `@`.
         reads, writes: whether the place reads or writes the entry; `None` if not known.
         creates: whether this use creates the entry.
         type: the type of the port, `any` if not known.
@@ -81,8 +81,8 @@ class Entries(Record, frozen=True, eq=False, dict=True):
     Attributes:
         uses: all uses, in the order of the files and of the text.
         remapped: the entries of subtrees that refer to entries of the trees that use them.
-        intended: the entries that invalid values of output ports are probably intended to name. An empty name
-            represents all entries of the tree.
+        intended: the entries that invalid values of output ports, and misspelled attributes of subtrees, are probably
+            intended to name. An empty name represents all entries of the tree.
     """
 
     uses: tuple[Use, ...]
@@ -98,7 +98,8 @@ class Entries(Record, frozen=True, eq=False, dict=True):
         return key
 
     def is_intended(self, tree: str, name: str) -> bool:
-        """Whether an invalid value of an output port is probably intended to name this entry."""
+        """Whether an invalid value of an output port, or a misspelled attribute of a subtree, is probably intended to
+        name this entry."""
         return (tree, name) in self.intended or (tree, "") in self.intended
 
     @cached_property
@@ -110,7 +111,8 @@ class Entries(Record, frozen=True, eq=False, dict=True):
 
 
 def entry_of(setting: PortSetting) -> str | None:
-    """The name of the entry that a port is bound to; `{=}` refers to the entry with the name of the port."""
+    """The name of the entry that a port is bound to; `None` if its value is a constant. `{=}` and `=` refer to the
+    entry with the name of the port."""
     value = setting.value.value.strip()
     if value == "=":
         return setting.attribute.name

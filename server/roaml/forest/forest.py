@@ -41,10 +41,9 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     Attributes:
         path: the file that is analysed.
-        files: (path, file) pairs of that file, the files that it includes, projects, and models. Files that include it
-            come first.
-        beside: the names of the trees in the other files of the folder, because a program may load these files
-            together.
+        files: (path, file) pairs of that file, the files that include it, the files that it includes, the projects that
+            list it, and the files of models. The files that include it come first.
+        beside: the names of the trees in all files of the folder, because a program may load these files together.
         complete: whether all included files could be read.
     """
 
@@ -65,7 +64,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     @property
     def main(self) -> str | None:
-        """The name of the tree that is executed, if a file names it."""
+        """The name of the tree that is executed; `None` if the first file does not name it."""
         main = self.files[0][1].main
         return main.value if main else None
 
@@ -109,8 +108,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def executed(self) -> frozenset[str]:
-        """The names of the trees that are executed: the main tree and its subtrees, or all trees if no file names a
-        main tree."""
+        """The names of the trees that are executed: the main tree and its subtrees, or all trees if the first file
+        names no main tree."""
         if self.main is not None and self.main in self.trees:
             return self.reached(self.main)
         return frozenset((*self.trees, ""))
@@ -220,7 +219,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     @property
     def has_all_models(self) -> bool:
-        """Whether the user has declared all models, in a Groot2 project or in settings."""
+        """Whether all nodes are assumed to have models, because models describe nodes that BehaviorTree.CPP does not
+        have and are listed in a Groot2 project or in the settings."""
         is_project = any(path.endswith(PROJECT_EXTENSION) for path, _ in self.files)
         return self.has_own_models and (is_project or bool(self.settings.models))
 

@@ -17,7 +17,8 @@ def ports_of(node: TreeNode) -> Iterator[PortSetting]:
 
 
 def unknown_names(node: TreeNode, known: Node) -> list[str]:
-    """The names of the attributes of a node that do not set any of its ports."""
+    """The names of the attributes of a node that do not set any of its ports, including those that use the alias of a
+    port."""
     names = (setting.attribute.name for setting in ports_of(node))
     return [name for name in names if (port := known.port(name)) is None or port.alias_of]
 
@@ -29,7 +30,8 @@ def missing_ports(node: TreeNode, known: Node) -> list[Port]:
 
 def probable_ports(node: TreeNode, known: Node) -> Mapping[str, tuple[str, ...]]:
     """The unknown attributes of a node, each with the names of the ports that it is probably intended to set, the most
-    probable first. These are the ports with similar names, or the only required port that is not set."""
+    probable first. These are the port with this alias, the ports with similar names, or the only required port that is
+    not set."""
     unknown = unknown_names(node, known)
     if not unknown:
         return {}

@@ -11,8 +11,8 @@ class TreeSettings(Record, frozen=True):
     """The user's settings.
 
     Attributes:
-        models: files with models of nodes, in addition to those that trees include.
-        libraries: the names of the libraries whose nodes are available.
+        models: the paths of files with models of nodes, in addition to those that trees include.
+        libraries: the names of the libraries whose nodes are available in addition to those that the trees use.
         version: the version of BehaviorTree.CPP.
     """
 

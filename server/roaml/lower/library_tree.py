@@ -42,7 +42,7 @@ from roaml.scxml.names import CONDITIONS_PREFIX
 from roaml.text import Location
 
 STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
-"""The codes with which a machine answers."""
+"""The statuses with which a machine answers a tick, as codes."""
 
 _NEVER_TICK_ENDED = frozenset(
     (
@@ -231,7 +231,9 @@ class LibraryTreeBuilder:
                     child = self.child(code)
                     translated.append(code)
                 except NodeTooLargeError:
-                    refusals.append(TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states"))
+                    refusals.append(
+                        TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states to be translated")
+                    )
                 except TreeRefusal as refusal:
                     refusals.append(refusal)
             children[instance.number] = child

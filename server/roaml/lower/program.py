@@ -45,8 +45,8 @@ class TranslatableSystem(Record, frozen=True, eq=False):
         return self.node(automaton.instance.number if automaton.instance else 0)
 
     def address(self, number: int) -> str:
-        """The part of event names that identifies a tree node: its number, followed by `_inner` if an automaton for
-        its conditions has the number (docs/spec/nodes.md#library)."""
+        """The part of event names that identifies a tree node: its number, followed by a suffix such as `_inner` if an
+        automaton for its conditions has the number (docs/spec/nodes.md#library)."""
         return str(number) if self.library is None else self.library.address(number)
 
     def node(self, number: int) -> Location:

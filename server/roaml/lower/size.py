@@ -376,5 +376,5 @@ def _is_literal(tree: Expr) -> bool:
 
 
 def _literals(tree: Expr) -> list[Expr]:
-    """The outermost literals of an array expression, at most 8."""
+    """The literals of arrays, objects and strings in an expression, at most 8, outer ones before those inside."""
     return [] if isinstance(tree, Name) else [node for node in walk(tree) if _is_literal(node)][:8]

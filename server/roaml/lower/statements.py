@@ -187,7 +187,7 @@ class StatementLowering(Record, eq=False):
         yield Send(event, tuple(ready), origin)
 
     def fresh(self, type_: Type, origin: Location) -> Data:
-        """Add a variable for a random number to the automaton, and return it."""
+        """Add a variable for a value with random numbers to the automaton, and return it."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
         while (unused := f"random_{count}") in taken:

@@ -211,7 +211,8 @@ def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
     """The tree that is executed; if it is ambiguous, the names of the possible trees.
 
-    It is the tree in `main_tree_to_execute` of the first file, otherwise the only tree that no other tree uses.
+    It is the tree that `main_tree_to_execute` of the first file names, or the only tree of all files. Without this
+    attribute, it is the only tree that no other tree uses; files that only a Groot2 project lists are then left out.
     """
     trees = [tree for file in files for tree in file.trees]
     main = files[0].main if files else ""
@@ -440,7 +441,8 @@ class Expansion(Record, frozen=True):
 
 
 def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
-    """The executed tree; it is empty if the tree is ambiguous or has too many nodes."""
+    """The executed tree; it is empty if the tree is ambiguous, has no node, or is too large
+    (`TreeExtent.is_expanded`)."""
     main = main_tree(files)
     if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
         return Expansion()

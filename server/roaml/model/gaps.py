@@ -73,7 +73,7 @@ class Gap(Record, frozen=True):
 
     Attributes:
         act: what the part may do.
-        name: the name of the topic, service or action as written, of the event, or of the port; `None` if any name is
+        name: the name of the topic, service or action (as written), of the event or of the port; `None` if any name is
             possible.
         port: the port whose value is the name; "" if there is none.
     """
@@ -150,7 +150,8 @@ class _Search:
     # ---------------------------------------------------- elements out of place
 
     def _kind_of(self, element: Element, parent: ElementType) -> SymbolKind | None:
-        """The kind of symbol that a misplaced or unknown element probably declares; `None` if it declares none."""
+        """The kind of ROS interface that a misplaced or unknown element probably declares; `None` if it declares
+        none."""
         type_ = HL_SCXML.find(element.name)
         types = [type_] if type_ is not None else self._resembling(element, parent)
         return next((kind for type_ in types if (kind := _kind(type_))), None)

@@ -206,7 +206,7 @@ def _tree(system: System) -> Iterator[_Event]:
 
 
 def _calls(parent: SystemAutomaton, number: int) -> bool:
-    """Whether a parent can tick or halt its child `number`."""
+    """Whether a parent can tick or halt its child with the instance number `number`."""
     assert parent.instance is not None
     plugin = parent.outline.plugin
     return plugin.any_child or parent.instance.children.index(number) < plugin.children

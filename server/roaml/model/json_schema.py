@@ -3,7 +3,8 @@
 
 The root object is a struct named by its `title`. An inline object is a struct named after its property. A `$ref` names
 a definition; definitions that the root does not reach declare no structs. A part that has no corresponding type in
-HL-SCXML is reported. If there are findings, a struct that cannot be read or is not reached is declared as incomplete.
+HL-SCXML is reported. A struct that cannot be read is declared as incomplete. If there are findings, so are the
+definitions that are not reached.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class _Reader:
     def root(self) -> None:
         schema = self.value
         if not isinstance(schema, JsonObject):
-            self.report(schema, "struct declarations in JSON must be a JSON Schema: an object")
+            self.report(schema, "struct declarations in JSON must be a JSON Schema, which is an object")
             self.incomplete(schema, None)
             return
         if _text(schema.get("type")) != "object":
@@ -78,7 +79,7 @@ class _Reader:
         self.depth += 1
         properties = schema.get("properties")
         if not isinstance(properties, JsonObject) or not properties.members:
-            self.report(properties or schema, f"the struct `{name.value}` has no properties")
+            self.report(properties or schema, f"the struct `{name.value}` has no members; add them as `properties`")
             self.incomplete(schema, name)
             return
         # A struct is listed before the structs that it contains.
@@ -100,7 +101,7 @@ class _Reader:
         while isinstance(schema, JsonObject) and _text(schema.get("type")) == "array":
             items = schema.get("items")
             if items is None:
-                self.report(schema, f"the array `{name.value}` has no `items`: its elements have no type")
+                self.report(schema, f"the array `{name.value}` has no `items`; add the schema of its elements")
                 return None
             schema, dimensions = items, (*dimensions, None)
         if not isinstance(schema, JsonObject):
@@ -123,7 +124,8 @@ class _Reader:
             self.report(schema, f"`{name.value}` has no `type`; valid types are {', '.join(_BASE)}, array and object")
         else:
             self.report(
-                kind, f"the type of `{name.value}` is not supported; valid types are {', '.join(_BASE)}, array, object"
+                kind,
+                f"the type of `{name.value}` is not supported; valid types are {', '.join(_BASE)}, array and object",
             )
         return ""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Determines the kind of a file from its content, never from its extension alone (docs/spec/files.md#dialects)."""
+"""Determines the kind of a file from its name and its content (docs/spec/files.md)."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _HEAD = 20_000
 
 
 def root_name(text: str) -> str:
-    """The name of the first XML element; "" if there is none near the beginning of the text."""
+    """The name of the first XML element; "" if there is none among the first 20,000 characters of the text."""
     at, head = 0, text[:_HEAD]
     while (less := head.find("<", at)) >= 0:
         if skipped := _SKIPPED.match(head, less):
@@ -75,8 +75,8 @@ def root_name(text: str) -> str:
 
 
 def kind_of(path: str, text: str) -> FileKind:
-    """The kind of a file, from its content. A system that lists the file may determine its kind more precisely
-    (`roaml.project.analysis`)."""
+    """The kind of a file, from its name and its content. A system that lists the file may determine its kind more
+    precisely (`roaml.project.analysis`)."""
     name = path.replace("\\", "/").rpartition("/")[2]
     if name == CONFIG_FILE or (name == PROJECT_FILE and _OUR_TABLE.search(text)):
         return FileKind.CONFIGURATION

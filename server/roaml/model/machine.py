@@ -163,8 +163,8 @@ Statement: TypeAlias = Assign | Send | If | RosSend | ReturnStatus | ReturnHalte
 
 
 class Target(Record, frozen=True, eq=False):
-    """A target of a transition. `element` is the `<target>`; `None` for the attribute `target`. `probability` is the
-    text of the attribute `prob`; `None` if it is missing."""
+    """A target of a transition. `element` is the `<target>`; `None` for a target that an attribute names. `probability`
+    is the text of the attribute `prob`; `None` if it is missing."""
 
     element: Element | None
     state: Name | None
@@ -176,8 +176,8 @@ class Handler(Record, frozen=True, eq=False):
     """A transition or a callback that works like one.
 
     Attributes:
-        trigger: the part that it waits for; `None` for an eventless transition.
-        event: the event of a plain transition.
+        trigger: what the handler waits for, such as an event, a message or a tick; `None` for an eventless transition.
+        event: the event that a `<transition>` names; `None` if there is none.
         handle: the declaration that a ROS callback refers to.
         child: the child index of `bt_child_status` and `bt_child_halted`.
         targets: all `<target>` children; without them, or with the attribute `target`, exactly one target. The handler
@@ -234,9 +234,9 @@ class Chart(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def executed(self) -> tuple[Statement, ...]:
-        """The statements that transitions execute. The statements of an `<onentry>` are left out if no transition
-        enters its state, and those of an `<onexit>` if no transition leaves its state: they become parts of transitions
-        (docs/spec/jani.md)."""
+        """The statements that transitions execute. They include the statements of an `<onexit>` if a transition leaves
+        its state, and those of an `<onentry>` if its state is initial or the target of a transition, or if a transition
+        names a state that does not exist (docs/spec/machines.md#onentry)."""
         return tuple(statement for body in self._executed() for statement in statements(body))
 
     def _executed(self) -> Iterator[tuple[Statement, ...]]:
@@ -266,7 +266,7 @@ class Thread(Record, frozen=True, eq=False):
 
 
 class Machine(Record, frozen=True, eq=False, dict=True):
-    """One document.
+    """A state machine document.
 
     Attributes:
         root: `ascxml` or `scxml`.

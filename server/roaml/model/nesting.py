@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sizes of structs and messages that contain each other, computed before they are expanded."""
+"""The sizes of structs and messages, including those that they contain. They are computed without expanding them."""
 
 from __future__ import annotations
 

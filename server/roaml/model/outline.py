@@ -89,7 +89,7 @@ class EventReceived(Record, frozen=True):
 
     Attributes:
         reads: the parameters that are read.
-        forwarded: whether the types of parameters that are sent depend on them.
+        forwarded: whether the types of parameters that the transition sends depend on parameters of the event.
     """
 
     event: str
@@ -101,7 +101,7 @@ class TimerOutline(Record, frozen=True):
     """A declared timer.
 
     Attributes:
-        rate: the rate in Hz, as written.
+        rate: the rate in Hz, as written; "" if a port provides it.
         port: the port that provides the rate; "" if there is none.
         users: the number of charts with a callback of the timer.
     """
@@ -123,7 +123,7 @@ class PluginOutline(Record, frozen=True):
     Attributes:
         ticked, halted: whether it handles ticks and halts.
         answers_tick, answers_halt: whether it answers ticks and halts.
-        children: the greatest literal child index that it ticks or halts, plus 1.
+        children: the greatest literal child index that it ticks or halts, plus 1; 0 if there is none.
         any_child: whether it ticks or halts children by a variable index.
         ticked_children: the literal indices of the children that it ticks; `None` if it may tick any child.
         halts_children: whether it halts children and waits for their answer.

@@ -11,13 +11,14 @@ DEFAULT_RANDOM_VALUES = 100
 MAX_RANDOM_VALUES = 10_000
 """The maximum of `random_values`. It is limited because each value is a destination of an edge in JANI."""
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
+"""Unit of time -> its length in ns, the longest first."""
 
 
 class Parameters(Record, frozen=True):
     """The parameters with which a system is translated.
 
     Attributes:
-        max_time: the bound of the clock in ns; `None` if it is not given or not a number.
+        max_time: the bound of the clock in ns; `None` if it is not given or invalid.
         tick_rate: the rate of ticks of the behavior tree, in Hz.
         random_values: the number n of the values of `Math.random()`: 0, 1/n, 2/n, … (docs/spec/expressions.md#random).
     """
@@ -45,7 +46,7 @@ NO_OVERRIDES = Overrides()
 
 
 def duration(text: str) -> int | None:
-    """The duration in `text`, in ns; `None` if `text` is not a duration such as `100 s` or `250ms`."""
+    """The duration in `text`, in ns; `None` if `text` is not a duration above 0, such as `100 s` or `250ms`."""
     number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
     unit = text.strip().removeprefix(number)
     value = integer(number.strip())

@@ -77,7 +77,8 @@ PORTS = "ports"
 
 
 class PortVariable(Record, frozen=True, eq=False):
-    """A variable of a port. `field` is the dotted path of a field in a message, or the parameter of an event."""
+    """A variable of a port. `field` is the dotted path of a field in a message, or the name of a parameter of an
+    event."""
 
     element: Element
     kind: PortVariableKind
@@ -101,7 +102,7 @@ class Port(Record, frozen=True, eq=False):
 
     @property
     def part(self) -> ObservedPart | None:
-        """The value of the attribute `event`; `None` if it is missing or not one of its values."""
+        """The value of the attribute `event`; `None` if the attribute is missing or has an invalid value."""
         return _PARTS.get(self.event.value) if self.event is not None else None
 
 
@@ -129,8 +130,7 @@ class WrittenFormula(Record, frozen=True, eq=False):
 
 
 class WrittenProperty(Record, frozen=True, eq=False):
-    """A property as written. `conditions` are the conditions in `<event>` or
-    `<events>`."""
+    """A property as written. `conditions` are the conditions in `<event>` or `<events>`."""
 
     element: Element
     section: PropertySection
@@ -145,7 +145,8 @@ class WrittenProperty(Record, frozen=True, eq=False):
 
     @property
     def expressions(self) -> Iterator[Expression]:
-        """All conditions of the property, in the order of the inputs of patterns."""
+        """All conditions of the property: those of the pattern, then those of the first scope, then those of the
+        formula."""
         yield from self.conditions
         for scope in self.scopes[:1]:
             yield from (condition for condition in (scope.event, scope.until) if condition is not None)

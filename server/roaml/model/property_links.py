@@ -22,7 +22,7 @@ from roaml.expr.infer import (
 )
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Name, walk
-from roaml.expr.types import UNKNOWN, ScalarKind, Type, is_kind
+from roaml.expr.types import BOOL, UNKNOWN, ScalarKind, Type, is_kind
 from roaml.model.exact_number import exact_number
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
@@ -260,7 +260,7 @@ class _Linker:
         if written.section is PropertySection.ASSUMES:
             self.report(ProblemKind.FORM, expect.span, "an assumption has no probability; remove `expect`")
         elif comparison is None or not 0 <= comparison.number <= 1:
-            message = "`expect` must compare the probability with a number from 0 to 1: `>= 0.9`"
+            message = "`expect` must compare the probability with a number from 0 to 1, for example `>= 0.9`"
             self.report(ProblemKind.FORM, expect.span, message)
 
     def _check_condition(self, condition: Expression) -> None:
@@ -323,9 +323,7 @@ class _Linker:
     def _check_start(self, condition: Expression) -> None:
         if self._event(condition.tree) is not None:
             name = condition.text.strip()
-            message = (
-                f"`{name}` is false at the start of every trace and between messages, so this property never holds"
-            )
+            message = f"`{name}` is false at the start of every trace and between events, so this property never holds"
             self.report(ProblemKind.FALSE_AT_START, condition.span, message)
 
     def _conditions(self, written: WrittenProperty, pattern: Pattern) -> dict[str, Expression] | None:
@@ -412,7 +410,11 @@ class _Linker:
         return self._in_steps(interval, NANOSECONDS[interval.unit.value], self.step)
 
     def _no_clock(self, span: Span) -> None:
-        self.report(ProblemKind.TIME, span, "the system has no timer, so it has no clock that measures time")
+        self.report(
+            ProblemKind.TIME,
+            span,
+            "the system has no timer and therefore no clock that measures this time; declare a timer",
+        )
 
     def _in_steps(self, interval: TimeInterval, unit: int, step: int) -> Window | None:
         upper_written = interval.time or interval.within
@@ -444,6 +446,8 @@ class _Linker:
 
 
 MAX_STEPS = 1_000_000
+"""The maximum number of steps of the clock in the bounds of a time interval."""
+
 _HINTS = (ProblemKind.NEVER_TOGETHER, ProblemKind.FALSE_AT_START)
 
 
@@ -474,7 +478,8 @@ def _in_words(problem: object, close: tuple[str, ...]) -> str:
         case UnknownMember(name=name):
             return f"there is no member `{name}`; select the field in a `<state_var>` of the port"
         case BadOperand(operator=operator, given=given, required=required):
-            return f"`{operator}` takes {required}, not a value of type `{given}`"
+            operand = "a boolean" if required == BOOL else "a number"
+            return f"`{operator}` takes {operand}, not a value of type `{given}`"
         case BadComparison(operator=operator, left=left, right=right):
             return f"`{operator}` cannot compare `{left}` with `{right}`"
         case UnknownFunction(name=name):

@@ -70,8 +70,8 @@ _PARTS = {
     ObservedPart.RESULT: "result",
 }
 _WITHOUT_FIELDS = {
-    ObservedPart.GOAL_RESPONSE: "answer to a goal",
-    ObservedPart.CANCEL_REQUEST: "request to cancel a goal",
+    ObservedPart.GOAL_RESPONSE: "an answer to a goal",
+    ObservedPart.CANCEL_REQUEST: "a request to cancel a goal",
 }
 """The events of an action that have no fields, in words."""
 _GIVEN_BY = {
@@ -306,7 +306,7 @@ class PortLinker:
                 message = f"the tree has no node `{name.value}`{hint}"
                 self.report(ProblemKind.UNKNOWN_PORT, name.span, message, close)
             return LinkedPort(port, (), tuple(self._unlinked(port)), is_known=False)
-        status = Struct("", (("status", INT32),) if event is ObservedPart.RESPONSE else (), f"{event} of a node")
+        status = Struct("", (("status", INT32),) if event is ObservedPart.RESPONSE else (), f"a {event} of a node")
         variables = tuple(self._variables(port, status, "", event))
         return LinkedPort(port, (PortEvent(f"bt_{matches[0].number}_{event}"),), variables)
 
@@ -345,7 +345,7 @@ class PortLinker:
                 case PortVariableKind.EVENT:
                     yield LinkedVariable(variable.id.value, PortVariableKind.EVENT, BOOL, "", variable)
                 case PortVariableKind.STATE:
-                    type_, parameter = self._field(variable, data, prefix)
+                    type_, parameter = self._field(variable, data, prefix, port.kind)
                     yield LinkedVariable(variable.id.value, PortVariableKind.STATE, type_, parameter, variable)
                 case PortVariableKind.GOAL_ID | PortVariableKind.RESULT_CODE | PortVariableKind.ACCEPTED:
                     if port.kind is PortKind.ACTION and event not in _GIVEN_BY[variable.kind]:
@@ -358,9 +358,10 @@ class PortLinker:
                 case _:
                     assert_never(variable.kind)
 
-    def _field(self, variable: PortVariable, data: Struct | None, prefix: str) -> tuple[Type, str]:
+    def _field(self, variable: PortVariable, data: Struct | None, prefix: str, kind: PortKind) -> tuple[Type, str]:
         if variable.field is None:
-            message = "`field` is missing; add the name of the field whose value the variable gets"
+            attribute, noun = ("param", "parameter") if kind is PortKind.PLAIN else ("field", "field")
+            message = f"`{attribute}` is missing; add the name of the {noun} whose value the variable gets"
             self.report(ProblemKind.PORT_VARIABLE, variable.element.name_span, message)
             return UNKNOWN, ""
         parts = variable.field.value.split(".")
@@ -373,12 +374,16 @@ class PortLinker:
             if type_ is None:
                 known = list(_leaf_paths(data))
                 close = close_names(variable.field.value, known) or (tuple(known) if len(known) == 1 else ())
-                hint = alternatives(close, known, "field")
-                message = f"`{data}` has no field `{variable.field.value}`{hint}"
+                noun = "parameter" if kind is PortKind.PLAIN else "field"
+                whole = f"`{data.name}`" if data.name else data.what
+                hint = alternatives(close, known, noun)
+                message = f"{whole} has no {noun} `{variable.field.value}`{hint}"
                 self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message, close)
                 return _declared(variable), parameter
         if isinstance(type_, Struct):
-            message = f"`{variable.field.value}` is a message; select one of its fields"
+            message = (
+                f"`{variable.field.value}` is a message; write the path of one of its fields, such as `position.x`"
+            )
             self.report(ProblemKind.PORT_VARIABLE, variable.field.span, message)
             return UNKNOWN, parameter
         assert type_ is not None

@@ -70,6 +70,7 @@ def _cells(type_: Type, most: int, sent: bool, rows: int, lengths: int) -> int:
     """The number of cells of a type inside arrays.
 
     Args:
+        most: the number of elements of an array without a bound, and of characters of a string.
         rows: the product of the bounds of the enclosing arrays.
         lengths: the number of cells for the lengths of the enclosing arrays; each leaf has its own lengths.
     """

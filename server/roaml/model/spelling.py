@@ -11,7 +11,8 @@ from roaml.xml_syntax import Element
 
 
 def meant(element: Element, name: str, known: Container[str]) -> Name | None:
-    """The value of the attribute `name`, or of an attribute with a similar name; `None` if there is neither.
+    """The value of the attribute `name`, or of an attribute with a similar name; `None` if there is neither, or if the
+    value is empty.
 
     Args:
         known: the valid names of attributes, which are not regarded as misspelled.

@@ -36,7 +36,7 @@ class Expression(Record, frozen=True):
 
     @property
     def broken(self) -> bool:
-        """Whether a part of the text is missing in the tree."""
+        """Whether the expression has syntax errors, so that parts of the text are missing in `tree`."""
         return bool(self.findings)
 
 

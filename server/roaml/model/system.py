@@ -55,8 +55,8 @@ ANY_TYPE = "any"
 
 
 Fact: TypeAlias = "tuple[Act, str | None]"
-"""An act (see `Gap`) and the name that it concerns; topics have the form of their names in events. `None` means any
-name."""
+"""An act (see `Gap`) and the name that it concerns; `None` means any name. The name of a topic is sanitised, as in
+names of events."""
 
 
 class SystemAutomaton(Record, frozen=True):
@@ -65,7 +65,8 @@ class SystemAutomaton(Record, frozen=True):
     Attributes:
         path: the file of the machine; "" for nodes of BehaviorTree.CPP.
         instance: the node of the tree; `None` for ROS nodes.
-        index: the index of the entry in the system file, so that a file that is listed twice gives two automata.
+        index: the index among the ROS nodes of the system file, so that a file that is listed twice gives two automata;
+            0 for nodes of the tree.
     """
 
     name: str
@@ -104,7 +105,8 @@ class ChannelEndpoint(Record, frozen=True):
 
 
 class Channel(Record):
-    """A topic, service or action. `sources` are its publishers or servers, `users` its subscribers or clients."""
+    """A topic, service or action. The name of a topic is sanitised. `sources` are its publishers or servers, `users`
+    its subscribers or clients."""
 
     name: str
     sources: list[ChannelEndpoint] = field(default_factory=list)
@@ -169,7 +171,7 @@ class System(Record, frozen=True, eq=False, dict=True):
         gaps: the facts that unreadable parts of the system file and the trees, and unreadable files, may contain. The
             outline of a machine contains the facts of its own unreadable parts.
         plugins_known: whether every plugin that the system lists could be read and has a name.
-        observed: the names of the variables that the properties use.
+        observed: the names of the global variables of the translation that the properties use.
         entries: name -> entry of the blackboard, for a tree with `is_library_tree`; empty for other trees.
     """
 
@@ -248,7 +250,8 @@ class System(Record, frozen=True, eq=False, dict=True):
         return any(may_give_variable(act, other, name) for act, other in self.possible)
 
     def facts(self, gap: Gap, automaton: SystemAutomaton | None = None) -> set[Fact]:
-        """The facts of a gap in the machine of `automaton`; `None` for a gap in the system file or in a tree."""
+        """The facts of a gap in the machine of `automaton`. If `automaton` is `None`, the gap is in the system file or
+        in a tree."""
         if gap.act is GapAct.NODE:
             return self._facts_of_any_node()
         if gap.act is GapAct.REMAP:
@@ -351,8 +354,9 @@ class System(Record, frozen=True, eq=False, dict=True):
         return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
 
     def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
-        """The path and outline of the plugin named `name`; "" and `None` if there is none. The nodes of
-        BehaviorTree.CPP, whose path is "", take precedence (docs/spec/trees.md#nodes)."""
+        """The path and outline of the plugin named `name`; "" and `None` if there is none. The nodes of the libraries
+        have the path "". Those that the schema of trees defines take precedence over plugins with the same name
+        (docs/spec/trees.md#nodes); over the others, plugins take precedence."""
         builtin = (library_plugins() if self.is_library_tree else builtin_plugins()).get(name)
         if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in self._plugins):
             return "", builtin
@@ -384,7 +388,7 @@ class System(Record, frozen=True, eq=False, dict=True):
         return self._channels(SymbolKind.ACTION_SERVER, SymbolKind.ACTION_CLIENT, str)
 
     def channels(self, kind: SymbolKind) -> Mapping[str, Channel]:
-        """The topics, services or actions, depending on `kind`."""
+        """The channels of the kind `kind`: TOPIC, SERVICE or ACTION. Other kinds raise `ValueError`."""
         match kind:
             case SymbolKind.TOPIC:
                 return self.topics
@@ -594,7 +598,7 @@ def _library_outline(name: str, node: Node) -> MachineOutline:
 
 
 def optional_ports(name: str) -> frozenset[str]:
-    """The ports of the library's node `name` that need not be set."""
+    """The ports that need not be set of `name`, a node of a library."""
     element = BEHAVIOR_TREE.elements.get(name)
     if element is not None and element.node:
         return frozenset(a.name for a in element.ports if a.port and not a.port.required)

@@ -44,7 +44,7 @@ NODE_TYPES = ("node-ascxml", "ros-scxml")
 
 
 class SystemInput(Record, frozen=True, eq=False):
-    """An `<input>`: a file of the system. `section` is the name of the enclosing element."""
+    """An `<input>`: a file of the system. `section` is the section that contains it."""
 
     element: Element
     section: SystemSection
@@ -155,7 +155,7 @@ def section_named(name: str) -> SystemSection | None:
 
 
 def _section(element: Element) -> SystemSection | None:
-    """The section that an element contains; `None` if it is not a section. A misspelled name is corrected."""
+    """The section that an element represents; `None` if it is not a section. A misspelled name is corrected."""
     if element.name in SECTION_NAMES or element.prefix:
         return section_named(element.name)
     if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):

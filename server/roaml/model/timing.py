@@ -28,8 +28,8 @@ class Period(Record, frozen=True):
 
 
 def period(rate: Fraction) -> Period:
-    """The period of a rate in Hz, rounded down. Its unit is the largest one in which the period is exact or has at
-    least three digits."""
+    """The period of a rate in Hz, rounded down, but at least 1 ns. Its unit is the largest one in which the period is
+    exact or has a count of at least 101."""
     exact = NANOSECONDS_PER_SECOND / rate
     for unit in NANOSECONDS.values():
         count = exact / unit
@@ -39,7 +39,8 @@ def period(rate: Fraction) -> Period:
 
 
 def periods(system: System, parameters: Parameters) -> Iterator[Period]:
-    """The periods of all timers of a system, without those whose rate is invalid."""
+    """The periods of all timers of a system, including the timer that ticks the tree; timers with an invalid rate are
+    left out."""
     if system.instances:
         yield period(Fraction(str(parameters.tick_rate)))
     for automaton in system.automata:

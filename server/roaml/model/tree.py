@@ -44,7 +44,7 @@ class TreeNode(Record, frozen=True, eq=False):
         plugin: the name of its plugin, from `ID` or, in the compact form, from the tag.
         is_subtree: whether it represents the tree named `plugin`.
         type: the grammar of the node if it is a node of BehaviorTree.CPP.
-        scripts: the attributes with pre- and post-conditions.
+        scripts: the attributes that contain scripts, such as pre- and post-conditions.
         compact: whether it is written as `<X/>` instead of `<Action ID="X"/>`.
     """
 

@@ -107,8 +107,8 @@ class ValuePlace(Record, frozen=True, eq=False):
 
     Attributes:
         part: the part of the machine that contains the value.
-        late: whether an event is sent, or a condition of an `<if>` is evaluated, between the arrival of the event and
-            the evaluation of this value, so that the event data may be newer
+        late: whether further steps, such as the sending of an event or the evaluation of a condition of an `<if>`, are
+            between the arrival of the event and the evaluation of this value, so that the event data may be newer
             (docs/spec/machines.md#event-data-lifetime).
         branch_conditions: the conditions of enclosing `<if>` elements, which are known to hold or not to hold; `None`
             if there are none.

@@ -156,15 +156,15 @@ class Analysis:
         return self.files.text(path)
 
     def kind(self, path: str) -> FileKind:
-        """The kind of the file, from its content."""
+        """The kind of the file, from its name and its content."""
         source = self.source(path)
         if source is None:
             return FileKind.UNKNOWN
         return self.memo.get("kind", path, source.digest, lambda: kind_of(path, source.text))
 
     def kind_in(self, path: str, system: str | None) -> FileKind:
-        """The kind of a file, from its content. If the content does not identify the kind, it is the kind with which
-        `system` lists the file."""
+        """The kind of a file, from its name and its content. If they do not identify the kind, and `system` lists the
+        file as struct declarations in JSON, it is this kind."""
         kind = self.kind(path)
         if kind is not FileKind.UNKNOWN or system is None:
             return kind
@@ -267,7 +267,8 @@ class Analysis:
     # ------------------------------------------------------------- ROS types
 
     def interface(self, kind: str, name: str) -> InterfaceType | NotFound:
-        """The ROS type `name`, as written, of the kind msg, srv or action, with HL-SCXML types."""
+        """The ROS type `name`, as written, of the kind msg, srv or action, with HL-SCXML types; `NotFound` with the
+        reason if it cannot be used."""
         key = (kind, name)
         if key not in self._interfaces:
             self._interfaces[key] = self._find_interface(kind, name)
@@ -356,7 +357,8 @@ class Analysis:
         return ListedFile(entry, path, None, kind_required, kind)
 
     def tree_paths(self, path: str) -> tuple[str, ...]:
-        """The tree files of a system without duplicates: the first listed one, then those of `trees_from`."""
+        """The tree files of a system without duplicates: those of `trees_from` for the first listed tree file that can
+        be used; empty if there is none."""
         first = next((f.path for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable), None)
         return self.trees_from(first) if first else ()
 
@@ -474,7 +476,7 @@ class Analysis:
 
     def family(self, path: str) -> tuple[str, ...]:
         """The tree files that are connected with the tree file `path` by includes, in either direction. The files are
-        not in a system. Files that no other file includes come first."""
+        not in a system. A file that no other file includes precedes the files that it includes."""
         return tuple(file.path for file in self.family_outlines(path))
 
     def family_outlines(self, path: str) -> tuple[TreeFileOutline, ...]:
@@ -856,8 +858,8 @@ class Analysis:
         )
 
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
-        """The machine in the file `path` with its types, as a part of `system`; `None` for a machine without a
-        system."""
+        """The machine in the file `path` with its types, as a part of `system`. If `system` is `None`, the machine is
+        not in a system."""
         linked = self.system(system) if system else None
         return self.typed(path, system, self.structs(system), linked.event_data if linked else {})
 

@@ -132,7 +132,8 @@ class RuleRunner:
         )
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
-        """The findings of the rules in the file `path` as a part of `system`; `None` for a file without a system."""
+        """The findings of the rules in the file `path` as a part of `system`. If `system` is `None`, the file is not in
+        a system."""
         source = self.analysis.source(path)
         if source is None:
             return ()
@@ -143,7 +144,7 @@ class RuleRunner:
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # an internal error in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
-            return (internal_error("model", error),)
+            return (internal_error("the analysis of this file", error),)
 
     def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
@@ -173,10 +174,11 @@ class RuleRunner:
 
 
 def _limited(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
-    """The findings of one rule in one file. If there are more than `MAX_FINDINGS`, the last one says so."""
+    """The findings of one rule in one file. If there are more than `MAX_FINDINGS`, a last finding that states this
+    follows the first `MAX_FINDINGS`."""
     kept = list(itertools.islice(findings, MAX_FINDINGS + 1))
     if len(kept) > MAX_FINDINGS:
-        message = f"the first {MAX_FINDINGS:,} findings of this kind are shown; there are more"
+        message = f"only the first {MAX_FINDINGS:,} findings of `{rule.code}` in this file are shown"
         kept[-1] = rule.at(kept[-1].span, message, severity=kept[-1].severity)
     return kept
 
@@ -277,7 +279,7 @@ class _Run:
                 yield from _limited(rule, check())
             except Exception as error:  # an internal error must not stop the other rules
                 log.exception("rule %s failed on %s", rule.code, self.path)
-                yield internal_error(rule.code, error)
+                yield internal_error(f"the rule `{rule.code}`", error)
 
     def _own_checks(self) -> list[tuple[Rule, Callable[[], Iterable[Finding]]]]:
         try:
@@ -305,7 +307,7 @@ class _Run:
                     ]
         except Exception as error:  # after an internal error, the findings of the parsers are still useful
             log.exception("the model of %s cannot be built", self.path)
-            failure = internal_error("model", error)
+            failure = internal_error("the analysis of this file", error)
             return [(internal_error_rule.RULE, lambda: [failure])]
         return []
 
@@ -454,7 +456,7 @@ class _Run:
             if target is None:
                 if self.system_path and include.package is not None:
                     problems[include.path.value] = (
-                        f"no folder around this file has the ROS package `{include.package.value}`"
+                        f"no folder around this file contains the ROS package `{include.package.value}`"
                     )
                 continue
             source = self.analysis.files.read(target)
@@ -497,8 +499,9 @@ class _Run:
         return PropertiesContext(self.source, json[0], properties, self.system, variables, taken)
 
 
-def internal_error(where: str, error: Exception) -> Finding:
+def internal_error(subject: str, error: Exception) -> Finding:
+    """The finding that `error` was raised by `subject`, a phrase such as ``the rule `x` ``."""
     message = (
-        f"the rule `{where}` failed ({type(error).__name__}: {error}); this is an internal error, please report it"
+        f"{subject} failed ({type(error).__name__}: {error}): this is an internal error of the tool; please report it"
     )
     return internal_error_rule.RULE.at(Span(0, 0), message)

@@ -105,8 +105,8 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
     """The settings in the nearest configuration file, in the folder of `path` or an enclosing folder.
 
     Returns:
-        The settings, and sentences about errors in the configuration. If `Settings.origin` is set, the diagnostics of
-            that file also contain these errors.
+        The settings, and messages about errors in the configuration, which begin with the path of the file. If
+            `Settings.origin` is set, the diagnostics of that file also contain these errors.
     """
     disk = DiskFiles()
     for folder in folders_above(path):

@@ -20,8 +20,11 @@ from roaml.text import decode
 
 SKIPPED_FOLDERS = frozenset(("build", "install", "log", "node_modules", "venv", "env", "__pycache__", "site-packages"))
 MAX_FILES = 50_000
+"""The maximum number of paths that `candidates` returns."""
+
 _HEAD = 65_536
-"""The number of bytes to read at the beginning of a file: more than `root_name` needs in any encoding but UTF-32."""
+"""The number of bytes to read at the beginning of a file. The 20,000 characters that `root_name` reads fit if a
+character has at most 3 bytes."""
 
 
 def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots | None = None) -> Iterator[str]:

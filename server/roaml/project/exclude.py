@@ -19,8 +19,8 @@ MAX_WILDCARDS = 3
 """The maximum number of `*` in one part of a pattern, and of `**` in a pattern. It is limited because a pattern may
 come from an untrusted source, and the time to compare a path grows with its length to the power of this number."""
 MAX_DEPTH = 30
-"""The maximum number of parts of a path that are compared. A file that is deeper is excluded if one of its folders is
-excluded."""
+"""The maximum number of parts of a path that are compared. A file that is deeper is excluded if one of its first 30
+folders is excluded."""
 
 
 class Exclude(Record, frozen=True):
@@ -35,11 +35,11 @@ class Exclude(Record, frozen=True):
     folder: str = ""
 
     def covers(self, path: str, root: str) -> bool:
-        """Whether the file `path` is excluded. It is below the folder `root`."""
+        """Whether the file `path`, which is below the folder `root`, is excluded."""
         return self._covers(path, root, "")
 
     def covers_folder(self, path: str, root: str) -> bool:
-        """Whether all files in the folder `path` are excluded. The folder is `root` itself or below `root`."""
+        """Whether all files in the folder `path`, which is `root` itself or below `root`, are excluded."""
         return self._covers(path, root, "/")
 
     def _covers(self, path: str, root: str, end: str) -> bool:
@@ -60,9 +60,11 @@ def problem(pattern: str) -> str:
     """A message that says why `pattern` is not a valid pattern; "" if it is valid."""
     parts = pattern.split("/")
     if parts.count("**") > MAX_WILDCARDS:
-        return f"`{pattern}` contains more than {MAX_WILDCARDS} `**`"
+        return f"`{pattern}` contains more than {MAX_WILDCARDS} `**`; write a pattern with fewer"
     if any(part.count("*") > MAX_WILDCARDS for part in parts):
-        return f"`{pattern}` contains more than {MAX_WILDCARDS} `*` without a `/` between them"
+        return (
+            f"`{pattern}` contains more than {MAX_WILDCARDS} `*` without a `/` between them; write a pattern with fewer"
+        )
     try:
         _compiled((pattern,))
     except (ValueError, re.error):

@@ -15,6 +15,8 @@ from roaml.project.workspace import Snapshot
 from roaml.text import TextEdit, apply_edits
 
 MAX_PASSES = 100
+"""The maximum number of passes over a file."""
+
 
 Choice = Callable[[Diagnostic], "Fix | None"]
 """Selects the fix of a diagnostic that is applied; `None` if none is."""

@@ -12,7 +12,8 @@ from roaml.text import Location
 
 
 def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The position where a symbol is defined; `None` if it no longer exists."""
+    """The position where a symbol is defined; for an event, that of its first `<send>` in the file. `None` if the
+    symbol no longer exists."""
     name = _find(analysis, symbol)
     return None if name is None else Location(symbol.path, name.span)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The user's settings, which are the same in the editor and in CI.
 
-The settings are read from `as2fm.toml`, or from `[tool.as2fm]` in a `pyproject.toml`, in the root folder. Errors are
-reported in that file (`roaml.project.configuration`), and the valid settings are still used.
+The settings are read from the nearest `as2fm.toml`, or `pyproject.toml` with `[tool.as2fm]`, in a folder or its
+enclosing folders (`roaml.project.configuration`). Errors are reported in that file, and the valid settings are still
+used.
 """
 
 from __future__ import annotations
@@ -231,7 +232,7 @@ def _count(path: Path, value: Any, problems: list[SettingProblem]) -> int | None
 def _verify(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Any] | None:
     """The fields of `Settings` that the table `verify` sets, by name."""
     if not isinstance(value, dict):
-        problems.append(SettingProblem(path, f"`{path[0]}` must be a table"))
+        problems.append(SettingProblem(path, f"`{path[0]}` must be a table with `expect` or `scheduler`"))
         return None
     fields: dict[str, Any] = {}
     for key, setting in value.items():
@@ -257,7 +258,7 @@ def _expectations(path: Path, value: Any, problems: list[SettingProblem]) -> dic
     for name, written in value.items():
         comparison = read_comparison(written) if isinstance(written, str) else None
         if comparison is None:
-            message = f'the expectation of `{name}` must compare with a number, such as `">= 0.95"`'
+            message = f'the expectation of `{name}` must be a comparison with a number, such as `">= 0.95"`'
             problems.append(SettingProblem((*path, name), message))
         else:
             comparisons[name] = comparison

@@ -35,8 +35,8 @@ class Snapshot:
 
     Args:
         roots: the open folders.
-        listed: the files in the folders, and the documents of the editor that were never saved.
-        opened: the open buffers.
+        listed: the files in the open folders whose names are those of supported files.
+        opened: the open buffers that are in these folders and have a name of this kind.
         again: returns a snapshot in which some files have other texts.
     """
 

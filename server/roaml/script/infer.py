@@ -81,8 +81,7 @@ def _of_binary(operator: str, left: Type, right: Type) -> Type:
 
 
 def check_types(script: Script, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
-    """Report the operations of a script that always fail. `entry` returns the type that a name has before the
-    script."""
+    """The operations of a script that always fail. `entry` returns the type that a name has before the script."""
     known: dict[str, Type] = {}
 
     def lookup(name: str) -> Type:
@@ -116,7 +115,8 @@ def check_condition(script: Script, entry: Callable[[str], Type]) -> Iterator[Sc
 
 
 def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
-    """Report an assignment that is the value of a condition, because a comparison was probably intended."""
+    """The assignment that is the value of a condition, because a comparison was probably intended; empty if there is
+    none."""
     last = script.statements[-1] if script.statements else None
     if isinstance(last, Assignment) and not isinstance(last.value, Comparison):
         compared = "==" if last.operator in ("=", ":=") else ""
@@ -124,11 +124,13 @@ def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
 
 
 def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
-    """Report statements that assign nothing and are not the last one. Either an operator is missing after them, or they
+    """The statements that assign nothing and are not the last one. Either an operator is missing after them, or they
     are superfluous."""
     for statement in script.statements[:-1]:
         if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
-            yield ScriptProblem(statement.span, "this statement has no effect; is an operator missing after it?")
+            yield ScriptProblem(
+                statement.span, "this statement has no effect; add the operator that is missing after it, or remove it"
+            )
 
 
 def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
@@ -163,7 +165,7 @@ def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
     if type_of(expr, entry) is Type.TEXT:
         yield ScriptProblem(expr.span, "a string is neither true nor false; compare it")
     elif isinstance(expr, Number) and isinstance(expr.value, int) and expr.value not in (0, 1):
-        yield ScriptProblem(expr.span, f"the integer {expr.value} is neither true (1) nor false (0)")
+        yield ScriptProblem(expr.span, f"the integer {expr.value} is neither true (1) nor false (0); compare it")
 
 
 def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:
@@ -178,7 +180,9 @@ def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[Scri
     elif target is Type.TEXT and value in NUMBERS and expr.operator == "+=":
         yield ScriptProblem(expr.value.span, f"`{name}` is a string, to which `+=` can add only strings")
     elif target is Type.INTEGER and expr.operator in (":=", "=") and _is_fraction(expr.value):
-        yield ScriptProblem(expr.value.span, f"`{name}` is an integer and keeps its type")
+        yield ScriptProblem(
+            expr.value.span, f"`{name}` is an integer and keeps its type; it cannot become a real number"
+        )
 
 
 def _is_fraction(expr: Expr) -> bool:

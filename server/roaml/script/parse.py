@@ -31,6 +31,8 @@ from roaml.script.tree import (
 from roaml.text import Decoded, Span
 
 MAX_DEPTH = 150
+"""The maximum nesting depth of a script."""
+
 MAX_PROBLEMS = 20
 """The maximum number of errors that are reported in one script."""
 
@@ -75,7 +77,7 @@ _INSTEAD = {
     "===": "write `==`",
     "!==": "write `!=`",
 }
-_BEFORE = " before version 4.9 of BehaviorTree.CPP"
+_BEFORE = "versions of BehaviorTree.CPP before 4.9"
 _WORDS = {"and": "&&", "or": "||", "not": "!"}
 
 
@@ -199,12 +201,15 @@ class _Parser:
         return Script(span, tuple(statements)), tuple(self.problems[:MAX_PROBLEMS])
 
     def separator(self) -> None:
-        """Read the `;` between two statements, which version 4.8 needs; it does not allow one at the end."""
+        """Read the `;` between two statements, which versions before 4.9 require. They allow no `;` after the last
+        statement."""
         token = self.token
         if not self.takes(";"):
-            self.problems.append(ScriptProblem(self.span(token), f"a `;` is missing before `{token.text}`{_BEFORE}"))
+            self.problems.append(ScriptProblem(self.span(token), f"{_BEFORE} require a `;` before `{token.text}`"))
         elif self.is_at_end() or self.token.text == ";":
-            self.problems.append(ScriptProblem(self.span(token), f"no statement follows this `;`{_BEFORE}"))
+            self.problems.append(
+                ScriptProblem(self.span(token), f"{_BEFORE} require a statement after each `;`; remove this `;`")
+            )
 
     def statement(self) -> Expr:
         start = self.token
@@ -333,14 +338,14 @@ class _Parser:
     def refuse_chain(self, *operators: str) -> None:
         """Report an operator that cannot follow another one of its kind before version 4.9."""
         if self.is_old and self.token.kind is _TokenKind.OPERATOR and self.token.text in operators:
-            raise _ScriptError(self.token, f"a second `{self.token.text}` needs brackets{_BEFORE}")
+            raise _ScriptError(self.token, f"{_BEFORE} allow a second `{self.token.text}` only in brackets")
 
     def enter_family(self, operator: _Token) -> None:
         """Record the family of an operator. Before version 4.9, an expression without brackets has operators of at most
         one family."""
         family = next((name for name, operators in _FAMILIES if operator.text in operators), "")
         if self.is_old and family and self.family not in ("", family):
-            message = f"`{operator.text}` cannot be mixed with {self.family}{_BEFORE}; use brackets"
+            message = f"{_BEFORE} cannot mix `{operator.text}` with {self.family}; use brackets"
             raise _ScriptError(operator, message)
         self.family = family or self.family
 

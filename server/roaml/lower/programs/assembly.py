@@ -95,7 +95,8 @@ class Return(NamedTuple):
 
 
 class Evaluate(NamedTuple):
-    """Executes a script of the node, and jumps to `otherwise` if its value is false."""
+    """Executes a script of the node, and jumps to `otherwise` if this is not `None` and the value of the script is
+    false."""
 
     script: str
     otherwise: CodeLabel | None
@@ -234,7 +235,8 @@ def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
 
 
 def _is_in(version: Version, definition: ast.ClassDef) -> bool:
-    """Whether a version has a program, which may be marked as one of older versions."""
+    """Whether a version of BehaviorTree.CPP has the program `definition`. The decorator `before` restricts a program to
+    older versions."""
     match definition.decorator_list:
         case [ast.Call(func=ast.Name(id="before"), args=[ast.Constant(value=str(first))])]:
             major, _, minor = first.partition(".")

@@ -52,7 +52,7 @@ from roaml.scxml.model import Assign, Automaton, Data, Param, Send, State, State
 from roaml.scxml.names import TreeEventKind
 
 MAX_STATES = 20_000
-"""The maximum number of states of one node."""
+"""The maximum number of states of the automaton of one node."""
 
 
 MACHINE, CONDITION_MACHINE = "machine", "condition_machine"
@@ -322,7 +322,7 @@ class _Explorer(Record, eq=False, dict=True):
 
     def run(self, execution: _Execution) -> _Stop:
         """Execute instructions until the node must wait for an event, or until a condition or chance decides how it
-        continues. `way.place` is then the instruction at which the execution stopped.
+        continues. `execution.place` is then the instruction at which the execution stopped.
 
         Returns:
             The name of the state that is reached, or the decision with the places at which the execution continues.
@@ -346,8 +346,8 @@ class _Explorer(Record, eq=False, dict=True):
                 return stop
 
     def end(self, segment: str, execution: _Execution) -> str | None:
-        """Continue after the end of a segment. Return the name of the reached state, or `None` if `way.place` is the
-        beginning of the next segment."""
+        """Continue after the end of a segment. Return the name of the reached state, or `None` if `execution.place` is
+        the beginning of the next segment."""
         match segment:
             case "before":
                 execution.place = ("tick", 0)
@@ -382,7 +382,8 @@ class _Explorer(Record, eq=False, dict=True):
         return self.rest(execution.fixed)
 
     def execute(self, instruction: Instruction, following: Place, execution: _Execution) -> _Stop | None:
-        """Execute one instruction. Return the reason to stop, or `None` if the execution continues at `way.place`."""
+        """Execute one instruction. Return the reason to stop, or `None` if the execution continues at
+        `execution.place`."""
         segment = following[0]
 
         def at(label: CodeLabel) -> Place:
@@ -506,7 +507,7 @@ class _Explorer(Record, eq=False, dict=True):
         return (segment, 0)
 
     def step(self, step: Step, execution: _Execution) -> _Stop | None:
-        """Execute one step. Return the reason to stop, or `None` if the execution continues at `way.place`."""
+        """Execute one step. Return the reason to stop, or `None` if the execution continues at `execution.place`."""
         segment, index = execution.place
         match step:
             case ReadEntries(entries):

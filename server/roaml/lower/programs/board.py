@@ -64,7 +64,7 @@ class Board(Record, frozen=True, eq=False):
         """A message that states why the entry `name`, which nothing sets, cannot be read."""
         if self.in_system:
             return f"nothing sets the entry `{name}`; a script, a port or a `<SubTree>` of the tree must set it"
-        return f"nothing sets the entry `{name}`; give it a value with --entry {name}=VALUE"
+        return f"nothing sets the entry `{name}`; give it a value with `--entry {name}=VALUE`"
 
 
 def node_scripts(node: ExecutedNode, version: Version) -> Iterator[tuple[str, Script, bool]]:
@@ -324,8 +324,8 @@ class _Reader(Record):
 
 
 def set_entry(node: ExecutedNode, *, in_system: bool) -> str | None:
-    """The entry that a `SetBlackboard` writes; `None` if its name is known only when the tree runs. In a system, `{v}`
-    refers to the entry `v` itself (docs/spec/nodes.md#library)."""
+    """The entry that a `SetBlackboard` writes or an `UnsetBlackboard` removes; `None` if its name is known only when
+    the tree runs. In a system, `{v}` refers to the entry `v` itself (docs/spec/nodes.md#library)."""
     for port, entry, text, _ in node.ports():
         if port in ("output_key", "key"):
             return node.frame.entry(text.strip()) if entry is None else entry if in_system else None

@@ -15,15 +15,16 @@ def number_in(text: str, *, is_whole: bool) -> int | float | None:
     """The number that the library reads from a text; `None` if there is none.
 
     Args:
-        is_whole: whether all of the text must be the number. Otherwise, the text after an integer is ignored, and only
-            without an integer, the text after a real number.
+        is_whole: whether all of the text must be the number. If not, the number is the integer with which the text
+            begins; without one, the real number with which it begins.
     """
     integer = _read(_INTEGER, text, is_whole)
     return _read(_REAL, text, is_whole) if integer is None else int(integer)
 
 
 def are_equal(variable: str, case: str, *, is_whole: bool) -> bool:
-    """Whether two constant texts are equal: as texts, as integers, or as real numbers."""
+    """Whether two constant texts are equal: as texts, as integers, or as real numbers. `is_whole` as for
+    `number_in`."""
     numbers = ((_read(pattern, variable, is_whole), _read(pattern, case, is_whole)) for pattern in (_INTEGER, _REAL))
     return variable == case or any(first is not None and first == second for first, second in numbers)
 
@@ -34,8 +35,9 @@ def _read(pattern: re.Pattern[str], text: str, is_whole: bool) -> float | None:
 
 
 def case_value(text: str, kinds: set[EntryKind], *, is_whole: bool) -> int | float | str:
-    """A constant of a `Switch` beside entries of the kinds `kinds`: a number if the entries are numbers and the library
-    reads one, otherwise the text."""
+    """The value of a constant text in a port of a `Switch`: a number if the other ports are bound only to entries of
+    numbers and the text can be read as one (`number_in`), otherwise the text. `kinds` contains the kinds of these
+    entries."""
     if not kinds or EntryKind.TEXT in kinds:
         return text
     number = number_in(text, is_whole=is_whole)

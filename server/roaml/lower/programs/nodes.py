@@ -94,7 +94,7 @@ def event_probability(node: ExecutedNode) -> float | None:
     """The probability of an event of the world at a tick that the tree sets; `None` if it sets none.
 
     Raises:
-        TreeRefusal: it is not a probability.
+        TreeRefusal: the value is not a number from 0 to 1.
     """
     attribute = node.node.element.get(EVENT_ATTRIBUTE)
     if attribute is None:
@@ -204,10 +204,14 @@ class _Reader(Record, eq=False):
         if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
             program.name.startswith("Switch")
         ):
-            raise TreeRefusal(node.origin, f"a port of `{node.type}` is bound to an entry whose value is a text")
+            raise TreeRefusal(
+                node.origin, f"a port of `{node.type}` is bound to an entry with a text; only numbers can be translated"
+            )
         for port_name in ("else", "return_on_mismatch", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
             if port_name in bound:
-                raise TreeRefusal(node.origin, f"the port `{port_name}` cannot be translated; it must be a constant")
+                raise TreeRefusal(
+                    node.origin, f"the port `{port_name}` must be a constant; entries cannot be translated here"
+                )
 
     def check_divisor(self, node: ExecutedNode, port: str, value: Known, origin: Location) -> None:
         """Refuse a rate that is not positive, because programs compute its period.
@@ -247,7 +251,7 @@ class _Reader(Record, eq=False):
             return
         if node.type == "UnsetBlackboard":
             raise TreeRefusal(
-                node.origin, f"the tree reads the entry `{target}`, and the translation cannot remove entries"
+                node.origin, f"the removal of the entry `{target}`, which the tree reads, cannot be translated"
             )
         bound["output_key"] = board.entries[target]
         kind = board.entries[target].kind
@@ -259,7 +263,9 @@ class _Reader(Record, eq=False):
             elif entry in board.entries and (board.entries[entry].kind is EntryKind.TEXT) is (kind is EntryKind.TEXT):
                 bound["value"] = board.entries[entry]
             else:
-                reason = f"the tree reads the entry `{target}`, but the value of `{entry}` is not known"
+                reason = (
+                    f"the tree reads the entry `{target}`, but the value of `{entry}` is unknown or of another type"
+                )
                 raise TreeRefusal(Location(node.origin.path, span), reason)
 
     def elements(self, node: ExecutedNode, known: dict[str, Known]) -> tuple[Known, ...]:

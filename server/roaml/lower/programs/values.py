@@ -110,8 +110,8 @@ class ProgramValues(Record, frozen=True, eq=False):
         raise AssertionError(function)
 
     def matches(self, case: int, is_whole: bool) -> Value:
-        """The condition that the variable of a switch equals the case with the index `case`. `is_whole`: whether a text
-        is a number only as a whole."""
+        """The condition that the variable of a `Switch` equals the case with the index `case`; `is_whole` as for
+        `number_in`."""
         port = f"case_{case + 1}"
         variable, constant = self.name("variable", {}), self.name(port, {})
         if isinstance(variable, str) and isinstance(constant, str):
@@ -129,7 +129,7 @@ class ProgramValues(Record, frozen=True, eq=False):
         return not isinstance(self.code.known[port], str)
 
     def truncated(self, port: str, value: Value) -> Value:
-        """The integer that the text of a number begins with."""
+        """The value of a port as the integer with which its text begins, such as -2 for -2.7."""
         if port not in self.code.bound or self.code.bound[port].kind is not EntryKind.REAL:
             return value
         number = expr(value)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the paths on which a machine never sends a required answer, or sends it only after an event that cannot occur.
 
-All functions are pure functions of a graph (`Behavior`). Their argument `possible` returns whether a step can be taken;
-without it, every step can.
+All functions are pure functions of a graph (`Behavior`). The parameter `possible` of some of them is a function that
+returns whether a step can be taken; by default, every step can be taken.
 """
 
 from __future__ import annotations
@@ -95,11 +95,12 @@ def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
 
 
 def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
-    """The steps after which the answer never comes.
+    """The steps to report because the answer to `duty` is not sent after them.
 
-    If a further event was expected after the step that makes the answer impossible, such as the response to a request,
-    the last step is returned, because the answer is missing there. But if the machine waits for that event in a state
-    that handles the next tick, the first step is returned.
+    After the step that makes the answer impossible, the machine may still wait for events that it has caused, such as
+    the response to a request. Then the step that handles the last of these events is returned, because the answer is
+    missing there. But if the machine waits in a state that handles the next event of `duty`, such as the next tick, the
+    step that leads into this state is returned.
     """
     lost = unfinished(behavior, duty)
     inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
@@ -130,7 +131,9 @@ def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[in
 
 
 def is_suspicious(behavior: Behavior) -> bool:
-    """Whether the answers of the chart, or the threads that it starts, may contain an error."""
+    """Whether the chart may contain an error: its graph has a fault, an answer that may never be sent, or a tick or
+    halt that may never be handled. The result is also true if the chart starts threads, because their numbers may be
+    wrong."""
     known = behavior.chart.__dict__.setdefault("suspicion", {})
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}

@@ -63,11 +63,13 @@ from roaml.scxml.names import STATUSES
 from roaml.text import Span
 
 MAX_CONFIGURATIONS = 4000
+"""The maximum number of configurations of a graph, and of paths through the statements of one step."""
+
 MAX_KNOWLEDGE_VARIANTS = 12
 """The maximum number of configurations that differ only in the knowledge about values."""
 
 UNKNOWN_STATE = "?"
-"""The name of an unknown state, in which anything may happen."""
+"""The state of a configuration after a transition to a state that does not exist. Anything may happen in it."""
 
 
 class FaultKind(Vocabulary):
@@ -84,7 +86,7 @@ class FaultKind(Vocabulary):
     EARLIER = "earlier"
     """The id of an earlier goal instead of that of the goal that has just arrived."""
     REJECTED = "rejected"
-    """A result for a goal that was rejected."""
+    """A result, feedback or the start of a thread for a goal that was rejected."""
     UNDECIDED = "undecided"
     """A result for a goal that has not been accepted."""
     NO_GOAL = "no-goal"
@@ -98,8 +100,8 @@ class Fault(Record, frozen=True):
     one request.
 
     Attributes:
-        duty: the duty that the statement answers.
-        statement: the statement that sends the answer.
+        duty: the duty that the statement answers or concerns.
+        statement: the statement that must not be executed.
         certain: whether the fault occurs whatever the conditions in the bodies are.
         source: for `FOREIGN`, the expression that was assigned to the variable; for `EARLIER`, a variable that holds
             the id of the goal that has arrived, or "" if there is none; "" for other kinds.
@@ -123,11 +125,13 @@ class ChartConfiguration(Record, frozen=True):
 
     @property
     def tree(self) -> Phase | None:
-        """The status of a plugin: `TICKED`, `HALTING`, `RUNNING` or `ENDED`; `None` if it was never ticked."""
+        """The phase of a plugin: `TICKED`, `HALTING`, `RUNNING` or `ENDED`; `None` if it was neither ticked nor halted
+        yet."""
         return phase_in(self.phases, Subject.TREE, "")
 
     def answering(self, duty: Duty) -> Phase | None:
-        """The phase of the answer to a request or goal; `None` if no answer is owed."""
+        """The phase of the response to a request, of the decision on a goal, or of the result of a goal; `None` if the
+        machine does not owe it."""
         subject = OWED.get(duty.kind)
         return None if subject is None else phase_in(self.phases, subject, duty.handle)
 
@@ -149,9 +153,9 @@ class BehaviorStep(Record, frozen=True, eq=False):
     """A step from one configuration to another.
 
     Attributes:
-        source, target: configurations, as indexes.
+        source, target: the indices of the configurations in `Behavior.configurations`.
         event: the received event; `None` for a transition without event.
-        handler: the handler that receives it; if no condition holds, the last one that was tried.
+        handler: the handler that is executed; if no condition holds, the last one that was tried.
         choice: the index of the handler's target that is taken.
         ignored: whether no condition holds, so that the event is consumed without effect
             (docs/spec/semantics.md#discarded-events).
@@ -177,10 +181,10 @@ class Behavior(Record, frozen=True, eq=False):
     Attributes:
         configurations: all configurations, the initial ones first.
         starts: the number of initial configurations.
-        steps: all steps; `outgoing` and `incoming` group them by configuration.
+        steps: all steps; `outgoing` groups them by their source.
         at_start: the events that the `<onentry>` of the initial state sends.
         statuses: the statuses that each `<bt_return_status>` returns on the paths on which the status is known.
-        approximate: whether some knowledge was discarded, so that paths that depend on conditions may not exist.
+        approximate: whether some knowledge was discarded, so that the graph may contain impossible paths.
     """
 
     chart: Chart
@@ -268,8 +272,8 @@ class _Path(NamedTuple):
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
-    """The base types of the scalar variables of a chart, the names of its integer variables, and the names of its
-    boolean variables."""
+    """The base types of the scalar variables of a chart, the names of its integer variables and `_bt`, and the names of
+    its boolean variables."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
     integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
@@ -293,7 +297,8 @@ EVENT_VARIABLES = frozenset(
 
 
 class _Group(NamedTuple):
-    """The handlers of a state for one event, with the phases that affect them."""
+    """The handlers of a state for one event. `touched` contains the subjects, each with a handle, whose phases the
+    steps of the group may read or change."""
 
     state: State
     event: ProtocolEvent | None
@@ -385,8 +390,9 @@ class _Explorer(Record, eq=False, dict=True):
     # --------------------------------------------------- variables that matter
 
     def _relevant(self, scalar: Mapping[str, str], logical: frozenset[str]) -> frozenset[str]:
-        """The variables whose values may decide which path is taken: the variables that conditions read, if they are
-        compared more than once or are assigned only constants and booleans."""
+        """The variables whose values may decide which path is taken: those that several conditions read, those that
+        conditions read and that are booleans or are assigned only literals, those in thread numbers and returned
+        statuses, and those that are copied to any of these."""
         read: list[Expr] = [h.cond.tree for state in self.chart.states for h in state.handlers if h.cond]
         relevant = {*self._counted(), *self._statuses()}
         assigned: dict[str, list[Expr | None]] = {}
@@ -574,7 +580,7 @@ class _Explorer(Record, eq=False, dict=True):
     def _touched(
         self, state: State, event: ProtocolEvent | None, handlers: Iterable[Handler]
     ) -> frozenset[tuple[Subject, str]]:
-        """The phases that the steps of a group may read or change."""
+        """The subjects, each with a handle, whose phases the steps of a group may read or change."""
         touched: set[tuple[Subject, str]] = {(Subject.TREE, ""), (Subject.CHILD, "")}
         if event is not None:
             handle = event.name
@@ -809,7 +815,8 @@ class _Explorer(Record, eq=False, dict=True):
         return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
-        """The goal whose id the variable holds after an assignment of `value`; `None` if `value` is a constant."""
+        """The goal whose id the variable holds after an assignment of `value`; `None` if `value` is a constant, or a
+        variable in which no id was stored."""
         if not isinstance(location, Name) or value is None or any(isinstance(e, ErrorExpr) for e in walk(value)):
             return ANY_ID
         if access_path(value) == ("_action", "goal_id"):
@@ -951,11 +958,12 @@ class _Explorer(Record, eq=False, dict=True):
         return path.at(subject, handle, Phase.SEVERAL if path.phase(subject, handle) else Phase.AWAITED)
 
     def _checked_id(self, statement: RosSend, path: _Path, duty: Duty, goals: tuple[GoalStatus, ...]) -> _Path:
-        """The path, with a fault if the statement does not name a goal by the id with which the goal arrived.
+        """The path, with a fault if the statement does not name a goal by the id with which the goal arrived, or names
+        a goal with another status than those in `goals`.
 
         Args:
             duty: the duty that the statement answers.
-            goals: the statuses of the goals that the statement may name.
+            goals: the valid statuses of the goal.
         """
         tree = statement.goal_id.tree if statement.goal_id else None
         if not isinstance(tree, Name) or tree.name not in self.goal_ids:

@@ -309,8 +309,8 @@ class ConditionFacts(PartlyCompared, frozen=True):
         return Domain()
 
     def assign(self, knowledge: Knowledge, location: Expr, value: Expr | None) -> tuple[Knowledge, ...]:
-        """The knowledge after an assignment. An assigned condition gives two results: the condition is true, or it is
-        false."""
+        """The knowledge after an assignment. The result is a disjunction: the assignment of a condition gives separate
+        results for true and false."""
         root = next(iter(self.term(location).roots), "")
         if value is None or not isinstance(location, Name):
             return (knowledge.without(root),)

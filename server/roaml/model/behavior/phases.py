@@ -57,12 +57,13 @@ class Subject(Vocabulary):
     RESPONSE = "response"
     DECISION = "decision"
     OUTCOME = "outcome"
-    """RESPONSE, DECISION and OUTCOME: the answers that a client waits for. The decision accepts or rejects its goal;
-    the outcome is the result of its goal."""
+    """RESPONSE, DECISION and OUTCOME: the answers that a client waits for. The decision accepts or rejects the goal of
+    the client; the outcome is the result of this goal."""
 
 
 class Phase(Vocabulary):
-    """The phase of a subject. A subject without a phase is idle; a `TREE` without a phase has never been ticked."""
+    """The phase of a subject. A subject without a phase is idle; a `TREE` without a phase has been neither ticked nor
+    halted."""
 
     TICKED = "ticked"
     HALTING = "halting"

@@ -25,7 +25,11 @@ START = ProtocolEvent(ProtocolPart.START, "")
 """A pseudo-event: the start of a machine, before its first event."""
 
 MAX_ALTERNATIVES = 6
+"""The maximum number of sets in `Needs`; further sets are left out."""
+
 MAX_EVENTS = 4
+"""The maximum number of events in a set of `Needs`; larger sets are left out."""
+
 REPEATED = (
     ProtocolPart.MESSAGE,
     ProtocolPart.EVENT,
@@ -47,12 +51,13 @@ class Promise(Record, frozen=True):
     """A delayed answer of a server.
 
     Attributes:
-        duty: a request, a goal or a result.
+        duty: the duty that the answer fulfils, of the kind REQUEST, GOAL or RESULT.
         state: the state in which the machine waits.
         scope: the scope of the chart that the state is in; it distinguishes the threads of a file.
-        taken: whether the request has been received; otherwise the state has no handler for the request.
+        taken: whether the machine has received the request or goal; otherwise it must first reach a state that handles
+            it.
         busy: whether the machine still owes the result of an earlier goal in this state.
-        needs: the events that must occur before the answer is sent, or before the request is handled.
+        needs: the events that must occur before the answer is sent, or before the request or goal is received.
     """
 
     duty: Duty
@@ -67,9 +72,12 @@ class ChartOutline(Record, frozen=True):
     """The summary of the graph of a chart.
 
     Attributes:
-        promises: the delayed answers, one for each configuration that owes an answer.
-        reactions: pairs of events: after receiving the first, the machine sends the second in some state.
-        repeats: for each event that the machine sends, the events that must occur before it is sent again.
+        promises: the delayed answers, at most one for each duty and configuration that owes the answer or cannot
+            receive the request yet. Answers that need no event are left out.
+        reactions: pairs of events: the machine may send the second after it has received the first, and before it
+            receives another event.
+        repeats: for each event of a kind in `REPEATED` that the machine sends, the events that must occur before it is
+            sent again.
     """
 
     promises: tuple[Promise, ...]
@@ -233,7 +241,7 @@ def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge])
 
 
 def _least(masks: Iterable[int]) -> tuple[int, ...]:
-    """The sets that contain no other set of `masks`; only the smallest ones if there are many."""
+    """The sets that contain no other set of `masks`, the smallest first, within `MAX_ALTERNATIVES` and `MAX_EVENTS`."""
     smallest: list[int] = []
     for mask in sorted(set(masks), key=lambda mask: (mask.bit_count(), mask)):
         if mask.bit_count() > MAX_EVENTS:
