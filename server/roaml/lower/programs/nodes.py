@@ -49,7 +49,9 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
         raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
     absent = CPP.absent.get(node.type)
     if node.known is None and absent is not None:
-        raise TreeRefusal(node.origin, f"`{node.type}` is not a node: {absent.reason}", is_reported=True)
+        raise TreeRefusal(
+            node.origin, f"`{node.type}` cannot be a node of a tree: it is {absent.reason}", is_reported=True
+        )
     return None
 
 

@@ -133,8 +133,8 @@ def _wrong_constant(system: System, channel: Channel, value: float) -> str:
         return f"which is always the id of `{named}`, but `{channel.name}` has {len(clients)} clients"
     if not clients or system.may(InterfaceAct(SymbolKind.ACTION_CLIENT), channel.name):
         return ""
-    ids = "0" if len(channel.users) == 1 else f"0 to {len(channel.users) - 1}"
-    return f"which is not the id of any client of `{channel.name}`: the ids are {ids}"
+    ids = "the only id is 0" if len(channel.users) == 1 else f"the ids are 0 to {len(channel.users) - 1}"
+    return f"which is not the id of any client of `{channel.name}`: {ids}"
 
 
 def _tests_goal_ids(chart: Chart) -> bool:

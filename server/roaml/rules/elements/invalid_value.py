@@ -18,7 +18,8 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue
         attribute, type_ = violation.attribute, violation.type
         if not attribute.value.strip():
-            advice = "" if violation.required == "something" else f"; it should be {violation.required}"
+            required = "set" if violation.required == "something" else violation.required
+            advice = f"; it should be {required}"
             choices = [choice.value for choice in type_.simple.choices if not choice.use]
             new = f'{attribute.name}="{choices[0]}"' if len(choices) == 1 else ""
             fixes = [Fix(f"Write `{new}`", (TextEdit(attribute.span, new),))] if new else []

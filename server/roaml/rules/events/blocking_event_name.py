@@ -19,16 +19,16 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement in chart.statements:
             if isinstance(statement, Send) and statement.event and is_synchronising(statement.event.value):
                 message = (
-                    "an event with this name is never discarded: it waits until every receiver handles it; "
-                    "choose another name"
+                    f"the event `{statement.event.value}` is never discarded: because of its name, it waits until "
+                    "every receiver handles it; choose another name"
                 )
                 yield RULE.at(statement.event.span, message)
     for declaration in _with_feedback(context.machine):
         name = declaration.interface
         if isinstance(name, Name) and is_synchronising(f"{action_stem(name.value)}_feedback"):
             message = (
-                f"feedback of an action named `{name.value}` is never discarded: it waits until it is handled; "
-                "choose another name"
+                f"feedback of the action `{name.value}` is never discarded: because of the name of the action, it "
+                "waits until it is handled; choose another name"
             )
             yield RULE.at(name.span, message)
 

@@ -45,7 +45,7 @@ def _parameter(event: PlainEvent, param: Param, value: TypedValue) -> Iterator[F
         for other in sent.params:
             for name, mine, theirs in _differing(param.name.value, value.sent, other):
                 there = phrase(theirs)
-                hint = ROUND if value.type != value.sent and same_kind(value.type, theirs) else ""
+                hint = ROUND if value.type != value.sent and same_kind(value.type, theirs) else "; use the same type"
                 yield RULE.at(
                     value.value.span,
                     f"`{name}` is {phrase(mine)} here, but {there} in another `<send>` of `{event.name}`{hint}",

@@ -102,7 +102,10 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
         fix = Fix("Change to `0`", (TextEdit(assigned.value.span, "0"),), preferred=False)
         yield RULE.at(assigned.value.span, "a length must be at least 0", fix)
     elif number is not None and most is not None and number > most:
-        yield RULE.at(assigned.value.span, f"`{_text(context, tree.object)}` has at most {most} elements")
+        yield RULE.at(
+            assigned.value.span,
+            f"`{_text(context, tree.object)}` has at most {most} elements, so its length cannot be {number}",
+        )
 
 
 def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:

@@ -29,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     if finding is not None:
                         yield finding
                 case ExtraMember(twice=True):
-                    yield RULE.at(problem.span, f"the member `{problem.name}` is given twice")
+                    yield RULE.at(problem.span, f"the member `{problem.name}` is given twice; remove one of them")
                 case ExtraMember():
                     close = close_names(problem.name, [name for name, _ in problem.struct.members])
                     hint = alternatives(close, [name for name, _ in problem.struct.members], "member")

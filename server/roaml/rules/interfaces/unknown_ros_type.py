@@ -45,7 +45,8 @@ def _unknown_package(problem: NotFound, span: Span) -> Finding:
     searched."""
     package = problem.type_name.partition("/")[0]
     meant = tuple(name for name in problem.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
-    where = f"; searched {', '.join(problem.looked_in)}; add its folder with `--ros-path` or the setting `ros-path`"
+    searched = ", ".join(problem.looked_in)
+    where = f"; searched {searched}; add the folder of the package with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"
     others = (name for name in problem.close if name not in meant)
     elsewhere = (Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=False) for name in others)

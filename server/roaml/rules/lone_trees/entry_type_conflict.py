@@ -62,7 +62,8 @@ _CONVERTED = ("int", "uint", "unsigned", "double", "float", "bool", "vector", "N
 
 def _finding(use: Use, first: Use) -> Finding:
     related = [Related(first.span, f"`{first.type}` here")] if first.path == use.path else []
-    message = f"the entry `{use.name}` has the type `{first.type}`, but this port has the type `{use.type}`"
+    types = f"has the type `{first.type}`, but this port has the type `{use.type}`"
+    message = f"the entry `{use.name}` {types}; use another entry"
     severity = Severity.ERROR if use.from_library and first.from_library else Severity.WARNING
     return RULE.at(use.span, message, severity=severity, related=related)
 

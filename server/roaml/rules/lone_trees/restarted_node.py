@@ -39,7 +39,7 @@ def _refused(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
     asynchronous = [child for child in node.children if child.plugin and child.plugin.value == "AsyncSequence"]
     if name == "ReactiveSequence" and is_refused:
         for child in asynchronous[1:]:
-            message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`"
+            message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`; use only one"
             yield RULE.at(child.element.name_span, message, severity=Severity.ERROR)
 
 

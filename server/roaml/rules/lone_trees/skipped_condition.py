@@ -24,7 +24,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
             condition = node.children[0]
             attribute = next((a for a in ("_skipIf", "_while") if condition.element.get(a) is not None), None)
             if attribute is not None:
-                message = f"`{node.plugin.value}` throws an exception if `{attribute}` skips its condition"
+                message = (
+                    f"`{node.plugin.value}` throws an exception if `{attribute}` skips its condition; remove "
+                    f"`{attribute}`"
+                )
                 yield RULE.at(condition.element.name_span, message)
 
 

@@ -52,7 +52,7 @@ def _check(context: TreeContext, forest: Forest, node: TreeNode) -> Iterator[Fin
         yield _renamed(span, _renaming(node, renamed.now), name, renamed.now)
     elif absent is not None:
         fixes = (_renaming(node, absent.instead),) if absent.instead else ()
-        yield RULE.at(span, f"`{name}` is not a node: {absent.reason}", *fixes)
+        yield RULE.at(span, f"`{name}` cannot be a node of a tree: it is {absent.reason}", *fixes)
     elif old is not None and old.until:
         message = f"`{name}` is a node of version 3; version 4 has `Precondition` with a script"
         yield RULE.at(span, message, severity=Severity.ERROR)

@@ -12,7 +12,8 @@ from roaml.rules.rule import PropertiesContext, Rule
 from roaml.smc.forms import BOUNDS, faults_in
 
 TIME = (
-    "`verify` cannot decide this: the model counts only steps; to limit the time, use the clock's `sec` in the formula"
+    "`verify` cannot decide this: bounds on time are not supported here; compare `topic_clock_msg__ros_fields__sec`, "
+    "the time in seconds, in the formula instead"
 )
 
 

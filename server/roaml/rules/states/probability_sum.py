@@ -43,7 +43,9 @@ def _check(handler: Handler, text: str) -> Iterator[Finding]:
     span = _span(given)
     if last.probability is None:
         if total >= 1:
-            yield RULE.at(span, f"the probabilities before the last target add up to {total}, so none remains for it")
+            yield RULE.at(
+                span, f"the probabilities before the last target add up to {total}, so it would never be chosen"
+            )
     elif len(given) == 1 and total != 1:
         message = f"the only target has the probability 1, not {total}; remove `prob`"
         yield RULE.at(span, message, *_leave_out(last, text, "Remove `prob`", preferred=True))

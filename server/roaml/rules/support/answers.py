@@ -46,7 +46,7 @@ ELEMENTS = {
 
 
 def behaviors(context: MachineContext) -> Iterator[Behavior]:
-    """The graphs of the machine and its threads, without those that are too large.
+    """The graphs of the machine and its threads, without those that are too large or have no initial state.
 
     A graph distinguishes the values of variables only if a fault is likely, because that makes it larger.
     """

@@ -60,7 +60,7 @@ def _name(value: Name) -> Iterator[Finding]:
             )
             yield RULE.at(value.span, message)
     elif not variable:
-        yield RULE.at(value.span, "the braces contain no variable name")
+        yield RULE.at(value.span, "the braces do not contain the name of a variable; write `{name}`")
     elif is_reserved_variable(variable):
         yield RULE.at(
             value.span, f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"

@@ -37,7 +37,7 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
         if key.value == CHILDREN_COUNT:
             if CHILDREN_COUNT not in keys and path:
                 continue  # no effect: a user's plugin that does not declare the port cannot read it
-            message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here"
+            message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here; remove it"
             yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
         elif key.value not in keys and plugin.all_ports:
             given = {other.key.value for other in node.ports}

@@ -43,7 +43,10 @@ def _variable(name: Name) -> Iterator[Finding]:
     if reason := variable_problem(name.value):
         yield _wrong(name, reason)
     elif name.value in EVENT_VARIABLES:
-        message = f"`{name.value}` is also the name of received data, which hides the variable where it is available"
+        message = (
+            f"`{name.value}` is also the name of received data, which hides the variable where it is available; rename "
+            "the variable"
+        )
         yield _wrong(name, message, Severity.WARNING)
 
 

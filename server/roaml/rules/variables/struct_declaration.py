@@ -45,7 +45,9 @@ def _other(context: StructsContext, declaration: StructDeclaration, first: Name)
     same = [other for other in context.outlines if other.name == name.value]
     here = [d for d in context.declarations if d.name and d.name.value == name.value]
     if first is not name:
-        message = f"there are two structs `{name.value}`; only the last declaration is used"
+        message = (
+            f"there are two structs `{name.value}`; only the last declaration is used; rename or remove the others"
+        )
         yield RULE.at(
             name.span, message, severity=Severity.WARNING, related=(Related(first.span, "the first declaration"),)
         )

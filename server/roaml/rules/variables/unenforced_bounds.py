@@ -15,7 +15,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for data in chart.data:
             for value in (data.lower, data.upper):
                 if value is not None and not (isinstance(value, Expression) and value.broken):
-                    yield RULE.at(value.span, "the bound is not enforced: in the model the variable may have any value")
+                    yield RULE.at(
+                        value.span,
+                        "the bound is not enforced: in the model the variable may have any value of its type",
+                    )
 
 
 RULE = Rule("unenforced-bounds", Severity.INFORMATION, "A bound of a variable is not enforced.", machine=check)
