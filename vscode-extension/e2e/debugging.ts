@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator } from "playwright-core";
-import type { Stage } from "./support/stage";
+import { MEND, sample, type Stage } from "./support/stage";
 import type { Window } from "./support/window";
 import { ROOT } from "./support/paths";
 import { temporaryFolder, write } from "./support/workbench";
@@ -18,6 +18,28 @@ function robot(attributes: object): string {
     const configurations = { version: "0.2.0", configurations: [configuration] };
     write(path.join(folder, ".vscode/launch.json"), JSON.stringify(configurations));
     return folder;
+}
+
+/** The delivery robot; its tree writes the number of parcels on the blackboard. */
+function withBlackboard(): string {
+    const asInteger = (text: string) => text.replace('type="uint8"', 'type="int32"');
+    return sample({
+        ...MEND,
+        "tree.xml": (text) =>
+            text.replace(
+                '<Deliver parcels="3" />',
+                '<SetBlackboard value="3" output_key="{parcels}" /><Deliver parcels="{parcels}" />',
+            ),
+        "plugins/deliver.ascxml": (text) =>
+            text
+                .replace(/<bt_declare_port_in [^>]*>/, asInteger)
+                .replace(/<data id="wanted"[^]*?<\/data>/, '<data id="wanted" type="int32" expr="3" />')
+                .replace(
+                    '<bt_tick target="carrying">',
+                    '<bt_tick target="carrying">' +
+                        '<assign location="wanted"><expr><bt_get_input key="parcels" /></expr></assign>',
+                ),
+    });
 }
 
 export function debugging(stage: Stage): void {
@@ -148,7 +170,7 @@ export function debugging(stage: Stage): void {
         await start(window, "main_with_bug.xml");
         const choices = choicesOf(window);
         await publish(window, "/arm/command", "{data: 2}");
-        await choices.getByText("changed by hand").first().waitFor();
+        await choices.getByText("changed by the user").first().waitFor();
         await choices.getByText("The property block_placed is not decided yet.").waitFor();
         await choices.locator(".monaco-list-row", { hasText: "Arm receives a message" }).first().click();
         await choices.getByText("step 2, 0.000 s").first().waitFor();
@@ -160,9 +182,34 @@ export function debugging(stage: Stage): void {
         await choices.getByText("step 1, 0.000 s").first().waitFor();
         await button(window, "Step Back").click();
         await choices.getByText("step 0, 0.000 s").first().waitFor();
-        await choices.getByText("changed by hand").first().waitFor({ state: "detached" });
+        await choices.getByText("changed by the user").first().waitFor({ state: "detached" });
         await stop(window);
     });
+
+    stage.test(
+        "without a launch.json: a service is called and a blackboard entry is set by hand",
+        withBlackboard,
+        async (window) => {
+            const { page } = window;
+            await start(window, "main.xml");
+            const choices = choicesOf(window);
+            await publish(window, "/hand_over");
+            await choices.getByText("changed by the user").first().waitFor();
+            await choices.locator(".monaco-list-row", { hasText: "Building" }).first().waitFor();
+
+            const variables = page.locator(".pane", { has: page.locator('.pane-header[aria-label^="Variables"]') });
+            const scope = variables.locator(".monaco-list-row", { hasText: "Blackboard" }).first();
+            await scope.click();
+            const entry = variables.locator(".monaco-list-row", { hasText: /^parcels/ }).first();
+            await entry.locator(".value").dblclick();
+            await variables.locator("input").fill("7");
+            await window.press("Enter");
+            await entry.getByText("7").waitFor();
+            await choices.getByText("step 2, 0.000 s").first().waitFor();
+            await window.screenshot("blackboard");
+            await stop(window);
+        },
+    );
 }
 
 /** Starts a run of the system that stops at its start. */
@@ -197,12 +244,10 @@ async function goToStep(window: Window, step: number): Promise<void> {
     await choicesOf(window).getByText(`step ${step},`).first().waitFor();
 }
 
-/** Sends an event by hand, with the button of the view of choices. `fields` are missing if the event has none. */
+/** Sends an event by hand. `fields` are missing if the event has none. */
 async function publish(window: Window, name: string, fields?: string): Promise<void> {
     const { page } = window;
-    const choices = choicesOf(window);
-    await choices.locator(".pane-header").hover();
-    await choices.getByRole("button", { name: "Publish Message by Hand" }).click();
+    await window.run("AS2FM: Publish Message");
     await page.locator(".quick-input-list .monaco-list-row", { hasText: name }).first().waitFor();
     await window.type(name);
     await page.locator(`.quick-input-list .focused[aria-label*="${name}"]`).first().waitFor();
