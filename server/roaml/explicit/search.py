@@ -17,7 +17,7 @@ from __future__ import annotations
 from array import array
 from typing import TYPE_CHECKING, Any
 
-from roaml.explicit.memory import flat
+from roaml.explicit.memory import flat, grown
 
 if TYPE_CHECKING:
     from roaml.explicit.tables import Tables
@@ -526,10 +526,10 @@ class StateSearch:
             return
         self.state_room *= 2
         self.key_room = self.state_room * self.words
-        self.keys = flat("Q", self.key_room, self.keys)
-        self.start = flat("q", self.state_room, self.start)
-        self.parent = flat("i", self.state_room, self.parent)
-        self.label = flat("B", self.state_room, self.label)
+        self.keys = grown(self.keys, self.key_room)
+        self.start = grown(self.start, self.state_room)
+        self.parent = grown(self.parent, self.state_room)
+        self.label = grown(self.label, self.state_room)
 
     def _emit(self, word: int) -> int:
         if self.code_end == self.code_room:
@@ -537,7 +537,7 @@ class StateSearch:
                 self.status = MEMORY
                 return 0
             self.code_room *= 2
-            self.code = flat("i", self.code_room, self.code)
+            self.code = grown(self.code, self.code_room)
         self.code[self.code_end] = word
         self.code_end += 1
         return 0
@@ -549,7 +549,7 @@ class StateSearch:
             return known
         if self.real_count == self.reals_room:
             self.reals_room *= 2
-            self.reals = flat("d", self.reals_room, self.reals)
+            self.reals = grown(self.reals, self.reals_room)
         index = self.real_count
         self.reals[index] = value
         self.number_of[value] = index
