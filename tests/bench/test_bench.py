@@ -10,13 +10,14 @@ import pytest
 
 from bench.check import opened
 from bench.generate import FIRST, write_system
-from bench.keystrokes import keys
+from bench.keystrokes import keys, word_keys
 from bench.report import Row, percentile, seconds, table
 from bench.requests import REQUESTS, REST, idle_times
 from bench.server import started
-from bench.trees import NODES, write_tree
+from bench.trees import NODES, WORDS, write_tree
 from roaml import api
 from roaml.diagnostics import Severity
+from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 
@@ -38,6 +39,19 @@ def test_a_generated_tree_has_300_nodes_and_no_mistakes(tmp_path: Path) -> None:
     file = result.snapshot.analysis.tree(str(path))
     assert file is not None
     assert abs(sum(len(nodes) for nodes in file.nodes_by_tree.values()) - NODES) <= NODES // 10
+
+
+def test_each_key_in_a_tree_changes_the_diagnostics(tmp_path: Path) -> None:
+    """Otherwise the server publishes none, and the benchmark waits until its time limit."""
+    path = str(write_tree(tmp_path))
+    text = Path(path).read_text(encoding="utf-8")
+    workspace = Workspace([str(tmp_path)], find_settings(path)[0])
+    known = workspace.snapshot().checker.diagnostics(path)
+    for key in word_keys(text, words=WORDS):
+        workspace.open(path, key.text)
+        diagnostics = workspace.snapshot().checker.diagnostics(path)
+        assert diagnostics != known, f"the server does not answer {key.change()}"
+        known = diagnostics
 
 
 def test_a_generated_system_is_always_the_same(tmp_path: Path) -> None:

@@ -24,11 +24,12 @@ WORDS = (
     'code="tries += 1',
     '_skipIf="tries &gt; 3',
     "<Fallback",
-    'path="{path',
+    '<FollowPath path="{path',
     "</RecoveryNode",
-    'service_name="global_costmap/clear',
+    'tries="{tries',
 )
-"""The words that lose their last character."""
+"""The words that lose their last character. Each key changes the findings: a server does not publish the diagnostics of
+a file again if they are the same."""
 
 _LOOP = """    <RecoveryNode number_of_retries="6" name="navigate_{0}">
       <PipelineSequence>

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import pytest
 from ide_case import FOLDER, path_of
 
+from roaml.ide import navigation
 from roaml.ide.completion import complete, document
 from roaml.ide.hover import hover
 from roaml.ide.names.lookup import symbol_group_at
@@ -195,6 +197,59 @@ def test_the_definition_of_a_subtree_is_in_its_file() -> None:
     group = symbol_group_at(analysis, path_of("main.xml"), MAIN.index('"Inner"') + 2)
     assert group is not None
     assert [place.path for place in group.definitions] == [path_of("inner.xml")]
+
+
+ENTRIES = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <include path="parts.xml"/>
+  <BehaviorTree ID="Main"><Sequence>
+    <Script code="target := 1; speed := 2"/>
+    <SubTree ID="Drive" goal="{target}" limit="{speed}" count="0" speed="{=}" unused="1" message="{text}"/>
+    <SubTree ID="Drive" goal="4" count="0"/>
+  </Sequence></BehaviorTree>
+</root>
+"""
+PARTS = """<root BTCPP_format="4">
+  <BehaviorTree ID="Drive"><Sequence>
+    <SubTree ID="Move" to="{goal}" limit="{limit}"/>
+    <Report count="{count}"/><Script code="count += speed"/>
+    <Repeat num_cycles="{goal}"><AlwaysSuccess/></Repeat>
+  </Sequence></BehaviorTree>
+  <BehaviorTree ID="Move"><Go to="{to}" limit="{limit}"/></BehaviorTree>
+  <TreeNodesModel><SubTree ID="Drive"><input_port name="message"/></SubTree></TreeNodesModel>
+</root>
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "piece", "target"),
+    [
+        ("main", 'go|al="{target}"', 'to="{|goal}'),
+        ("main", 'go|al="4"', 'to="{|goal}'),
+        ("main", 'lim|it="{speed}"', 'limit="{|limit}"/>\n    <Report'),
+        ("main", 'cou|nt="0" speed', 'code="|count +='),
+        ("main", 'spe|ed="{=}"', "count += |speed"),
+        ("parts", 't|o="{goal}"', 'Go to="{|to}'),
+        ("main", 'unu|sed="1"', None),
+    ],
+)
+def test_an_attribute_of_a_subtree_leads_to_the_entry_inside(file: str, piece: str, target: str | None) -> None:
+    texts = {"main": ENTRIES, "parts": PARTS}
+    before, _, after = piece.partition("|")
+    at = texts[file].index(before + after) + len(before)
+    places = navigation.definition(snapshot_of(**texts).analysis, path_of(f"{file}.xml"), at)
+    if target is None:
+        assert places == ()
+        return
+    before, _, after = target.partition("|")
+    assert [(place.path, place.span.start) for place in places] == [
+        (path_of("parts.xml"), PARTS.index(before + after) + len(before))
+    ]
+
+
+def test_the_value_of_an_attribute_of_a_subtree_leads_to_the_entry_outside() -> None:
+    analysis = snapshot_of(main=ENTRIES, parts=PARTS).analysis
+    places = navigation.definition(analysis, path_of("main.xml"), ENTRIES.index("{target}") + 2)
+    assert [(place.path, place.span.start) for place in places] == [(path_of("main.xml"), ENTRIES.index("target :="))]
 
 
 def test_a_subtree_without_a_name_is_no_tree_without_a_name() -> None:

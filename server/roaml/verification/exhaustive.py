@@ -17,6 +17,8 @@ from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
 """The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
+_ESTIMATE = "omit --exhaustive to estimate the value from traces with uniform choices"
+"""What to do if all states cannot be explored, or do not answer the property."""
 
 
 class UndecidedError(Exception):
@@ -36,17 +38,14 @@ def exact_values(
         FaultError: an undefined operation is executed in some state.
     """
     if property_.question.is_conditional:
-        raise UndecidedError(
-            "a minimum or maximum given assumptions cannot be computed from all states; omit --exhaustive to "
-            "estimate the probability under uniform choices"
-        )
+        raise UndecidedError(f"a minimum or maximum given assumptions cannot be computed from all states; {_ESTIMATE}")
     reduced = checker.reduced(property_)
     if reduced is not checker:
         checker, property_ = reduced, reduced.compiled_properties[0]
     try:
         space = explore(checker, property_, limits, watch)
     except LimitError as error:
-        raise UndecidedError(str(error)) from None
+        raise UndecidedError(f"{error}; {_ESTIMATE}") from None
     if space.problem is not None:
         fault = checker.fault(space.problem)
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)

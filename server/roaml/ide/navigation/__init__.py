@@ -11,7 +11,9 @@ from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbo
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
 from roaml.lower.nodes import node_file
+from roaml.model.expand import tree_called
 from roaml.model.system import System
+from roaml.model.tree import nodes
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.project.paths import resolve
@@ -32,12 +34,16 @@ class DocumentHighlight(Record, frozen=True):
 
 def definition(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """The definitions of the symbol at a caret, or the file whose path is at the caret. Those of an event are its
-    senders, those of a topic its publishers, and those of a service or action its servers."""
+    senders, those of a topic its publishers, and those of a service or action its servers. An attribute of a
+    `<SubTree>` leads to the entry in the subtree: to its definitions there, otherwise to its first use."""
     file = _file_at(analysis, path, offset)
     if file is not None:
         return (Location(file, Span(0, 0)),)
     group = symbol_group_at(analysis, path, offset)
-    return () if group is None else (*group.definitions, *_ros(analysis, group.symbols), *_builtin(group.symbols))
+    if group is None:
+        return ()
+    entered = _in_subtree(analysis, path, offset, group)
+    return entered or (*group.definitions, *_ros(analysis, group.symbols), *_builtin(group.symbols))
 
 
 def definition_of(analysis: Analysis, symbol: Symbol) -> Location | None:
@@ -102,6 +108,25 @@ def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
         file = node_file(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
         if file is not None:
             yield Location(file, Span(0, 0))
+
+
+def _in_subtree(analysis: Analysis, path: str, offset: int, group: SymbolGroup) -> tuple[Location, ...]:
+    """The definitions, in a subtree, of the entry that an attribute of a `<SubTree>` at a caret sets; if there are
+    none, its first use there; empty if there is no such attribute, or if the subtree does not use the entry."""
+    file = analysis.tree(path)
+    subtrees = (node for tree in file.trees for node in nodes(tree) if node.is_subtree) if file else ()
+    named = next((n.plugin for n in subtrees if any(port.key.span.contains(offset) for port in n.ports)), None)
+    if named is None:
+        return ()
+    inside = [use for use in group.uses if _is_in_tree(analysis, use.location, named.value)]
+    defining = tuple(use.location for use in inside if use.occurrence.defines)
+    return defining or tuple(use.location for use in inside[:1])
+
+
+def _is_in_tree(analysis: Analysis, place: Location, name: str) -> bool:
+    file = analysis.tree(place.path)
+    tree = tree_called(file, name) if file is not None else None
+    return tree is not None and tree.element.span.start <= place.span.start < tree.element.span.end
 
 
 def _file_at(analysis: Analysis, path: str, offset: int) -> str | None:
