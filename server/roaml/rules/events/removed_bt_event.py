@@ -46,6 +46,6 @@ def _handler(handler: Handler, text: str) -> Finding:
 RULE = Rule(
     "removed-bt-event",
     Severity.ERROR,
-    "Plain events can no longer tick a tree or answer its ticks.",
+    "Plain events can no longer tick or halt a plugin, or answer the tree.",
     machine=check,
 )

@@ -33,6 +33,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
 RULE = Rule(
     "thread-element-outside-thread",
     Severity.ERROR,
-    "An element is on the wrong side of an action thread.",
+    "An element is not allowed inside, or outside of, an action thread.",
     machine=check,
 )

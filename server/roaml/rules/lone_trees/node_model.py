@@ -76,4 +76,9 @@ def _of_library(declaration: Node, port: PortModel) -> Iterator[Finding]:
         yield RULE.at(port.element.name_span, message, fix, severity=Severity.INFORMATION)
 
 
-RULE = Rule("node-model", Severity.WARNING, "The model of a node is wrong.", tree=check)
+RULE = Rule(
+    "node-model",
+    Severity.WARNING,
+    "A model in `<TreeNodesModel>` has an unknown tree or type, or contradicts BehaviorTree.CPP.",
+    tree=check,
+)

@@ -39,7 +39,9 @@ def _same_event(name: str, variables: Mapping[str, GlobalVariable]) -> tuple[str
 
 
 def _explanation(name: str, variables: Mapping[str, GlobalVariable]) -> str:
-    return "; a property can use what is sent: `EVENT.valid` and `EVENT__PARAMETER`" if variables else ""
+    return (
+        "; a property can use flags and parameters of events, `EVENT.valid` and `EVENT__PARAMETER`" if variables else ""
+    )
 
 
 RULE = Rule(

@@ -19,8 +19,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 if after is None or handler.element.name != "transition":
                     continue
                 timer = f'<ros_time_rate name="…" rate_hz="{_rate(after.value)}" />'
-                message = f"`after` has no effect: transitions do not wait; declare the timer `{timer}` and count its"
-                message += " ticks in a `<ros_rate_callback>`"
+                message = f"`after` has no effect: transitions do not wait; declare the timer `{timer}`, and wait for"
+                message += " it with a `<ros_rate_callback>`"
                 remove = Fix("Remove the attribute", (removal(context.source.text, after.span),), preferred=False)
                 severity = Severity.HINT if context.older else Severity.WARNING
                 yield RULE.at(after.span, message, remove, severity=severity)

@@ -73,4 +73,9 @@ def _type(context: MachineContext, type_: TypeRef) -> Iterator[Finding]:
     yield RULE.at(type_.span, f"there is no type `{type_.text}`{hint}", *replacements(type_.span, close))
 
 
-RULE = Rule("invalid-port", Severity.ERROR, "A port is declared twice or with an unsupported type.", machine=check)
+RULE = Rule(
+    "invalid-port",
+    Severity.ERROR,
+    "A port is declared twice, or with an invalid name, direction or type.",
+    machine=check,
+)

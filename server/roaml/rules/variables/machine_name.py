@@ -40,7 +40,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 RULE = Rule(
     "machine-name",
     Severity.ERROR,
-    "The name of a machine is already used or not an identifier.",
+    "The name of a machine is empty, already used or not an identifier.",
     machine=check,
     facts=WrongName,
 )
