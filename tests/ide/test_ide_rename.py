@@ -38,7 +38,7 @@ a.ascxml         std_msgs/|Int32         x         is defined by ROS
 tree.xml         |Sequence>              x         is a node of BehaviorTree.CPP
 a.ascxml         |transition             x         there is no name at this position
 a.ascxml         id="|p" type            n         a variable `n` already exists
-a.ascxml         id="|p" type            p         its name is already `p`
+a.ascxml         id="|p" type            p         the name is already `p`
 a.ascxml         id="|p" type            _msg      the name of an event variable
 a.ascxml         id="|p" type            a b       not a valid variable name
 a.ascxml         id="|p" type            var       word of ECMAScript

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expression tree -> text in one normal form: one space around binary operators, no superfluous parentheses.
 
-Parsing the text gives the same tree, except for positions; a tree with an `ErrorExpr` has no text.
+Parsing the text gives the same tree, except for spans; a tree with an `ErrorExpr` has no text.
 """
 
 from __future__ import annotations

@@ -61,6 +61,8 @@ class Struct(Record, frozen=True):
     """Named members in order.
 
     Attributes:
+        name: the name of the declared struct, or of the ROS type with the section of a service or action, such as
+            "std_srvs/SetBool request"; "" for other structs.
         what: a noun for messages that says what the struct describes, such as struct, message or event data.
         event: for `StructKind.EVENT`, the event whose parameters the members are.
     """

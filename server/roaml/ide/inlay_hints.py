@@ -46,6 +46,7 @@ from roaml.text import Location, Span
 from roaml.xml_syntax import Element
 
 _MAX_NAMES = 3
+"""The maximum number of interfaces, nodes or systems that a hint names."""
 
 
 class HintKind(enum.Enum):

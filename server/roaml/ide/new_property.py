@@ -56,7 +56,8 @@ class PropertySentence(Record, frozen=True):
     """A sentence for a new property, with letters instead of the conditions.
 
     Attributes:
-        conditions: the names of the conditions, in the order in which the sentence uses the letters A, B, C and D.
+        text: the sentence.
+        conditions: the names of the conditions, in the order of their letters A, B, C and D.
         letters: the letter of each condition.
         needs_time: whether the sentence has no meaning without a bound on the time.
     """

@@ -72,13 +72,14 @@ def expressions(document: Document, typed: Typed) -> Iterator[Expression]:
 
 
 def expression_at(file: XmlFile, offset: int) -> Expression | None:
-    """The expression around an offset; a caret at its end is inside it."""
+    """The expression around an offset; `None` if there is none. An offset at the end of an expression is inside it."""
     around = path_at(file, offset)
     return expression_in(file.document, around[-1], offset) if around else None
 
 
 def expression_in(document: Document, typed: Typed, offset: int) -> Expression | None:
-    """The expression of the element `typed` around an offset. The offset must not be in a child of the element."""
+    """The expression of the element `typed` around an offset; `None` if there is none. The offset must not be in a
+    child of the element."""
     sources = expression_sources(document, typed)
     source = next((s for s in sources if s.span(0, len(s.text)).contains(offset)), None)
     return None if source is None else expression_from(source)

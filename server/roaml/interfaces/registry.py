@@ -22,7 +22,9 @@ from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile
 
 _MAX_CLOSE = 3
+"""The maximum number of similar names that are suggested."""
 _MAX_NAME_LENGTH = 100
+"""The number of characters at the beginning of a malformed name for which similar names are searched."""
 _WORD_BREAKS = re.compile(r"[^A-Za-z0-9_]+")
 
 

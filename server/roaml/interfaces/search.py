@@ -40,6 +40,7 @@ _Files: TypeAlias = Mapping[Kind, Mapping[str, str]]
 
 _NO_FILES: _Files = {kind: {} for kind in KINDS}
 _PACKAGE_XML_HEAD = 8192
+"""The number of bytes at the beginning of a `package.xml` that are searched for the name of the package."""
 _XML_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _XML_NAME = re.compile(r"<name>\s*([^<>\s]+)\s*</name>")
 

@@ -25,6 +25,7 @@ _SIMPLE_ESCAPES = dict(zip("abfnrtv\\\"'", "\a\b\f\n\r\t\v\\\"'", strict=True))
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 _GREATEST_FLOAT = {"float32": 3.4028234663852886e38, "float64": 1.7976931348623157e308}
 _MAX_DIGITS = 1000
+"""The maximum number of characters of an integer; longer ones are outside of all ranges."""
 
 
 def skip_blanks(text: str, start: int, end: int) -> int:

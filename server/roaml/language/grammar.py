@@ -78,6 +78,7 @@ class AttributeType(Record, frozen=True):
         defines: the kind of symbol that the value defines, if any.
         refers: the kinds of symbols to which the value may refer.
         value: the role of a value that neither defines a symbol nor refers to one.
+        simple: the allowed values, by their form.
         value_type: the required type of an expression (bool, int, any), or the kind of a ROS type (msg, srv, action).
         ignored: `None` if the attribute has an effect; otherwise, `False` if a rule reports that it has none, and
             `True` if no rule reports this.
@@ -118,12 +119,15 @@ class ElementType(Record, frozen=True):
 
     Attributes:
         children: name -> multiplicity; `Grammar.child` returns the type of a child.
+        local: the types of the children that are declared inside this element, by name.
         any_child: the allowed number of children with any name, or `None`; children in foreign namespaces are ignored.
         any_is_opaque: whether the grammar ignores the names and the content of these children.
         any_attribute: whether attributes that are not listed are allowed; attributes in foreign namespaces always are.
         text: whether character data is allowed.
+        refers, value, value_type: the role of the character data, as for the value of an attribute.
         sends, receives: the part of an interface or of the tree protocol that the element sends or receives, if any.
         code: the result code of an action that corresponds to the element, or 0.
+        binds: the event variables that are available in the element.
         ignored: whether the element has no effect on the model.
         use: the element that replaces this one if this one is deprecated, otherwise "".
         node: the kind of node if the element is a node of a tree.

@@ -39,6 +39,7 @@ class CodeAction(Record, frozen=True):
 
     Attributes:
         title: a phrase in the imperative; unique among the actions of one kind at one place.
+        kind: one of `KINDS`.
         make: computes the change when it is requested.
         diagnostic: the diagnostic that a quick fix removes.
         preferred: whether the action is the obvious one, as in LSP's `isPreferred`.

@@ -29,7 +29,8 @@ _RELATIONS = {
 """Comparison operator -> the relation of the value to the number: first if the value is the left operand, then if it is
 the right operand."""
 _JUDGING = (FilterFunction.FORALL, FilterFunction.EXISTS)
-"""Functions of filters whose values are comparisons. Their results differ only if there are several initial states."""
+"""The functions of filters over comparisons. If there is only one initial state, both functions have the same
+result."""
 
 
 class MovableExpectation(NamedTuple):
@@ -122,7 +123,7 @@ def _compared(property_: Property, text: str, document: JsonValue) -> MovableExp
 
 
 def _function_span(filter_: Formula, document: JsonValue) -> Span:
-    """The span of the function of a filter, `fun`."""
+    """The span of the value of the key `fun` of a filter."""
     objects = (value for value in values(document) if isinstance(value, JsonObject))
     written = next(value for value in objects if filter_.origin is not None and value.span == filter_.origin.span)
     function = written.get("fun")

@@ -126,7 +126,7 @@ def _is_unknown(analysis: Analysis, path: str, node: TreeNode) -> bool:
 
 
 def _node_at(analysis: Analysis, path: str, place: Span) -> TreeNode | None:
-    """The node whose start tag contains the caret."""
+    """The node whose start tag contains the caret; `None` if there is none."""
     file = analysis.tree(path)
     for tree in file.trees if file else ():
         for node in nodes(tree):

@@ -54,7 +54,8 @@ def document(analysis: Analysis, about: Symbol) -> str:
 
 
 def _element(grammar: Grammar, parent: str, name: str) -> ElementType | None:
-    """The type of the element as a child of `parent`; if it is not allowed there, its type in any other parent."""
+    """The type of the element as a child of `parent`; if it is not allowed there, its type in any other parent; `None`
+    if the grammar has no element with this name."""
     outer = grammar.find(parent) if parent else None
     inner = grammar.child(outer, name) if outer else None
     return inner or grammar.find(name)

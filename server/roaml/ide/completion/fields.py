@@ -117,7 +117,8 @@ def _interface(request: Request, declaration: Declaration | None) -> InterfaceTy
 
 
 def _part(request: Request, declaration: Declaration | None, type_: ElementType) -> Struct | None:
-    """The part of a declared interface that an element of the type `type_` sends."""
+    """The part of a declared interface that an element of the type `type_` sends; `None` if it sends none, or if the
+    interface is not known."""
     interface = _interface(request, declaration) if "field" in type_.children else None
     return dict(interface.parts).get(_section(type_)) if interface else None
 

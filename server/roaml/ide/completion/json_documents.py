@@ -45,6 +45,7 @@ class _Place(Record, frozen=True, eq=False):
         schema: the schema of the object whose key is being written, or of the value that is being written.
         inside: the enclosing object or list.
         span: the part of the key or value that has been written, including quotes.
+        is_key: whether a key is being written, not a value.
         bare: whether there is no value after the key.
     """
 

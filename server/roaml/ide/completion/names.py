@@ -19,6 +19,7 @@ from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
 from roaml.roles import Direction, NodeKind, SymbolKind
 
 _SHOWN = 3
+"""The maximum number of names in the detail of an item; further names are counted."""
 
 
 def referred(request: Request, kind: SymbolKind, subject: CompletionSubject) -> Iterator[CompletionItem]:
@@ -83,8 +84,8 @@ def _declared(declaration: Declaration) -> str:
 
 
 def _ports(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The ports of a plugin that its element can read or write; in a tree file, the ports of the plugin that a model
-    describes."""
+    """The ports of the plugin that the element of `subject` can read or write; in a tree file, the ports of the plugin
+    that the enclosing model describes."""
     if request.machine is None:
         id_ = subject.parents[-1].element.get("ID") if subject.parents else None
         path, outline = plugins(request).get(id_.value if id_ else "", ("", None))
@@ -120,7 +121,8 @@ def _unknown_plugins(system: System) -> Iterator[str]:
 
 
 def _missing_ports(request: Request) -> Iterator[CompletionItem]:
-    """The ports that trees set for this plugin, but that it does not declare."""
+    """The ports that trees set for the plugin of the file but that the plugin does not declare, and
+    `CHILDREN_COUNT`."""
     machine = request.machine
     if machine is None or machine.name is None:
         return
@@ -248,7 +250,7 @@ def port_list(outline: MachineOutline) -> str:
 
 
 def _tree_names(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
-    """The names of trees; in a tree, without its own, because a tree cannot contain itself."""
+    """The names of trees. Inside a tree, the name of this tree is left out, because a tree cannot contain itself."""
     around = [typed.element.get("ID") for typed in subject.parents if typed.element.name == "BehaviorTree"]
     own = {id_.value for id_ in around if id_ is not None}
     for name, (path, _) in request.trees.trees.items():

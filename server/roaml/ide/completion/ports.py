@@ -79,7 +79,7 @@ def _of_library(known: Node) -> Iterator[SettablePort]:
 
 
 def node_name(element: Element) -> str:
-    """The name of the plugin of a node."""
+    """The name of the plugin of a node; "" if it is not written yet."""
     if element.name in (*EXPLICIT, *SUBTREES):
         id_ = element.get("ID")
         return id_.value if id_ else ""
@@ -91,8 +91,8 @@ def _type_of(request: Request, name: str) -> ElementType | None:
 
 
 def port_values(request: Request, subject: CompletionSubject, key: str) -> list[CompletionItem]:
-    """The possible values of the port `key` of a node: blackboard variables, and constants if its type determines
-    them."""
+    """The possible values of the port `key` of a node: blackboard variables, and for an input the default, the
+    constants of its type, and the names of interfaces if the plugin uses the port as the name of an interface."""
     element = subject.element
     if element is None or not _in_tree(subject):
         return []
@@ -157,7 +157,7 @@ def _constants(request: Request, name: str, port: SettablePort) -> Iterator[Comp
 
 
 def _interfaces(request: Request, outline: MachineOutline | None, key: str) -> Iterator[CompletionItem]:
-    """The topics, services or actions of the workspace, if the port contains the name of one."""
+    """The topics, services or actions of the workspace, if the plugin uses the port as the name of one."""
     for use in outline.interfaces if outline else ():
         if use.port == key and use.kind in CHANNEL_KINDS:
             yield from channels(request, CHANNEL_KINDS[use.kind], use.type)

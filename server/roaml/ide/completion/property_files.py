@@ -162,7 +162,7 @@ def has_effect(parents: tuple[Typed, ...], type_: ElementType, attribute: Attrib
 
 
 def port_at(request: Request, subject: CompletionSubject) -> Port | None:
-    """The port that the element of `subject` declares, or inside which the element is."""
+    """The port that the element of `subject` declares, or inside which the element is; `None` if there is none."""
     elements = [*(parent.element for parent in subject.parents), *([subject.element] if subject.element else [])]
     ports = request.property_file.ports if request.property_file is not None else ()
     return next((port for port in ports if any(port.element is element for element in elements)), None)

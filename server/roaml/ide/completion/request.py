@@ -95,7 +95,8 @@ class Request(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def chart(self) -> Chart | None:
-        """The innermost chart around the caret: that of a thread, or that of the machine."""
+        """The innermost chart around the caret: that of a thread, or that of the machine; `None` outside of
+        machines."""
         charts = self.machine.charts if self.machine else ()
         around = [chart for chart in charts if chart.element.span.start <= self.offset <= chart.element.span.end]
         return around[-1] if around else None

@@ -72,7 +72,8 @@ def candidates(request: Request, subject: CompletionSubject, attribute: Attribut
 
 
 def in_text(request: Request, subject: CompletionSubject, span: Span) -> tuple[Span, list[CompletionItem]] | None:
-    """The span that the items replace, and the possible texts of an element."""
+    """The span that the items replace, and the possible texts of an element; `None` in an expression where no name is
+    possible."""
     type_ = subject.type
     if type_.value in _EXPRESSIONS:
         return in_expression(request, subject, type_.name, span.start)

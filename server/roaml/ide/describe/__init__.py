@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The description of a symbol, as Markdown, which hover, completion and hints share.
 
-`describe_language` describes parts of the languages (elements, attributes, functions), `describe_ros` ROS definitions.
+The module `language` describes parts of the languages (elements, attributes, functions), and the module `ros`
+definitions of ROS.
 """
 
 from __future__ import annotations

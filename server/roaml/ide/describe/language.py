@@ -166,7 +166,7 @@ EVENT_VARIABLES = {
     "_goal": "The goal that has arrived.",
     "_feedback": "The feedback that has arrived.",
     "_wrapped_result": "The result that has arrived, with its code.",
-    "_action": "The goal of this event.",
+    "_action": "The goal to which this event belongs.",
     "_event": "The event that has arrived.",
     "_bt": "The status that the child has returned.",
 }
@@ -234,7 +234,8 @@ def array_size(bounds: tuple[int | None, ...]) -> str:
 
 
 def members(struct: Struct, most: int = 24) -> str:
-    """The members of a struct, message or event, one per line."""
+    """The name of a struct, message or event and its members, one per line. If there are more than `most` + 1 members,
+    `most` are shown, and the others are counted."""
     head = " ".join(filter(None, (struct.what, struct.name if struct.name not in struct.what else "")))
     return "\n".join([head, *_rows(struct, most)])
 

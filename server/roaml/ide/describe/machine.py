@@ -220,7 +220,8 @@ def _becomes(analysis: Analysis, symbol: Symbol, type_: Type) -> str:
 
 
 def state(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a state: the transitions to it and from it, with their triggers."""
+    """The description of a state: the transitions to it and from it, with their triggers; "" if its machine is not
+    found."""
     machine = analysis.machine(symbol.path)
     chart = next((chart for chart in machine.charts if chart.scope == symbol.scope), None) if machine else None
     if machine is None or chart is None:
@@ -289,8 +290,8 @@ _PROTOCOL = {
 
 
 def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
-    """The events of plain SCXML into which an element of the tree protocol is translated, as a sentence; "" for other
-    elements."""
+    """The events of plain SCXML into which an element of the tree protocol is translated, as text; "" for other
+    elements, and if no system executes the plugin."""
     part = type_.receives or type_.sends
     end = _PROTOCOL.get(part) if part else None
     nodes = [a for s in linked_systems(analysis, path) for a in s.automata_of(path) if a.instance] if end else []
@@ -302,7 +303,8 @@ def protocol(analysis: Analysis, path: str, type_: ElementType) -> str:
 
 
 def handle(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a declared ROS interface or timer, and its connections in the systems of its machine."""
+    """The description of a declared ROS interface or timer, and its connections in the systems of its machine; "" if
+    there is no declaration."""
     declared = declaration(analysis, symbol)
     if declared is None:
         return ""
@@ -366,7 +368,8 @@ def duration(seconds: float) -> str:
 
 
 def port(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a port of a plugin: type, default, and its values in the nodes of the tree."""
+    """The description of a port of a plugin: type, default, and its values in the nodes of the tree; "" if there is no
+    declaration."""
     machine = analysis.machine(symbol.path)
     declared = next((p for p in machine.ports if p.key and p.key.value == symbol.name), None) if machine else None
     if declared is None:
@@ -394,6 +397,7 @@ def port(analysis: Analysis, symbol: Symbol) -> str:
 
 
 _MAX_VALUES = 5
+"""The maximum number of values of a port that are listed; further values are counted."""
 
 
 def node_id(automaton: SystemAutomaton) -> str:
@@ -403,7 +407,8 @@ def node_id(automaton: SystemAutomaton) -> str:
 
 
 def machine(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a machine: its ports and interfaces, its automata in its systems, and its file."""
+    """The description of a machine: its ports and interfaces, its automata in its systems, and its file; "" if the file
+    is not a machine."""
     model = analysis.machine(symbol.path)
     if model is None:
         return ""
@@ -453,7 +458,7 @@ def _interfaces(outline: MachineOutline) -> Iterator[str]:
 
 def _instances(nodes: list[SystemAutomaton]) -> str:
     if not nodes:
-        return "No node of the tree uses it"
+        return "No node of the tree uses this plugin"
     trees = names(dict.fromkeys(a.instance.source.tree for a in nodes if a.instance and a.instance.source.tree))
     count = "One node" if len(nodes) == 1 else f"{len(nodes)} nodes"
     return f"{count}{f' in {trees}' if trees else ''}: {names((a.name for a in nodes), 4)}"

@@ -12,7 +12,9 @@ from roaml.interfaces.types import SECTION_NAMES, Constant, Definition, Field, K
 
 LANGUAGE = "rosmsg"
 _MAX_LINES = 40
+"""The maximum number of lines of a definition; the number of further lines is shown instead."""
 _WIDTH = 88
+"""The maximum number of characters in a line of a comment."""
 
 
 def ros_type(registry: Registry, kind: Kind, type_name: str) -> str:
@@ -63,7 +65,7 @@ def _declared(member: Field | Constant) -> str:
 
 
 def field(registry: Registry, struct: str, field_name: str) -> str:
-    """The description of a field of a message, or of a part of a service or action.
+    """The description of a field of a message, or of a part of a service or action; "" if the field is not found.
 
     Args:
         registry: resolves definitions.

@@ -266,11 +266,12 @@ def becomes(analysis: Analysis, path: str, tree: str, position: int) -> str:
     descriptions = list(
         dict.fromkeys(node(system, automaton) for system, automaton in instances(analysis, path, tree, position))
     )
-    rest = f"… and {len(descriptions) - _MAX_USES} more times" if len(descriptions) > _MAX_USES else ""
+    rest = f"… and {len(descriptions) - _MAX_USES} more" if len(descriptions) > _MAX_USES else ""
     return paragraphs(*descriptions[:_MAX_USES], rest)
 
 
 _MAX_USES = 3
+"""The maximum number of instances of a node that are described; further instances are counted."""
 
 
 def instances(analysis: Analysis, path: str, tree: str, position: int) -> Iterator[tuple[System, SystemAutomaton]]:
@@ -296,7 +297,7 @@ def node(system: System, automaton: SystemAutomaton) -> str:
 
 
 def struct(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a struct: its members, and its file."""
+    """The description of a struct: its members, and its file; "" if there is no definition."""
     type_ = _struct(analysis, symbol, symbol.name)
     if type_ is None:
         return ""
@@ -305,7 +306,7 @@ def struct(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def member(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a member of a struct; `symbol.scope` is the struct."""
+    """The description of a member of the struct `symbol.scope`; "" if the struct does not have the member."""
     owner = _struct(analysis, symbol, symbol.scope)
     type_: Type | None = owner.member(symbol.name) if owner else None
     if type_ is None:
@@ -319,7 +320,8 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
 
 
 def _struct(analysis: Analysis, symbol: Symbol, struct_name: str) -> Struct | None:
-    """The struct `struct_name` in the system of a symbol, or in the symbol's file if it belongs to no system."""
+    """The struct `struct_name` in the system of a symbol, or in the file of the symbol if this file belongs to no
+    system; `None` if there is none."""
     if symbol.path in analysis.system_paths:
         struct = analysis.structs(symbol.path).types.get(struct_name)
         return struct if isinstance(struct, Struct) else None

@@ -132,7 +132,8 @@ def outcome(handler: Handler, target: Target) -> str:
 
 
 def _arguments(params: Sequence[Param]) -> str:
-    """The fields of a message in parentheses. If `data` is the only field, its name is omitted."""
+    """The fields of a message in parentheses; "" if there are none. If `data` is the only field, its name is
+    omitted."""
     if len(params) == 1 and params[0].name and params[0].name.value == "data":
         return f" ({_text(params[0].value)})"
     fields = ", ".join(f"{_name(param.name)} = {_text(param.value)}" for param in params)

@@ -10,8 +10,9 @@ from roaml.record import replace
 
 
 def collapsed(picture: Picture, ids: Collection[str]) -> Picture:
-    """The diagram without the nodes below those with the given ids, and without the entries that only these use. A
-    collapsed node says how many nodes are not shown. Ids of other diagrams are ignored."""
+    """The diagram without the nodes below the nodes whose ids are `ids`, and without the entries of the blackboard that
+    only removed nodes use. The last of the details of a collapsed node is the number of removed nodes. Ids that the
+    diagram does not contain are ignored."""
     children: dict[str, list[str]] = {}
     for edge in picture.edges:
         if edge.kind is EdgeKind.CHILD:

@@ -84,6 +84,7 @@ class DiagramEdge(Record, frozen=True):
         actions: the texts for the statements that a transition executes.
         probabilistic: whether it is one of several edges of a choice, of which one is chosen at random.
         internal: whether it represents a transition without a target, which does not leave its state.
+        place: the place in a file that the edge represents; `None` if there is none.
     """
 
     source: str

@@ -12,8 +12,8 @@ from roaml.text import Location
 
 
 class DiagramHighlight(Record, frozen=True):
-    """A node to highlight. `picture` is the kind of diagram, "machine" or "tree"; `path` is the file that the diagram
-    shows; `node` is the id of the node in the diagram."""
+    """A node to highlight. `picture` is the kind of diagram, "machine" or "tree"; `path` is the file whose diagram this
+    is: a machine, or the system of a tree; `node` is the id of the node in the diagram."""
 
     picture: str
     path: str

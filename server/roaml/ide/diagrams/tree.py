@@ -168,7 +168,7 @@ class _Tree:
         return _KINDS.get(word, unknown)
 
     def declared(self, instance: Instance) -> str:
-        """The kind of a node in a tree without a system, if a library or a model declares it."""
+        """The kind of a node in a tree without a system, if a library or a model declares it; otherwise ""."""
         forest = self.forests.get(instance.source.path)
         node = forest.node(instance.plugin) if forest is not None else None
         return node.kind.value if node is not None else ""

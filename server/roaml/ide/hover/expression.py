@@ -75,7 +75,7 @@ def _known(place: Place) -> dict[str, Type]:
 
 
 def handler_at(machine: Machine, offset: int) -> Handler | None:
-    """The transition or callback around a place."""
+    """The transition or callback around a place; `None` if there is none."""
     for chart in machine.charts:
         for state in chart.states:
             if state.element.span.contains(offset):

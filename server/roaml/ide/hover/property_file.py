@@ -18,7 +18,8 @@ from roaml.text import Span
 
 
 def global_variable(place: Place) -> tuple[Span, str] | None:
-    """The descriptions of the global variable whose name is at a place, in each system of the file."""
+    """The descriptions of the global variable whose name is at a place, in each system of the file; `None` if there is
+    none."""
     analysis, offset = place.analysis, place.offset
     value = analysis.json(place.path)
     hovered = value_at(value[0], offset) if value else None

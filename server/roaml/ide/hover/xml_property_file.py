@@ -12,7 +12,7 @@ from roaml.text import Span
 
 
 def property_tag(place: Place) -> tuple[Span, str] | None:
-    """The description of the property whose tag is at a place."""
+    """The description of the property whose tag is at a place; `None` if there is none."""
     file = place.analysis.property_file(place.path)
     for written in file.properties if file is not None else ():
         for span in (written.element.name_span, written.element.close_name_span):
@@ -22,8 +22,8 @@ def property_tag(place: Place) -> tuple[Span, str] | None:
 
 
 def compared_number(place: Place) -> tuple[Span, str] | None:
-    """The name of the number at a place in a condition, if it represents the status of a node or the code of a
-    result."""
+    """The name of the number at a place in a condition, if it represents the status of a node or the code of a result;
+    otherwise `None`."""
     file = place.analysis.property_file(place.path)
     for written in file.properties if file is not None else ():
         for condition in written.expressions:

@@ -116,7 +116,8 @@ def _events(system: System, trees: Trees, interface: FindInterface) -> Iterator[
 
 
 def _part(channel: Channel, part: str, interface: FindInterface) -> Type:
-    """The fields of a part of a topic, service or action."""
+    """The fields of a part of a topic, service or action; `UNKNOWN` if the part has no fields or the type is not
+    found."""
     for endpoint in channel.endpoints:
         definition = interface(INTERFACE_KINDS[endpoint.use.kind], endpoint.use.type) if part else None
         if definition is not None:

@@ -64,7 +64,7 @@ def declaration(analysis: Analysis, path: str, offset: int) -> tuple[Location, .
 
 def implementation(analysis: Analysis, path: str, offset: int) -> tuple[Location, ...]:
     """The implementations of the symbol at a caret. Those of an event are its handlers; for other symbols, the result
-    is that of `definition`, such as the file of a tree node's plugin."""
+    is that of `definition`, such as the machine of a tree node."""
     group = symbol_group_at(analysis, path, offset)
     if group is not None and SymbolKind.EVENT in group.kinds:
         return tuple(

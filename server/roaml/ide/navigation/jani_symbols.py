@@ -11,6 +11,7 @@ from roaml.ide.navigation.document_symbol import DocumentSymbol, DocumentSymbolK
 from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 
 _MAX_CHARACTERS = 80
+"""The maximum number of characters of a formula in the detail of an entry."""
 
 
 def jani_symbols(value: JsonValue | None) -> Iterator[DocumentSymbol]:
@@ -76,7 +77,8 @@ def _automaton(item: JsonValue) -> DocumentSymbol | None:
 
 
 def _edge(item: JsonValue) -> DocumentSymbol | None:
-    """The symbol of an edge: the name of its action, with its source, destinations and guard as detail."""
+    """The symbol of an edge: the name of its action, with its source, destinations and guard as detail; `None` if the
+    edge has no source."""
     parts = members(item)
     location, action = parts.get("location"), parts.get("action")
     if not isinstance(location, JsonString):

@@ -44,7 +44,8 @@ class PictureParts:
         self._parts: dict[str, dict[Span, Part]] = {}
 
     def actions(self, place: Location | None) -> tuple[PictureAction, ...]:
-        """The actions that make sense at a place, in the order of a menu. Some may still be refused."""
+        """The actions that the part at a place allows, in the order of a menu. `answer` may still refuse one of
+        them."""
         if place is None:
             return ()
         if place.path not in self._parts:

@@ -20,7 +20,7 @@ class UserQuestion(Record, frozen=True):
     """A question whose answer the action needs.
 
     Attributes:
-        text: a noun phrase.
+        text: a noun phrase for the requested answer, such as "The name of the new state".
         options: the answers to choose from; without any, the answer is a text.
         proposal: the text that the user edits.
     """

@@ -121,8 +121,8 @@ def _without_targets(
     document: Document, handler: Handler, targets: Sequence[Target]
 ) -> tuple[list[Element], list[Edit]]:
     """The elements to remove, and the changes of other elements, so that a handler loses `targets`. If all remaining
-    targets have a probability, the last one loses it and receives the rest, so that the probabilities have the sum
-    1."""
+    targets have a probability, the attribute of the last target is removed. This target receives the rest, so that the
+    probabilities have the sum 1."""
     rest = [target for target in handler.targets if target not in targets]
     elements = [target.element for target in targets if target.element is not None]
     # Without a `<target>`, the targets are attributes that a transition needs.

@@ -104,7 +104,8 @@ def _nested(path: Formula, step: int | None) -> PatternForm | None:
 
 
 def _flat(path: Formula) -> PatternForm | None:
-    """The pattern of a formula in normal form whose path operators are applied to conditions."""
+    """The pattern of a formula in normal form whose path operators are applied to conditions; `None` if there is
+    none."""
     match path:
         case UnaryPath(operator=operator, operand=operand) if path.time_bounds is None:
             if isinstance(operand, ProperFormula):
@@ -129,7 +130,7 @@ def _flat(path: Formula) -> PatternForm | None:
 
 
 def _before(never: UnaryPath, rest: BinaryPath) -> PatternForm | None:
-    """The pattern of `G ¬close ∨ (left U right)`, that is, of `F close ⇒ (left U right)`."""
+    """The pattern of `G ¬close ∨ (left U right)`, that is, of `F close ⇒ (left U right)`; `None` if there is none."""
     if never.operator is not UnaryPathOperator.GLOBALLY or never.time_bounds is not None:
         return None
     if rest.operator is not BinaryPathOperator.UNTIL:
@@ -151,7 +152,7 @@ def _before(never: UnaryPath, rest: BinaryPath) -> PatternForm | None:
 
 
 def _existence(scope: ScopeKind, right: Expression, close: Expression) -> PatternForm | None:
-    """The pattern of `¬close U right` if `right` is `event ∧ ¬close`."""
+    """The pattern of `¬close U right` if `right` is `event ∧ ¬close`, otherwise `None`."""
     event = _without(right, close)
     return None if event is right else _form(Pattern.EXISTENCE, scope, event, opening=close)
 

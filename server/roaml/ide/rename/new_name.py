@@ -37,7 +37,7 @@ def problem(analysis: Analysis, group: SymbolGroup, new: str) -> str:
     """Why a symbol cannot be named `new`, as a clause; "" if it can."""
     for symbol in group.symbols:
         if symbol.name == new:
-            return f"its name is already `{new}`"
+            return f"the name is already `{new}`"
     for kind in sorted(group.kinds):
         if reason := _form(kind, new, group):
             return reason

@@ -11,6 +11,7 @@ from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
 from roaml.record import Record
 
 PADDING = 10.0
+"""The default distance of the rows of a card from its edge, in pixels."""
 _ROW_DISTANCE = 5.0
 _BAR_WIDTH, _BAR_DISTANCE = 3.0, 7.0
 _INDENT = 10.0
@@ -38,6 +39,7 @@ class Row(Record, frozen=True):
     """Lines of a card that represent edges of the diagram, or that describe the node itself if `edges` is empty.
 
     Attributes:
+        kind: the kinds of the edges, as classes of the style sheet.
         edges: the indices of the edges in the diagram.
         has_bar: whether a bar in the row's tone is drawn on the left of the lines.
         is_joined: whether there is no distance to the row above.

@@ -22,7 +22,9 @@ from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened,
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
 """The maximum widths of lines of text in cards and labels, in pixels."""
 LABEL_PADDING = 7.0
+"""The distance of the text of a label from its edge, in pixels."""
 MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
+"""The maximum numbers of lines of a condition and of an action, and of the actions of a transition that are shown."""
 _JUNCTION, _DOT = 14.0, 10.0
 _START = "start"
 _FRAME_MARGIN = 18.0

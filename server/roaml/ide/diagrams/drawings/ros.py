@@ -18,6 +18,7 @@ from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
 """The maximum widths of lines of text in cards, in pixels. They are smaller if nodes are drawn side by side."""
 LABEL_WIDTH = 150.0
+"""The maximum width of lines of text in labels, in pixels."""
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 _CHANNELS: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.TOPIC: Tone.TOPIC,

@@ -18,7 +18,9 @@ from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened,
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
 
 TITLE_WIDTH, PORT_WIDTH = 190.0, 210.0
+"""The maximum widths of lines of text in titles, and in rows of ports, in pixels."""
 MAX_PORT_LINES = 3
+"""The maximum number of lines of a port, condition or script."""
 _TONES: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.CONTROL: Tone.CONTROL,
     DiagramNodeKind.DECORATOR: Tone.DECORATOR,
