@@ -40,7 +40,7 @@ def test_spellings(written: str, name: str) -> None:
         ("int", "", "must be an integer"),
         ("int", "3.5", "reads `3` and ignores the rest"),
         ("int", "4000000000", "must be from -2147483648 to 2147483647"),
-        ("unsigned int", "-1", "must not be negative"),
+        ("unsigned int", "-1", "must be 0 or greater"),
         ("uint8_t", "256", "must be from 0 to 255"),
         ("double", "1e-3", None),
         ("double", ".5", None),

@@ -89,6 +89,33 @@ def test_an_inserted_error_is_reported(old: str, new: str, code: str) -> None:
     assert code in {reported for reported, _ in checked(PROPERTIES.replace(old, new, 1))}
 
 
+PLAIN = '<scxml_event_send event="topic_alarm_msg"><event_var id="ticked" />{}</scxml_event_send>'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            '<bt_node node="Look" event="tick"><event_var id="ticked" /></bt_node>',
+            PLAIN.format('<state_var id="on" type="bool" param="dat" expr="false" />'),
+            "the event `topic_alarm_msg` has no parameter `dat`; did you mean `ros_fields__data`?",
+        ),
+        (
+            '<bt_node node="Look" event="tick"><event_var id="ticked" /></bt_node>',
+            PLAIN.format('<state_var id="on" type="bool" expr="false" />'),
+            "`param` is missing; add the name of the parameter whose value the variable gets",
+        ),
+        (' field="success"', "", "`field` is missing; add the name of the field whose value the variable gets"),
+        ('field="status"', 'field="code"', "a response of a node has no field `code`; did you mean `status`?"),
+        ("value &lt;= 2", "words - 2 == 1", "`-` takes a number, not a value of type `string`"),
+        ("value &lt;= 2", "value &amp;&amp; alarm", "`&&` takes a boolean, not a value of type `int32`"),
+    ],
+)
+def test_messages_name_what_the_file_contains(old: str, new: str, message: str) -> None:
+    assert old in PROPERTIES
+    assert message in {text for _, text in checked(PROPERTIES.replace(old, new, 1))}
+
+
 def test_names_are_unique_over_all_files() -> None:
     probability = {"op": "Pmin", "exp": {"op": "F", "exp": True}}
     expression = {"op": "filter", "fun": "values", "values": probability, "states": {"op": "initial"}}

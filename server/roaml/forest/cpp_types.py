@@ -60,15 +60,16 @@ def element_type(name: str) -> str | None:
 
 
 def is_converted(type_name: str) -> bool:
-    """Whether the library itself converts texts to a type. For other types, the program must provide a function."""
+    """Whether BehaviorTree.CPP itself converts texts to a type. For other types, the program must provide a
+    function."""
     name = normal(type_name)
     inner = element_type(name)
     return is_converted(inner) if inner is not None else name in (*SIMPLE_TYPES, *_REALS, ANY, SCRIPT)
 
 
 class Mismatch(Record, frozen=True):
-    """Why a text does not fit a type. `ignored` is true if the library reads the beginning of the text and ignores the
-    rest. `instead` is a text that fits and was probably intended, or ""."""
+    """Why a text does not fit a type. `ignored` is true if BehaviorTree.CPP reads the beginning of the text and ignores
+    the rest. `instead` is a text that fits and was probably intended, or ""."""
 
     message: str
     ignored: bool = False
@@ -76,8 +77,8 @@ class Mismatch(Record, frozen=True):
 
 
 def mismatch(type_name: str, text: str) -> Mismatch | None:
-    """Why a text does not fit a port of a type; `None` if it fits or if the library does not convert the type
-    itself."""
+    """Why a text does not fit a port of a type; `None` if it fits, or if BehaviorTree.CPP itself does not convert texts
+    to this type."""
     name = normal(type_name)
     if text.startswith("json:"):
         return None
@@ -107,7 +108,7 @@ def _integer(name: str, text: str) -> Mismatch | None:
     low, high = _RANGES[name]
     if len(text) > 25 or not low <= int(text) <= high:
         return Mismatch(
-            "must not be negative" if low == 0 and text.startswith("-") else f"must be from {low} to {high}"
+            "must be 0 or greater" if low == 0 and text.startswith("-") else f"must be from {low} to {high}"
         )
     return None
 

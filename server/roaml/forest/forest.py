@@ -198,7 +198,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         return described
 
     def is_newer_than_used(self, node: Node) -> bool:
-        """Whether the node is newer than the version of the library that is used."""
+        """Whether the node is newer than the version of BehaviorTree.CPP in the settings."""
         major, _, minor = node.since.partition(".")
         return bool(node.since) and Version(int(major), int(minor or 0), 0) > self.settings.version
 
@@ -284,7 +284,8 @@ def _completed(port: Port, node: Node) -> Port:
 
 
 def _is_clear(model: NodeModel) -> bool:
-    """Whether all ports of a model have names, and no two have the same name."""
+    """Whether all ports of a model have names, no two have the same name, and all elements with names in the model are
+    ports."""
     names = [port.name.value if port.name else "" for port in model.ports]
     is_port = all(child.name.endswith("_port") for child in model.element.elements if child.get("name"))
     return "" not in names and len(set(names)) == len(names) and is_port

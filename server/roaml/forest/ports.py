@@ -12,7 +12,7 @@ from roaml.suggest import close_names
 
 
 def ports_of(node: TreeNode) -> Iterator[PortSetting]:
-    """The attributes of a node that set ports, without those that begin with `_`, which belong to the library."""
+    """The attributes of a node that set ports, without those that begin with `_`, which BehaviorTree.CPP reserves."""
     return (setting for setting in node.ports if not setting.attribute.name.startswith("_"))
 
 

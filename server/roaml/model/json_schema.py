@@ -119,7 +119,7 @@ class _Reader:
         if text in _BASE:
             return _BASE[text]
         if isinstance(kind, JsonArray):
-            self.report(kind, f"`{name.value}` may have several types, but a member must have one")
+            self.report(kind, f"`{name.value}` has several types, but a member must have exactly one")
         elif kind is None:
             self.report(schema, f"`{name.value}` has no `type`; valid types are {', '.join(_BASE)}, array and object")
         else:

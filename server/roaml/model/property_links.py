@@ -171,7 +171,10 @@ class _Linker:
                         f"another variable has the id `{variable.id}`; rename one of them",
                     )
                 elif not _is_identifier(variable.id):
-                    message = f"`{variable.id}` is not an identifier, so conditions cannot use it"
+                    message = (
+                        f"conditions cannot use `{variable.id}`: an id must begin with a letter or `_` and "
+                        "contain only letters, digits and `_`"
+                    )
                     self.report(ProblemKind.PORT_VARIABLE, name.span, message)
                 self.by_id.setdefault(variable.id, (port, variable))
                 initial = variable.written.initial
@@ -358,7 +361,7 @@ class _Linker:
             if is_needed and condition is None:
                 self.report(ProblemKind.FORM, place.span, f"the scope `{kind.value}` needs the attribute `{attribute}`")
             elif condition is not None and not is_needed:
-                message = f"the scope `{kind.value}` cannot have the attribute `{attribute}`"
+                message = f"the scope `{kind.value}` cannot have the attribute `{attribute}`; remove it"
                 self.report(ProblemKind.FORM, condition.span, message, (), Remedy.REMOVE_ATTRIBUTE, scope.element)
             elif condition is not None:
                 yield name, condition
@@ -369,7 +372,11 @@ class _Linker:
             return None
         elements = [scope.element for scope in written.scopes] + [interval.element for interval in written.intervals]
         for span in (*(c.span for c in written.conditions), *(element.name_span for element in elements)):
-            self.report(ProblemKind.FORM, span, "a property with a formula cannot have events, a scope or an interval")
+            self.report(
+                ProblemKind.FORM,
+                span,
+                "a property with a formula cannot have events, a scope or an interval; remove this element",
+            )
         for span, message in formula.notation.problems:
             self.report(ProblemKind.FORM, formula.source.span(*span), message)
         if formula.notation.formula is None:
@@ -439,7 +446,9 @@ class _Linker:
             return None
         if upper is not None and lower > upper:
             place = interval.after.span if interval.after else interval.element.name_span
-            message = f"the interval contains no step of the clock, which has steps of {_duration(step)}"
+            message = (
+                f"the interval contains no step of the clock, whose steps take {_duration(step)}; extend the interval"
+            )
             self.report(ProblemKind.TIME, place, message)
             return None
         return Window(lower, upper)

@@ -126,7 +126,8 @@ class PlainEvent(Record):
 
     @property
     def data(self) -> Struct:
-        """The parameters that the senders send. If their types are incompatible, the first known type is used."""
+        """The parameters that the senders send, with the common types of their values. If the types of a parameter are
+        incompatible, the first known type is used."""
         params = parameter_types((param.name, param.type) for _, sent in self.senders for param in sent.params)
         return Struct("", tuple(params.items()), f"data of event {self.name}", StructKind.EVENT, self.name)
 

@@ -212,8 +212,7 @@ def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
 
 
 def _too_large(source: SourceFile) -> Finding:
-    size = len(source.text) / 1e6
-    message = f"the file is too large to be checked ({size:.0f} MB; the limit is {MAX_CHARACTERS / 1e6:.0f} MB)"
+    message = f"the file is too large to be checked: {len(source.text):,} characters; the limit is {MAX_CHARACTERS:,}"
     return file_too_large.RULE.at(Span(0, source.lines.line_end(0)), message)
 
 

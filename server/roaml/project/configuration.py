@@ -118,7 +118,7 @@ def find_settings(path: str) -> tuple[Settings, tuple[str, ...]]:
                     return Settings(), (f"{file}: {source.value}",)
                 continue
             if len(source.text) > MAX_CHARACTERS and name == CONFIG_FILE:
-                words = f"the file is too large to be read (the limit is {MAX_CHARACTERS / 1e6:.0f} MB)"
+                words = f"the file is too large to be read (the limit is {MAX_CHARACTERS:,} characters)"
                 return Settings(origin=file), (f"{file}: {words}",)
             configuration = read_configuration(source)
             if name == PROJECT_FILE and configuration.table is None and not configuration.findings:

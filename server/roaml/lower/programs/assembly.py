@@ -71,7 +71,7 @@ class Test(NamedTuple):
 
 
 class Choose(NamedTuple):
-    """Continues with the given probability; otherwise jumps to `otherwise`."""
+    """Continues with the probability `probability`; otherwise jumps to `otherwise`."""
 
     probability: ast.expr
     otherwise: CodeLabel

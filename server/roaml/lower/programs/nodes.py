@@ -21,7 +21,7 @@ from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.record import Record, field
-from roaml.roles import NodeKind
+from roaml.roles import UNBOUNDED, NodeKind
 from roaml.text import Location
 
 EVENT_PROBABILITY = 0.1
@@ -59,8 +59,15 @@ def _check_children(node: ExecutedNode) -> None:
     assert node.known is not None
     least, most = node.known.children
     if not least <= len(node.children) <= most:
-        reason = f"`{node.type}` has {len(node.children)} children, but the library does not allow this number"
+        reason = f"`{node.type}` has {len(node.children)} children, but needs {_range(least, most)}"
         raise TreeRefusal(node.origin, reason, is_reported=True)
+
+
+def _range(least: int, most: int) -> str:
+    """The numbers from `least` to `most` in words."""
+    if least == most:
+        return f"{least}"
+    return f"at least {least}" if most == UNBOUNDED else f"{least} to {most}"
 
 
 def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
@@ -316,7 +323,8 @@ def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
         return int(text)
     wrong = mismatch(type_, text)
     if wrong is not None and not wrong.ignored:
-        raise TreeRefusal(origin, f"the port `{port}` {wrong.message}, not `{text}`")
+        shown = f"`{text}`" if text.strip() else "an empty value"
+        raise TreeRefusal(origin, f"the port `{port}` {wrong.message}, not {shown}")
     if type_ == "NodeStatus":
         return STATUS_CODES.get(text.strip(), RUNNING)
     return read_literal(wrong.instead if wrong is not None else text)[1]

@@ -203,7 +203,9 @@ class _Compiler(Record):
             if side.kind is EntryKind.TEXT:
                 kind, literal = read_literal(text) if isinstance(text, str) else (EntryKind.TEXT, "")
                 if kind is EntryKind.TEXT:
-                    self.refuse(expr, "a text that is not a number is compared with a number")
+                    self.refuse(
+                        expr, "the comparison of a number with a text that is not a number cannot be translated"
+                    )
                 sides.append(_Value(constant(kind, literal), kind))
             else:
                 sides.append(self.number(side, expr))
@@ -250,7 +252,9 @@ class _Compiler(Record):
             text = getattr(value.expr, "value", None)
             if value.kind is EntryKind.TEXT and isinstance(text, str) and read_literal(text)[0] is not EntryKind.TEXT:
                 return constant(entry.kind, read_literal(text)[1])
-            self.refuse(expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the value has another type")
+            self.refuse(
+                expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the assigned value has another type"
+            )
         number = self.number(value, expr.value)
         if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
             if self.assignments:

@@ -43,7 +43,7 @@ class Decide(NamedTuple):
 
 
 class Draw(NamedTuple):
-    """Continues at `yes` with the given probability, otherwise at `no`."""
+    """Continues at `yes` with the probability `probability`, otherwise at `no`."""
 
     probability: float
     yes: Place
