@@ -61,7 +61,7 @@ def told(folder: Path, name: str, *, holds: bool) -> list[str]:
 
 
 PRESSED = [
-    "Button receives ros_time_rate.second in up → down; sends topic_stop_msg",
+    "Button receives the tick of its timer `second` in up → down; sends topic_stop_msg",
     "stops observes a message on the topic `/stop`; the property requires an event from now on",
 ]
 
@@ -69,7 +69,7 @@ PRESSED = [
 def test_a_deadline_passes(tmp_path: Path) -> None:
     assert told(tmp_path, "stops", holds=False) == [
         *PRESSED,
-        "Button receives ros_time_rate.second in down → late; by chance, 0.5",
+        "Button receives the tick of its timer `second` in down → late; by chance, 0.5",
         "the clock advances the time",
         "stops observes a step of the clock; the property is violated",
     ]

@@ -16,7 +16,7 @@ from roaml.model.machine import Chart
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.record import Record
-from roaml.scxml.names import InterfaceEventKind, read_interface_event, received_by, safe_name, sanitise
+from roaml.scxml.names import InterfaceEventKind, read_interface_event, received_by, sanitise
 from roaml.simulation.state import MachineState, SystemState
 
 ACTIVE, NEXT, MESSAGE = "active", "next", "message"
@@ -126,7 +126,7 @@ def _in_flight(state: SystemState, system: System) -> Iterator[tuple[str, str, s
         for kind, channels in pictured
         for channel in channels.values()
     }
-    clients = {safe_name(automaton.name) for automaton in system.automata}
+    clients = {automaton.name for automaton in system.automata}
     for event in state.events:
         read = read_interface_event(event.event, clients) if event.is_waiting else None
         if read is not None and (node := nodes.get((_node_kind(read.kind), read.name))):

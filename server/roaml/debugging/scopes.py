@@ -22,7 +22,6 @@ from roaml.scxml.names import (
     read_interface_event,
     read_tree_event,
     received_by,
-    safe_name,
 )
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
@@ -81,7 +80,7 @@ class Values:
         self._stored: dict[int, dict[str, Plain]] = {}
         for (instance, name), value in session.values():
             self._stored.setdefault(instance, {})[name] = value
-        self._clients = {safe_name(name) for name in session.automata}
+        self._clients = session.automata
         self._instances = {automaton.name: number for number, automaton in enumerate(session.automata_of_model)}
 
     # ------------------------------------------------------------ scopes

@@ -19,7 +19,6 @@ from roaml.scxml.names import (
     InterfaceEvent,
     InterfaceEventKind,
     read_interface_event,
-    safe_name,
     sanitise,
 )
 from roaml.text import Location
@@ -108,7 +107,7 @@ class Sources(Record, frozen=True, dict=True):
             for channel in channels.values()
             if channel.endpoints
         }
-        clients = {safe_name(automaton.name) for automaton in system.automata}
+        clients = {automaton.name for automaton in system.automata}
         declared: dict[str, Mapping[str, Type]] = dict(self.event_parameters)
         for event, types in self.event_parameters.items():
             read = read_interface_event(event, clients)

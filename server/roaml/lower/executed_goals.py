@@ -21,7 +21,7 @@ from roaml.model.system import Channel
 from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.scxml.model import Assign, Data
-from roaml.scxml.names import sanitise
+from roaml.scxml.names import executes_goal
 from roaml.text import NO_SPAN, Location
 
 GOAL_ID = "goal_id"
@@ -94,7 +94,7 @@ def executed_goals(context: LoweringContext) -> ExecutedGoals:
             action = context.channel(handler)
             if action.name not in variables:
                 variables[action.name] = {
-                    number: _unused(f"executes_{sanitise(action.name)}_{number}", context)
+                    number: _unused(executes_goal(action.name, number), context)
                     for number, client in enumerate(action.users)
                     if ProtocolPart.CANCEL in client.use.sends
                 }

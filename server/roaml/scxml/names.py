@@ -155,6 +155,25 @@ def cancel_request(action: str) -> str:
     return f"{CANCEL_PREFIX}{sanitise(action)}"
 
 
+_EXECUTES_PREFIX = "executes_"
+
+
+def executes_goal(action: str, number: int) -> str:
+    """The name of the variable that states whether an automaton executes the goal `number` of an action
+    (docs/spec/plain-scxml.md#cancel)."""
+    return f"{_EXECUTES_PREFIX}{sanitise(action)}_{number}"
+
+
+def read_executes_goal(variable: str) -> tuple[str, int] | None:
+    """The name of the action, in the form of `sanitise`, and the number of the goal of a variable that has a name of
+    `executes_goal`, with or without further underscores; `None` for other variables."""
+    match = _EXECUTES_GOAL.fullmatch(variable)
+    return (match[1], int(match[2])) if match else None
+
+
+_EXECUTES_GOAL = re.compile(_EXECUTES_PREFIX + r"(.+)_([0-9]+)_*")
+
+
 class InterfaceEventKind(Vocabulary):
     """The kind of an event that represents a part of a ROS interface."""
 
@@ -187,7 +206,7 @@ def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent
     if not is_interface_event(event):
         return None
     client = client_of(event, clients)
-    name = event.removesuffix(f"{_CLIENT}{client}") if client else event
+    name = without_client(event, client)
     for kind, form in _INTERFACE_EVENTS:
         match = form.fullmatch(name)
         if match:
@@ -196,10 +215,18 @@ def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent
 
 
 def client_of(event: str, clients: Collection[str]) -> str:
-    """The client that sends or receives an event of a service or action: the automaton of `clients` whose name is the
-    last part of the name of the event; "" if there is none."""
-    _, _, client = event.partition(_CLIENT)
-    return client if client in clients else ""
+    """The client that sends or receives an event of a service or action: the automaton of `clients` whose name, in the
+    form of `safe_name`, is the last part of the name of the event; "" if there is none. If there are several, the one
+    with the longest name."""
+    if _CLIENT not in event:
+        return ""
+    own = (client for client in clients if event.endswith(f"{_CLIENT}{safe_name(client)}"))
+    return max(own, key=len, default="")
+
+
+def without_client(event: str, client: str) -> str:
+    """The name of an event of a service or action without the name of its client; `client` may be ""."""
+    return event.removesuffix(f"{_CLIENT}{safe_name(client)}") if client else event
 
 
 _CLIENT = "_client_"

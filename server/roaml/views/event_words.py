@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
@@ -15,7 +15,9 @@ from roaml.scxml.names import (
     InterfaceEvent,
     InterfaceEventKind,
     TreeEventKind,
+    cancel_request,
     is_timer,
+    read_executes_goal,
     read_interface_event,
     read_tree_event,
     safe_name,
@@ -75,5 +77,28 @@ def interface_name(event: str, clients: Collection[str]) -> str:
     return "" if interface is None else _ros_name(interface)
 
 
+def goal_phrases(variables: Collection[str], is_event: Callable[[str], bool]) -> dict[str, str]:
+    """Phrases for the variables that state which goals an automaton executes (docs/spec/plain-scxml.md#cancel).
+
+    Args:
+        variables: the names of all variables of the automaton.
+        is_event: whether a name denotes an event of the system.
+
+    Returns:
+        Name of a variable -> its phrase.
+    """
+    phrases = {}
+    for variable in variables:
+        goal = read_executes_goal(variable)
+        # The name with a further underscore is chosen if the machine has a variable of this name.
+        if goal is not None and is_event(cancel_request(goal[0])) and f"{variable}_" not in variables:
+            phrases[variable] = f"executes goal {goal[1]} of {_absolute(goal[0])}"
+    return phrases
+
+
 def _ros_name(interface: InterfaceEvent) -> str:
-    return "/" + interface.name.replace("__", "/")
+    return _absolute(interface.name)
+
+
+def _absolute(name: str) -> str:
+    return "/" + name.replace("__", "/")

@@ -8,7 +8,7 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.scxml.names import FIELD_PREFIX, flagged_by, is_length, received_by, sent_by
+from roaml.scxml.names import FIELD_PREFIX, client_of, flagged_by, is_length, received_by, sent_by, without_client
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
 
 
@@ -65,8 +65,7 @@ class EventReader:
 
     def name(self, event: str) -> str:
         """The name of an event without the name of the client of a service or action."""
-        name, _, client = event.partition("_client_")
-        return name if client in self._automata else event
+        return without_client(event, client_of(event, self._automata))
 
     def _is_of_event(self, name: str) -> bool:
         """Whether a variable of the model belongs to an event. If it does, its parameter is stored."""

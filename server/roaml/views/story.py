@@ -270,7 +270,7 @@ def _details(turn: Turn) -> Iterator[str]:
     for part in turn.parts:
         if len(part.edge.destinations) > 1:
             yield _chance(part.destination.probability)
-    yield from map(_change, turn.changes)
+    yield from (_change(change, turn) for change in turn.changes)
     yield from (f"sends {_message(message)}" for message in turn.sent)
 
 
@@ -284,8 +284,10 @@ def _message(message: Message) -> str:
     return f"{message.name}({_short(values)})" if values else message.name
 
 
-def _change(change: VariableChange) -> str:
-    return f"{change.variable.name}: {_shown(change.before, change.after)}"
+def _change(change: VariableChange, turn: Turn) -> str:
+    name = change.variable.name
+    phrase = turn.phrases.get(name, name) if change.variable.instance == turn.instance else name
+    return f"{phrase}: {_shown(change.before, change.after)}"
 
 
 def _shown(before: Plain, after: Plain) -> str:

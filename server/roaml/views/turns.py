@@ -21,6 +21,7 @@ from roaml.scxml.names import (
     TreeEventKind,
     is_generated,
     is_length,
+    is_timer,
     read_tree_event,
     received_by,
     sent_by,
@@ -28,6 +29,7 @@ from roaml.scxml.names import (
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.actors import actor
+from roaml.views.event_words import event_phrase, goal_phrases
 from roaml.views.events import EventReader
 from roaml.views.observed import effects, is_observer, observation, observed_property
 
@@ -48,6 +50,7 @@ class Turn(Record):
         ends: whether the trace ends with this turn.
         observed: the property of the automaton if it is an observer; otherwise "".
         observation: what an observer observes.
+        phrases: phrases for those variables of the automaton that the translation has added, by their names.
     """
 
     instance: int
@@ -63,6 +66,7 @@ class Turn(Record):
     ends: bool = False
     observed: str = ""
     observation: str = ""
+    phrases: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def automaton(self) -> str:
@@ -144,7 +148,8 @@ class Message(Record, frozen=True):
     """An event with the parameters with which it was sent, by their names.
 
     Attributes:
-        name: the name of the event, without the name of the client of a service or action.
+        name: the name of the event, without the name of the client of a service or action; a phrase for the tick of a
+            timer.
         sender: `None` if no automaton has sent it.
     """
 
@@ -200,6 +205,7 @@ class _Reader:
         self._observer_prefixes = tuple(f"{name.removesuffix(OBSERVER_SUFFIX)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
+        self._known_phrases: dict[int, Mapping[str, str]] = {}
         self._messages: dict[str, Message] = {}
         self._current: dict[int, Turn] = {}
         self.turns: list[Turn] = []
@@ -215,6 +221,7 @@ class _Reader:
             if turn is None or heard is not None or not self._events.hearing[part.instance]:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
+                turn.phrases = self._phrases(part.instance)
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)
                     turn.observation = observation(step.action, self._automata)
@@ -230,14 +237,23 @@ class _Reader:
         if event:
             self._send(event, self._current[actors[0].instance] if actors else None)
 
+    def _phrases(self, instance: int) -> Mapping[str, str]:
+        if instance not in self._known_phrases:
+            variables = [variable.name for variable in self._story.automata[instance].variables]
+            self._known_phrases[instance] = goal_phrases(variables, self._events.is_event)
+        return self._known_phrases[instance]
+
     def _send(self, event: str, sender: Turn | None) -> None:
-        self._messages[event] = Message(event, self._events.name(event), self._events.parameters(event), sender)
+        self._messages[event] = Message(event, self._name(event), self._events.parameters(event), sender)
         if sender is not None:
             sender.messages.append(self._messages[event])
 
     def _heard(self, step: TraceStep) -> Message | None:
         event = received_by(step.action or "")
-        return self._messages.get(event, Message(event, self._events.name(event), {})) if event else None
+        return self._messages.get(event, Message(event, self._name(event), {})) if event else None
+
+    def _name(self, event: str) -> str:
+        return event_phrase(event, self._automata, taken=True) if is_timer(event) else self._events.name(event)
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
