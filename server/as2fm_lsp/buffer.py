@@ -41,7 +41,8 @@ class Units:
         return len(text) + sum(character > "\uffff" for character in text)
 
     def column(self, line: str, units: int) -> tuple[int, bool]:
-        """Convert a column from units to code points. Return it, and whether the position splits a character.
+        """Convert a column from units to code points. Return the converted column, and whether the position splits a
+        character; the column is then that of this character.
 
         A column beyond the end of the line is replaced by the end.
         """

@@ -100,7 +100,7 @@ class Client:
         self._endpoint.workspace_code_lens_refresh(None)
 
     async def settings(self) -> dict[str, Any] | None:
-        """The client's settings; `None` if it does not support the request."""
+        """The client's settings; `None` if the client does not support the request, or cannot answer it."""
         workspace = self.capabilities.workspace
         if workspace is None or not workspace.configuration:
             return None

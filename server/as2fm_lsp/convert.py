@@ -47,7 +47,8 @@ class Converter:
     # ----------------------------------------------------------------- paths
 
     def path(self, uri: str) -> str:
-        """The path of a document; its URI if it is not a file name. The URI is stored as the name of that path."""
+        """The path of a document; its URI if that is not the URI of a file. `uri` then returns this URI for the
+        path."""
         path = _file(uri) or uri
         self._uris[path] = uri
         return path
@@ -73,8 +74,8 @@ class Converter:
         return types.Range(self.position(source, span.start), self.position(source, span.end))
 
     def columns(self, source: SourceFile, spans: Iterable[Span]) -> Iterator[tuple[int, int, int]]:
-        """The line, the first column and the last column of each span. No span may extend over the end of a line.
-        Faster than `range`, for whole files."""
+        """The line, the first column and the column after the end of each span. No span may extend over the end of a
+        line. Faster than `range`, for whole files."""
         text, lines = source.text, source.lines
         units = len if text.isascii() else self.units.count
         line = begin = following = hidden = 0

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """When diagnostics are computed and how they reach the client.
 
-- The newest text takes precedence: a change cancels the pending work for older ones. The changed file is checked first,
-  then the other files of its workspace.
+- The newest text takes precedence: a change cancels the pending work for older texts. The changed file is checked
+  first, then all other files.
 - Messages of the client take precedence: the work yields to them, and its results so far are kept.
 - A file is published only when its diagnostics differ from those that the client already has.
 """
@@ -36,10 +36,10 @@ T = TypeVar("T")
 
 TITLE = "Checking models"
 PROGRESS_DELAY_S = 0.5
-"""The time after which progress is shown in the client."""
+"""The time after which progress is shown in the client, in s."""
 
 IDLE_DELAY_S = 0.3
-"""The time without input after which the user is considered idle."""
+"""The time without input after which the user is considered idle, in s."""
 
 MAX_INTERRUPTIONS = 5
 """The maximum number of times that a computation gives way to messages before it is completed."""
@@ -50,8 +50,8 @@ class Diagnostics:
 
     Attributes:
         pushes: whether diagnostics are sent to the client; otherwise the client requests them.
-        finished: called when all diagnostics after a change have been sent.
-    """
+        finished: called after a change, when all diagnostics have been sent, or the client has been asked to request
+        them."""
 
     def __init__(self, client: Client, session: Session, inbox: Inbox, progress: ProgressReporter) -> None:
         self.session = session

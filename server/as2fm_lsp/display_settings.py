@@ -17,7 +17,8 @@ OFF_BY_DEFAULT = frozenset([HintKind.PORTS])
 
 
 class DisplaySettings(Record, frozen=True):
-    """`references`: whether lenses show numbers of uses; `results`: whether hints show results of properties."""
+    """`hints`: the kinds of hints that are shown; `references`: whether lenses show numbers of uses; `results`: whether
+    hints show results of properties."""
 
     hints: frozenset[HintKind]
     references: bool

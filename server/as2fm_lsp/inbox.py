@@ -41,7 +41,7 @@ class Inbox:
     """The queue of the client's messages.
 
     Attributes:
-            alive: the ids of requests and the tokens of work that can still be cancelled, besides those in the queue.
+        alive: the ids of requests and the tokens of work that can still be cancelled, besides those in the queue.
     """
 
     def __init__(self) -> None:
@@ -105,7 +105,7 @@ class Inbox:
         return id_ in self._cancelled
 
     def will_change(self, uri: str) -> bool:
-        """Whether a change of a document is pending."""
+        """Whether a notification that changes or closes a document is pending."""
         return any(_changes(message, uri) for message in tuple(self._messages))
 
     # ----------------------------------------------------------------- taking

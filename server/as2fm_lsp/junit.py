@@ -25,7 +25,7 @@ class Case(Record, frozen=True):
 
     Attributes:
         text: its output; omitted if it is empty and the test passed.
-        message: why it failed, in one line.
+        message: why it failed or was skipped, in one line.
         type: the kind of the failure.
         seconds: its duration in s, if known.
         properties: further facts, as names and values.

@@ -11,8 +11,8 @@ from roaml.ide.describe.markdown import plain
 
 
 def content(text: str, formats: Sequence[types.MarkupKind | str] | None) -> types.MarkupContent:
-    """A text as markup. Its format is the first supported one of `formats`, which are the formats of the client in its
-    order of preference; plain text if none is supported."""
+    """A text as markup: Markdown if this is the first of `formats`, which are the formats of the client in its order of
+    preference; otherwise plain text."""
     if formats and formats[0] == types.MarkupKind.Markdown:
         return types.MarkupContent(types.MarkupKind.Markdown, text)
     return types.MarkupContent(types.MarkupKind.PlainText, plain(text))

@@ -13,7 +13,7 @@ POLL_INTERVAL_S = 1.0
 """The interval between checks, in s, on systems that do not report the end of a process."""
 
 EXIT_TIMEOUT_S = 10.0
-"""The time after which a server that is still busy is ended."""
+"""The time, in s, after which a server that is still busy is ended."""
 
 UNEXPECTED_END = 1
 

@@ -24,7 +24,7 @@ CREATION_TIMEOUT_S = 10.0
 class Progress:
     """The displayed progress of some work. Nothing is shown if `token` is empty.
 
-    Equal percentages are sent only once.
+    A percentage is sent only if it is greater than the previous one.
     """
 
     def __init__(self, client: Client, inbox: Inbox, requests: Requests, token: str) -> None:
@@ -72,7 +72,7 @@ class ProgressReporter:
 
     @asynccontextmanager
     async def show(self, title: str, *, cancellable: bool = False) -> AsyncIterator[Progress]:
-        """Show some work, for the duration of the `async with` statement."""
+        """Show the progress of some work, for the duration of the `async with` statement."""
         token = await self._created()
         work = Progress(self._client, self._inbox, self._requests, token)
         if not token:

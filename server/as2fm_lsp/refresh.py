@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Asks the client to request hints and lenses again.
 
-A client requests those of the edited document itself. The hints and lenses of *other* documents depend on the linked
-systems, on the results of properties and on whether these are stale; nothing is sent while all of them are unchanged.
-The first request is always sent, because the client may have requested hints before any system was analysed.
+A client requests the hints and lenses of an edited document without being asked. The hints and lenses of *other*
+documents depend on the linked systems, on the results of properties and on whether these are stale; nothing is sent
+while all of them are unchanged. The first request is always sent, because the client may have requested hints before
+any system was analysed.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ class Requests:
 
     Args:
         inbox: the messages of the client.
-        id_: the id of the current request; `None` for a notification.
+        id_: a function that returns the id of the current request; `None` for a notification.
 
     Attributes:
         asked_again: the methods that the client repeats after `ContentModified`.
@@ -55,7 +55,7 @@ class Requests:
         self._id = id_
 
     def guarded(self, method: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-        """A handler that stops when its answer is no longer needed."""
+        """A handler that stops at its next checkpoint when its answer is no longer needed."""
         if asyncio.iscoroutinefunction(handler):
 
             @functools.wraps(handler)
@@ -126,6 +126,6 @@ class Requests:
 
 
 def _uri(arguments: tuple[Any, ...]) -> str:
-    """The document of a request."""
+    """The URI of the document of a request; "" if it is not about a document."""
     document = getattr(arguments[0], "text_document", None) if arguments else None
     return getattr(document, "uri", "")

@@ -29,7 +29,7 @@ from roaml.record import replace
 log = logging.getLogger(__name__)
 
 MAX_SNAPSHOT_AGE_S = 0.5
-"""The time after which files are read again even if no change is reported."""
+"""The time, in s, after which files are read again even if no change is reported."""
 
 
 class Moment:
@@ -37,7 +37,7 @@ class Moment:
 
     Args:
         folders: the workspaces of the client's folders.
-        around: the workspace for a file that is in none of them.
+        around: returns the workspace for a file that is in none of these folders.
         versions: the open documents with their versions.
     """
 
@@ -66,7 +66,7 @@ class Moment:
         return self._frozen(self._folders[near[0]] if near else self._around(path))
 
     def files(self) -> tuple[str, ...]:
-        """All files that are reported: open files, their systems, and the folders."""
+        """All files that are reported: open files, the files of their systems, and the files of the folders."""
         paths = dict.fromkeys(self.versions)
         for path in self.versions:
             analysis = self.snapshot(path).analysis
@@ -87,7 +87,7 @@ class Session:
 
     Attributes:
         problems: errors in the configuration that have not been shown yet.
-        checkpoint: called repeatedly during all work (`Workspace`).
+        checkpoint: called repeatedly during all work of the workspaces.
     """
 
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
@@ -103,7 +103,7 @@ class Session:
         self._taken = 0.0
 
     def moment(self) -> Moment:
-        """The current moment. Until something changes, all answers share it."""
+        """The current moment. Answers share it until a change is reported, for at most `MAX_SNAPSHOT_AGE_S`."""
         now = time.monotonic()
         if self._moment is None or now - self._taken > MAX_SNAPSHOT_AGE_S:
             self._moment = Moment(self._folders, self._workspace_around, self._versions)
@@ -136,7 +136,7 @@ class Session:
         self._put(path, text, version)
 
     def text(self, path: str) -> str | None:
-        """The text of an open document, as the client has it."""
+        """The text of an open document, as the client has it; `None` if the document is not open."""
         return self._texts.get(path)
 
     def close(self, path: str) -> None:
@@ -207,8 +207,8 @@ class Session:
         return workspace
 
     def _packages(self, folder: str, roots: Iterable[str]) -> tuple[str, ...]:
-        """The folders that are searched for ROS packages: the one of the file first, then the client's other
-        folders."""
+        """The folders that are searched for ROS packages: `folder` first, then the roots outside of it, then the
+        client's folders."""
         outside = [root for root in roots if not is_below(root, folder)]
         return tuple(filter(is_on_disk, dict.fromkeys((folder, *outside, *self._folders))))
 
@@ -232,10 +232,10 @@ class Session:
 
 
 def _surroundings(path: str) -> str:
-    """The folder in which a file outside all folders is checked.
+    """The folder in which a file outside all folders is checked: its repository, or the folder that contains it.
 
-    A document without a file is checked alone, and so is a file in the root of the file system, because listing all
-    files would take too long.
+    For a document without a file, this is the document itself, which is checked alone. A file in the root of the file
+    system is also checked alone, because listing all files would take too long.
     """
     if not is_on_disk(path):
         return path

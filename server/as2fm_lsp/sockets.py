@@ -79,7 +79,7 @@ def listening_on(host: str, port: int, allow_remote: bool = False) -> Iterator[t
 
     Raises:
         RemoteError: other machines could connect, and `allow_remote` is False.
-        OSError: an address is in use, or there is none.
+        OSError: an address is in use, or `host` has no address on this machine.
     """
     candidates = dict.fromkeys(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE))
     addresses = [(family, address) for family, _, _, _, address in candidates]
@@ -153,7 +153,7 @@ def _is_socket(path: str) -> bool:
 
 
 def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
-    """Wait for the first client that is accepted. Others get an error and are disconnected.
+    """Wait for the first client that is accepted. Connections that are not accepted are closed.
 
     Args:
         token: the `token` that the client must send in its `initializationOptions`; "" if none is required.
@@ -197,7 +197,12 @@ def first_client(listeners: Sequence[socket.socket], token: str) -> Connection:
 
 
 def _admitted(connection: socket.socket, token: str) -> Connection | None:
-    """The client if its first message is valid; otherwise it gets an error."""
+    """The connection if its first message is accepted; otherwise `None`. The client then gets an error, unless the
+    message does not follow the protocol.
+
+    Raises:
+        OSError, ValueError, RecursionError: the client has disconnected, or the message is not valid JSON.
+    """
     connection.settimeout(FIRST_MESSAGE_TIMEOUT_S)
     source, target = connection.makefile("rb"), connection.makefile("wb")
     body = _first_body(source)
@@ -217,7 +222,8 @@ def _admitted(connection: socket.socket, token: str) -> Connection | None:
 
 
 def _first_body(source: BufferedReader) -> bytes | None:
-    """The first body; `None` if a header line does not follow the protocol."""
+    """The body of the first message; `None` if a header line does not follow the protocol, or the message is too long
+    or not complete."""
     length = 0
     begin = source.peek(len(_BEGIN))[: len(_BEGIN)].lower()
     if not _BEGIN.startswith(begin):  # checked first, because reading a line would wait for its end

@@ -90,6 +90,9 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
         (["init"], "the following arguments are required: DIR"),
         (["migrate"], "the following arguments are required: PATH"),
         (["migrate", "nowhere"], "there is no such file or folder"),
+        (["translate", "main.xml", "--indent", "two"], "expected a number of spaces from 0 to 16"),
+        (["translate", "main.xml", "--indent", "17"], "expected a number of spaces from 0 to 16"),
+        (["translate", "main.xml", "--max-array-size", "many"], "expected a whole number of at least 1"),
     ],
 )
 def test_wrong_use(command: Command, arguments: list[str], complaint: str) -> None:

@@ -186,8 +186,8 @@ async def test_it_ends_with_its_client() -> None:
     [
         (("--tcp", "0.0.0.0:0"), "--tcp 0.0.0.0:0: other machines could connect there; use 127.0.0.1, or add --allow-"),
         (("--tcp", "[::]:0"), "--tcp [::]:0: other machines could connect there"),
-        (("--tcp", "127.0.0.1:99999"), "--tcp needs HOST:PORT, not 127.0.0.1:99999"),
-        (("--tcp", "nonsense"), "--tcp needs HOST:PORT, not nonsense"),
+        (("--tcp", "127.0.0.1:99999"), "--tcp needs HOST:PORT, not `127.0.0.1:99999`"),
+        (("--tcp", "nonsense"), "--tcp needs HOST:PORT, not `nonsense`"),
         (("--tcp", ":1", "--socket", "x"), "--tcp and --socket exclude each other"),
         (("--allow-remote",), "--allow-remote needs --tcp"),
         (("--socket", "/nowhere/x.sock"), "--socket /nowhere/x.sock: No such file or directory"),

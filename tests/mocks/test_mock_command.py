@@ -149,6 +149,14 @@ def test_a_trace_of_a_tree_that_always_fails(tmp_path: Path, capsys: pytest.Capt
     assert trace.splitlines()[1].split()[2:4] == ["Drive", "FAILURE"]
 
 
+def test_a_trace_that_contradicts_an_upper_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """If success is expected to be rare, the shown trace is one with success."""
+    path = tree(tmp_path, "<Sequence><IsReady/><Drive/></Sequence>")
+    assert run(["verify", path, "--mock", "*: 0.9 in 1 s", "--expect", "succeeds <= 0.1"]) == 1
+    _, _, trace = capsys.readouterr().out.partition("the shortest trace with success (trace ")
+    assert [line.split()[3] for line in trace.splitlines()[1:3]] == ["SUCCESS", "SUCCESS"]
+
+
 def system(tmp_path: Path, content: str) -> str:
     tree(tmp_path, content)
     path = tmp_path / "main.xml"

@@ -27,7 +27,12 @@ class BaselineError(ValueError):
 
 
 def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
-    """The entries that are not in the baseline."""
+    """The entries that are not in the baseline. If the baseline does not exist, it is written with all entries, and
+    none are returned.
+
+    Raises:
+        BaselineError: the baseline cannot be read or written.
+    """
     if not os.path.exists(path):
         _write(path, entries)
         complain(f"wrote {path} with {len(entries)} known diagnostics")

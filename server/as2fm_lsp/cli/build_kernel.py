@@ -26,7 +26,7 @@ FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
 
 
 class BuildError(Exception):
-    """The kernel could not be compiled; the message is a readable reason."""
+    """The kernel could not be compiled; the message contains the reason."""
 
 
 def build(sources: Sequence[Path] = SOURCES) -> list[Path]:

@@ -118,7 +118,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
 
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
-    """A line that states how many findings have fixes that need a review; "" if there are none."""
+    """A line that states how many findings have only fixes that need a review; "" if there are none."""
     counts = Counter(
         diagnostic.code for diagnostic in diagnostics if diagnostic.fixes and not any(f.safe for f in diagnostic.fixes)
     )

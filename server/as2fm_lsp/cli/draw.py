@@ -137,7 +137,10 @@ def parser() -> ArgumentParser:
     what.add_argument("--graph", action="store_true", help="draw the ROS graph (default for a system)")
     what.add_argument("--machines", action="store_true", help="draw all state machines of the system")
     result.add_argument(
-        "-o", "--output", metavar="FILE", help="the SVG file; - is standard output (default: its title, beside FILE)"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="the SVG file; - is standard output (default: named after the diagram, in the folder of the input)",
     )
     result.add_argument("--theme", choices=tuple(THEMES), default="light", help="the colors (default: light)")
     result.add_argument(

@@ -4,4 +4,5 @@
 from __future__ import annotations
 
 CLEAN, FOUND, USAGE, FAILURE = 0, 1, 2, 3
-"""The exit statuses if no errors were found, if errors were found, after a usage error, and after an internal error."""
+"""The exit statuses: no errors were found and all expectations are met; an error was found or an expectation is not
+met; a usage error; an internal error."""

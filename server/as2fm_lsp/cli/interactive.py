@@ -20,7 +20,7 @@ HELP = """\
   2            take choice 2; 2b: with its outcome b
   t            go on until a machine has handled an event      k   go on for one tick of the tree
   b, b 10      go back one step, ten steps                     g 40, g 3 s   go to a step, or on to a time
-  e            go on until the property is decided             u NAME   go on until a topic or event NAME is sent
+  e            go on until the property is decided             u NAME   go on to the next event or message NAME
   s            show the state                                  w FILE   write the run, for --script
   ?            this help                                       q   quit
 """
@@ -91,7 +91,7 @@ class Terminal:
 
     def _save(self, path: str) -> str:
         if not path:
-            return "w needs the name of a file"
+            return "`w` needs the name of a file, such as `w run.json`"
         try:
             write_file(path, self._session.save().to_json())
         except OSError as error:
@@ -103,7 +103,7 @@ class Terminal:
         if text.isdecimal():
             self._session.jump(int(text))
         elif time is None:
-            return "g needs a step or a time, such as `g 40` or `g 3 s`"
+            return "`g` needs a step or a time, such as `g 40` or `g 3 s`"
         elif not self._session.until_time(time / 1e9):
             return f"the run ends before {text}"
         return ""
@@ -118,10 +118,10 @@ class Terminal:
         letter = text[-1:] if text[-1:].isalpha() else ""
         choice = choices.get(text.removesuffix(letter))
         if choice is None:
-            return f"`{text}` is neither a choice nor a command; ? lists the commands"
+            return f"`{text}` is neither a choice nor a command; `?` lists the commands"
         outcomes = dict(zip(_LETTERS, choice.outcomes, strict=False))
         if letter and letter not in outcomes:
-            return f"choice {choice.number} has no outcome {letter}"
+            return f"choice {choice.number} has no outcome `{letter}`"
         self._session.step(choice, outcomes.get(letter))
         return ""
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The entry point of the command line: reads the arguments and calls the requested command.
 
-`--check`, `--explain`, `--stdio` and `--tcp` do what the commands `check`, `explain` and `serve` do. Without arguments,
-the language server runs on standard input and output.
+The options `--check` and `--explain` do what the commands `check` and `explain` do. Without a command and without these
+options, the language server runs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
     "explain": "print the document of a rule",
     "serve": "serve an editor: the language server",
-    "format": "lay out files",
+    "format": "format files",
     "migrate": "migrate systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "compute or estimate the probabilities of properties",
@@ -125,8 +125,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
 
 
 _ALSO_OPTIONS = ("check", "explain", "serve")
-"""Commands that are also options, as in `--check`. After an option, the name of a command may be the name of a
-folder."""
+"""Commands whose names are paths if `--check` is given and a file or folder with the name exists."""
 _SERVING = ("explain", "stdio", "tcp", "socket", "allow_remote")
 _ALONE = ("help", "version")
 """Options that users mistake for commands."""

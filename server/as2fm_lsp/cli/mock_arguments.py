@@ -11,13 +11,15 @@ from as2fm_lsp.cli.formats.report import shown_path
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks
 
 MAX_NAMES = 8
+"""The maximum number of types of leaves in a message."""
 
 
 def mocks_in(options: argparse.Namespace) -> tuple[Mock, ...]:
     """The mocks given with `--mock`, followed by those in the file given with `--mocks`.
 
     Raises:
-        MockError: one is not valid, or the file cannot be read as text.
+        MockError: a mock is not valid, or the file is not valid UTF-8.
+        OSError: the file cannot be read.
     """
     mocks = tuple(read_mock(text) for text in options.mock)
     if options.mocks is None:
@@ -25,7 +27,7 @@ def mocks_in(options: argparse.Namespace) -> tuple[Mock, ...]:
     try:
         return mocks + read_mocks(Path(options.mocks).read_text(encoding="utf-8"))
     except UnicodeDecodeError:
-        raise MockError(f"{options.mocks}: not valid UTF-8") from None
+        raise MockError(f"{options.mocks}: not valid UTF-8; fix the encoding") from None
 
 
 def missing_mocks(path: str, types: Iterable[str]) -> MockError:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options for trees without a system: their mocks, their blackboard entries and their tick rate."""
+"""The options for mocks in trees without a system and in systems, and for the blackboard entries and the tick rate of
+trees without a system."""
 
 from __future__ import annotations
 
@@ -11,10 +12,13 @@ from roaml.model.kinds import FileKind, kind_of
 from roaml.text import decode
 
 MAX_RATE = 10_000
+"""The maximum tick rate, in Hz."""
 
 
 def add_mock_options(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("mocks", "for trees without a system, and for leaves of systems without a plugin")
+    group = parser.add_argument_group(
+        "mocks", "for trees without a system, and for leaves that have no plugin in a system"
+    )
     add = group.add_argument
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "

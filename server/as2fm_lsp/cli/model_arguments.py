@@ -36,7 +36,7 @@ def add_model_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
     add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
-        "MODEL.jani declares without one; may be repeated")  # fmt: skip
+        "MODEL.jani declares without a value; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_mock_options(parser)
 

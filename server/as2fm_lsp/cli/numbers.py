@@ -15,10 +15,10 @@ def _whole(text: str) -> int:
 
 
 def positive(text: str) -> int:
-    """A whole number of at least 1.
+    """A whole number from 1 to 2^62 - 1.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a number in this range.
     """
     value = _whole(text)
     if not 1 <= value < 1 << 62:
@@ -30,7 +30,7 @@ def natural(text: str) -> int:
     """A whole number from 0 to 2^63 - 1.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not such a number.
+        argparse.ArgumentTypeError: the text is not a number in this range.
     """
     value = _whole(text)
     if not 0 <= value < 1 << 63:
@@ -39,10 +39,10 @@ def natural(text: str) -> int:
 
 
 def size(text: str) -> int:
-    """A number of bytes from a text such as `4G`, `500M` or `100000`.
+    """A number of bytes from a text such as `4G`, `500M` or `100000`; the units are powers of 1024.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not a size.
+        argparse.ArgumentTypeError: the text is not a size, or the size is 0.
     """
     match = re.fullmatch(r"(\d{1,15})([KMGT]?)(i?B)?", text, re.IGNORECASE)
     if match is None or int(match[1]) == 0:

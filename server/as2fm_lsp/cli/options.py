@@ -42,8 +42,8 @@ def serve_options(serve: argparse._ActionsContainer) -> None:
     serve.add_argument(
         "--tcp",
         metavar="HOST:PORT",
-        help="serve one editor on a port of this machine (0: any); it must send the token that is printed, or "
-        "that AS2FM_TOKEN holds, as `token` in its initializationOptions",
+        help="serve one editor on a port of this machine (0: any free port); the editor must send `token` in its "
+        "initializationOptions, with the value that is printed, or that the environment variable AS2FM_TOKEN has",
     )
     serve.add_argument(
         "--allow-remote", action="store_true", help="with --tcp: also accept connections from other machines"

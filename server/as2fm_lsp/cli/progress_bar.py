@@ -37,13 +37,13 @@ class ProgressBar:
         self._line.__exit__(kind, error, at)
 
     def begin(self, question: Question, options: Options, tally: Tally) -> None:
-        """Begin with the progress of another property."""
+        """Show the progress of this property from now on; `tally` contains the traces that it already has."""
         self._question, self._options, self._tally = question, options, tally
         self._began, self._first = time.monotonic(), tally.traces
         self._search = None
 
     def together(self, question: Question, tally: Tally, number: int) -> None:
-        """Update after a batch of traces that several properties share. `question` is one of these properties."""
+        """Update after a batch of traces that `number` properties share. `question` is the property that is shown."""
         self._question = replace(question, name=f"{question.name} ({number} properties together)")
         self.watch(tally)
 
@@ -61,7 +61,8 @@ class ProgressBar:
         self._show()
 
     def states(self, question: Question, states: int, expanded: int) -> None:
-        """Update during an exploration of all states."""
+        """Update during an exploration of all states. `states` is the number of states found so far, `expanded` the
+        number of those whose successors have been computed."""
         if self._line.is_due:
             self._line.show(f"{question.name}: {states:,} states, {states - expanded:,} still to be expanded")
 
@@ -80,8 +81,13 @@ class ProgressBar:
 
 
 def line(question: Question, options: Options, tally: Tally, seconds: float, first: int = 0) -> str:
-    """The line: the name of the property, the bar, the number of traces, the current estimate and the remaining
-    time."""
+    """The line: the name of the property, the bar, the number of traces, the current estimate and the estimated
+    remaining time.
+
+    Args:
+        seconds: the time since the first trace of this run, in s.
+        first: the number of traces from an earlier run.
+    """
     if tally.traces == 0:
         return f"{question.name} …"
     share = progress(question, options, tally)
@@ -110,7 +116,7 @@ def search_line(question: Question, search: Search, options: Options) -> str:
 
 
 def progress(question: Question, options: Options, tally: Tally) -> float:
-    """The finished part of the work, between 0 and 1."""
+    """The estimated share of the traces that have been generated, from 0 to 1, both included."""
     total = trace_count(options)
     if total is None:
         half = bounds_of(tally, question, options, tally.is_revised).half_width

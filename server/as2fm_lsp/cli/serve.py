@@ -91,7 +91,7 @@ def serve(tcp: str | None = None, socket_file: str | None = None, allow_remote: 
 def _tcp_client(tcp: str, allow_remote: bool) -> sockets.Connection:
     host, _, port = tcp.rpartition(":")
     if not (port.isascii() and port.isdigit() and len(port) < 6 and int(port) < 65536):
-        raise _UsageError(f"--tcp needs HOST:PORT, not {tcp}")
+        raise _UsageError(f"--tcp needs HOST:PORT, not `{tcp}`")
     token = os.environ.pop(TOKEN, "") or secrets.token_urlsafe()
     if len(token) < MIN_TOKEN_CHARACTERS:
         raise _UsageError(f"{TOKEN} is too short to be a secret; use at least {MIN_TOKEN_CHARACTERS} characters")

@@ -189,7 +189,7 @@ def parser() -> ArgumentParser:
     add(
         "--until",
         metavar="NAME",
-        help="end when this property is decided, or this topic, service, action or event is sent",
+        help="end when this property is decided, or this event or a message of this topic, service or action is sent",
     )
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
     add("--script", metavar="FILE", help="repeat a run that --save has written")

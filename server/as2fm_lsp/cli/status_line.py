@@ -45,14 +45,15 @@ class StatusLine:
         return self._is_terminal and time.monotonic() >= self._next
 
     def stage(self, text: str) -> None:
-        """Set the text for the next stage; it is shown until the next one, after the delay."""
+        """Set the text that describes the current stage of the work. It is shown when the line appears, or at once if
+        the line is shown already."""
         with self._lock:
             self._text = f"{text} …"
             if self.shown.is_set():
                 self._write(self._text)
 
     def show(self, text: str) -> None:
-        """Show a text now. Call it only if `is_due`."""
+        """Show a text now. Only for calls while `is_due` is true."""
         with self._lock:
             self._next = time.monotonic() + REFRESH_INTERVAL_S
             self._text = text

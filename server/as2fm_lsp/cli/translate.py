@@ -14,6 +14,7 @@ from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
+from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.output import complain, print_text, takes_color
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
@@ -120,7 +121,7 @@ def parser() -> ArgumentParser:
     result.add_argument(
         "--property", action="append", default=[], metavar="NAME", help="translate only this property; may be repeated"
     )
-    result.add_argument("--max-array-size", type=_size, metavar="N", help="overrides <max_array_size> of MAIN.xml")
+    result.add_argument("--max-array-size", type=positive, metavar="N", help="overrides <max_array_size> of MAIN.xml")
     result.add_argument(
         "--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"'
     )
@@ -136,16 +137,9 @@ def parser() -> ArgumentParser:
 
 
 def _count(text: str) -> int:
-    value = int(text)
+    value = int(text) if text.isdecimal() else -1
     if not 0 <= value <= 16:
         raise argparse.ArgumentTypeError("expected a number of spaces from 0 to 16")
-    return value
-
-
-def _size(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError("expected a whole number of at least 1")
     return value
 
 
@@ -164,7 +158,7 @@ def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, n
 
 
 def _scxml_files(options: argparse.Namespace, system: api.LoadedSystem, network: Network) -> Iterator[tuple[str, str]]:
-    """File name and text of each machine, and of the properties in XML."""
+    """File name and text of each machine of the network, and of the properties in XML."""
     for name, text in scxml_texts(network):
         yield f"{name}.scxml", text
     chosen = [p for p in system.observed if not options.property or p.name in options.property]
@@ -221,7 +215,7 @@ def _reported(
 
 
 def _report(options: argparse.Namespace, report: CheckReport) -> None:
-    """The diagnostics, as `--check` writes them: for users on standard error, for programs on standard output."""
+    """Write the diagnostics in the form of `--check`: as text on standard error, as JSON on standard output."""
     if options.format is Format.JSON:
         print_text(render(report, Format.JSON), "utf-8")
     elif report.entries:

@@ -16,8 +16,11 @@ from roaml.project.settings import Settings
 def load_subject(options: argparse.Namespace, settings: Settings, *, counts: bool) -> LoadedTree:
     """The tree that the arguments name, with the mocks that they declare.
 
+    Args:
+        counts: whether mocks count their answers, for measurements.
+
     Raises:
-        MockError: the arguments are wrong, or leaves have no mock.
+        MockError: an entry or a mock is not valid, or leaves have no mock.
         PathError, ModelError: as `load_tree`.
     """
     entries = {}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: compute or estimate whether its properties hold, and explain failures."""
+"""`as2fm-lsp verify MAIN.xml|MODEL.jani`: compute or estimate the probabilities of the model's properties, and
+explain traces."""
 
 from __future__ import annotations
 
@@ -73,8 +74,8 @@ INTERRUPTED = 130
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
-"""The maximum number of traces of a tree that are generated in one process, which is faster than starting more of
-them."""
+"""The maximum number of traces of a tree that are generated in one process, because starting more processes would take
+longer than it saves."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -195,7 +196,8 @@ class _Verification:
         return status
 
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
-        """The results of the properties that share traces; empty if fewer than two properties can share them."""
+        """The results of the properties that share traces; empty if fewer than two properties can share them, or if the
+        options exclude sharing."""
         options, verifier = self.options, self.verifier
         if options.separate or options.exhaustive or options.scheduler is Scheduler.LSS:
             return {}
@@ -239,7 +241,7 @@ class _Verification:
             return self._with_shown_path(self.verifier.refused(name, fault))
 
     def _with_shown_path(self, result: Result) -> Result:
-        """A result whose refusal has a readable path."""
+        """The result, with the path in its refusal as `shown_path` returns it."""
         why = result.refusal
         if why is None or why.place is None:
             return result
@@ -286,7 +288,7 @@ class _Verification:
 
     def _check_stuck(self, bar: ProgressBar | None) -> stuck.StuckResult:
         """The result of the check whether the system gets stuck. With a progress bar, traces are generated for this
-        check."""
+        check; without one, only the traces of the results are used."""
         level = self.options.stuck
         own = stuck.StuckResult(None, None, level) if bar is None else self.verifier.check_stuck(level, bar.pulse)
         return replace(own, stuck=stuck.shortest([own.stuck, *(result.stuck for result in self.results)]))
@@ -349,8 +351,8 @@ class _Verification:
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
     def _where_shown(self, has_story: bool) -> str:
-        """The place in the output where the automata that wait in the stuck trace are already shown; "" if they are not
-        shown yet."""
+        """The place in the output where the traces of the properties show the automata that wait in the stuck trace; ""
+        if they do not."""
         if self.stuck_result is None or self.stuck_result.stuck is None:
             return ""
         same = [
@@ -362,7 +364,7 @@ class _Verification:
         return "" if named is None else f"above, below `{named}`"
 
     def _assumptions(self) -> str:
-        """The assumptions of all results, in one line."""
+        """The assumptions of all results: one line, or two lines if some values are exact and others are estimates."""
         if self.options.exhaustive:
             return "computed from all reachable states, over all schedulers and for uniform choices"
         if self.options.scheduler is Scheduler.LSS:
@@ -387,7 +389,8 @@ class _Verification:
         return {"file": shown_path(path), "line": line, "column": column}
 
     def _fault_entries(self) -> list[Entry]:
-        """The properties that could not be decided, with their positions in the model."""
+        """The errors in the model because of which properties could not be decided. Errors without a known position are
+        omitted."""
         diagnostics = [_diagnostic(self.options, fault) for fault in self.faults]
         return [
             entry(diagnostic, _source_of(self.target), shown_path)
@@ -396,7 +399,7 @@ class _Verification:
         ]
 
     def _print_faults(self) -> None:
-        """Report the properties that could not be decided on standard error."""
+        """Report on standard error why properties could not be decided. JSON already contains these errors."""
         if self.faults and self.options.format is not Format.JSON:
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
@@ -474,7 +477,8 @@ class _Verification:
 
 @contextmanager
 def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
-    """The executor of batches: local, or a Dask cluster; and its number of workers."""
+    """The executor that runs batches of traces on a Dask cluster, and its number of workers; `None` and 0 without an
+    address, for local processes."""
     if address is None:
         yield None, 0
         return
@@ -491,8 +495,8 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
 
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:
-    """A diagnostic for an undefined operation of the model, with its position and the trace that shows it. `None` if
-    the position is unknown."""
+    """A diagnostic for an undefined operation of the model, with its position, and the trace that shows it in the
+    message; `None` if the position is unknown."""
     if fault.origin is None and not options.main.endswith(".jani"):
         return None
     origin = fault.origin or Location(os.path.abspath(options.main), Span(0, 0))

@@ -101,9 +101,9 @@ def parser() -> ArgumentParser:
         help="number of processes (all processors); it does not change the results",
     )
     add("--scheduler", action=WordAction, words=Scheduler,
-        help="how nondeterminism is resolved: uniformly at random, or by "
-        "schedulers that are sampled for the minimum and the maximum probability; default: uniformly at random, and a "
-        "warning or note states if other schedulers may give another value")  # fmt: skip
+        help="how nondeterminism is resolved: uniformly at random (uniform), or by "
+        "schedulers that are sampled for the minimum and the maximum probability (lss); default: uniformly at random, "
+        "and a warning or note states whether other schedulers may have another value")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
         "uniform value of each property, and the shortest trace")  # fmt: skip
     add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states; the result is then "
@@ -118,11 +118,13 @@ def parser() -> ArgumentParser:
         "traces, with the same results")  # fmt: skip
     add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
-    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: N traces of each verdict (10)")
+    add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: write the first N "
+        "traces of each verdict, and the shortest one (10)")  # fmt: skip
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
-        help="show the shortest failing trace, as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
-        "repeated")  # fmt: skip
-    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with this scheduler (needs distributed)")
+        help="show the shortest trace in which the property fails (if only upper limits are expected: in which it "
+        "holds), as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be repeated")  # fmt: skip
+    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
+        "Python package distributed)")  # fmt: skip
     add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
         help="format of the results")  # fmt: skip
     return result
@@ -148,7 +150,7 @@ def _width(text: str) -> float:
     value = _share(text)
     if value < MIN_EPSILON:
         raise argparse.ArgumentTypeError(
-            f"expected a number of at least {MIN_EPSILON:g}: no run can generate more traces"
+            f"expected a number of at least {MIN_EPSILON:g} and less than 1; a smaller one would need too many traces"
         )
     return value
 
@@ -156,7 +158,7 @@ def _width(text: str) -> float:
 def _story_file(text: str) -> str:
     if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
         raise argparse.ArgumentTypeError(
-            f"'{text}' does not end in .txt, .mmd or .html; name MAIN.xml before --explain"
+            f"`{text}` does not end in .txt, .mmd or .html; if it is the model, name it before --explain"
         )
     return text
 
@@ -188,6 +190,6 @@ def limits_in(options: argparse.Namespace) -> Options:
 
 
 def asks_for_traces(options: argparse.Namespace) -> bool:
-    """Whether an option is given that has an effect only on traces."""
+    """Whether an option selects random traces or all states, so that the size of the model does not decide."""
     values = [getattr(options, name) for name in TRACE_OPTIONS]
     return any(value is not None and value is not False for value in values) or options.scheduler is Scheduler.LSS

@@ -201,5 +201,5 @@ class Adapter:
 
 
 def _escaped(text: str) -> str:
-    """A text in the form of an error message of the protocol, in which braces are placeholders."""
+    """A text with parentheses instead of braces, because braces are placeholders in error messages of the protocol."""
     return text.replace("{", "(").replace("}", ")")

@@ -56,14 +56,18 @@ class Arguments:
         return value
 
     def natural(self, name: str, default: int | None = None) -> int:
-        """An integer that is not negative. See `number`."""
+        """An integer of at least 0. Arguments and errors are those of `number`."""
         value = self.number(name, default)
         if value < 0:
             raise RequestError(f"`{name}` must not be negative")
         return value
 
     def decimal(self, name: str, default: float) -> float:
-        """A finite number."""
+        """A number from -1e15 to 1e15.
+
+        Raises:
+            RequestError: the member is another value.
+        """
         value = self._members.get(name)
         if value is None:
             return default

@@ -37,7 +37,8 @@ class BreakpointRequests:
         }
 
     def set_all(self) -> list[dict[str, Any]]:
-        """Set all breakpoints in a model that has been read; returns their descriptions."""
+        """Set the breakpoints that the client has requested in the model that has been read. Return the descriptions of
+        breakpoints on lines and functions."""
         changed: list[dict[str, Any]] = []
         for path in self._requested:
             changed += self._set_lines(path)
@@ -60,7 +61,7 @@ class BreakpointRequests:
         return self._next_breakpoint - 1
 
     def _set_lines(self, key: str) -> list[dict[str, Any]]:
-        """Set the breakpoints of a file; returns their descriptions."""
+        """Set the breakpoints of a file; return their descriptions."""
         path, requested = self._requested[key]
         debugger = self._session.debugger
         if debugger is None:
@@ -151,7 +152,7 @@ class BreakpointRequests:
         if entry is None or entry.variable is None:
             return {
                 "dataId": None,
-                "description": f"`{name}` is not a variable of an automaton and cannot be watched",
+                "description": f"`{name}` is not a variable of the model and cannot be watched",
             }
         variable = entry.variable
         owner = "" if variable.instance < 0 else f"{self._session.loaded.session.automata[variable.instance]}/"

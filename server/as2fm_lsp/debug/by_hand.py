@@ -87,7 +87,7 @@ class ByHandRequests:
         children = self._session.children(arguments.number("variablesReference"))
         entry = next((child.entry for child in children if child.entry.name == name), None)
         if entry is None or entry.variable is None:
-            raise RequestError(f"`{name}` cannot be set; variables and blackboard entries can")
+            raise RequestError(f"`{name}` cannot be set; only variables and blackboard entries can be set")
         value = evaluate(parsed(text), debugger.values.names(None))
         self._intervene(setting(debugger.session, debugger.sources, entry.variable, value))
         return {"value": shown(value), "type": entry.type or type_of(value)}

@@ -63,7 +63,7 @@ class ChoiceRequests:
         if choice is None:
             raise RequestError(f"there is no choice {number} in this state; `choices` lists them")
         if drawn > len(choice.outcomes):
-            raise RequestError(f"choice {number} has only {len(choice.outcomes)} outcomes, not {drawn}")
+            raise RequestError(f"choice {number} has no outcome {drawn}; `choices` lists its outcomes")
         try:
             stop = debugger.choose(choice, choice.outcomes[drawn - 1] if drawn else None)
         except FaultError as fault:

@@ -57,7 +57,7 @@ def launch_of(arguments: Arguments) -> Launch:
     """The arguments of a `launch` request, checked.
 
     Raises:
-        RequestError: an argument is missing or has a wrong type.
+        RequestError: an argument is missing or not valid, or the saved session cannot be read.
     """
     program = os.path.abspath(arguments.text("program", None))
     against, in_favour = arguments.natural("against", 0), arguments.natural("inFavor", 0)

@@ -114,17 +114,17 @@ class DebugSession:
         """The run, if it is stopped.
 
         Raises:
-            RequestError: there is no run, or it is moving.
+            RequestError: there is no run, or it has not begun, or it is moving.
         """
         debugger = self.loaded
         if not self.has_begun:
-            raise RequestError("the run has not begun; `configurationDone` is missing")
+            raise RequestError("the run has not begun; send `configurationDone` first")
         if debugger.is_moving:
             raise RequestError("the run is moving; pause it first")
         return debugger
 
     def report(self, stop: Stop) -> None:
-        """Tell the client that the run has stopped."""
+        """Report to the client that the run has stopped."""
         self.stop = stop
         self.forget()
         body: dict[str, Any] = {"reason": stop.reason.value, "threadId": stop.thread, "allThreadsStopped": True}
@@ -137,7 +137,7 @@ class DebugSession:
         self.connection.event("stopped", body)
 
     def report_later(self, stop: Stop) -> None:
-        """Tell the client that the run has stopped, after the response to the current request."""
+        """Report to the client that the run has stopped, after the response to the current request."""
         self.after.append(lambda: self.report(stop))
 
     def log(self, text: str, origin: Origin | None = None) -> None:

@@ -33,6 +33,7 @@ from roaml.views.story import as_mermaid
 MAX_WIDTH = 20_000
 """The maximum width of a drawing in pixels."""
 NAMES_WIDTH = 180.0
+"""The width of the names of rows, in pixels."""
 
 T = TypeVar("T")
 
@@ -136,7 +137,7 @@ def _view(arguments: Arguments, timeline: Timeline) -> View:
     end = arguments.decimal("to", extent(timeline, axis))
     width = arguments.decimal("width", 1000.0)
     if not 1 <= width <= MAX_WIDTH:
-        raise RequestError(f"`width` must be between 1 and {MAX_WIDTH}")
+        raise RequestError(f"`width` must be a number from 1 to {MAX_WIDTH}")
     if end < start:
         raise RequestError("`to` must not be smaller than `from`")
     top, bottom = arguments.decimal("top", 0.0), arguments.decimal("bottom", math.inf)

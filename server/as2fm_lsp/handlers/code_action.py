@@ -106,7 +106,7 @@ def _identity(action: CodeAction) -> dict[str, Any] | None:
 
 class _ClientDiagnostics:
     """The diagnostics that actions fix, in the protocol's types. A diagnostic that the client has sent is used as it
-    is; others are converted again.
+    is; other diagnostics are converted.
 
     The client's data may be outdated or wrong. It is used only if a current diagnostic has the same code, place and
     facts.

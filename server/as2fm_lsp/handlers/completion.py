@@ -110,4 +110,4 @@ class _ItemWriter:
 
 
 _MAX_LABEL_DETAIL_CHARACTERS = 40
-"""The maximum length of details beside the label; longer ones are shown with the documentation."""
+"""The maximum length, in characters, of details beside the label; longer details are shown with the documentation."""

@@ -25,7 +25,8 @@ _KINDS = {
 
 
 class About(TypedDict):
-    """`kind` is "" for unsupported files; `hasTree` is about the file itself or one of its systems."""
+    """`kind` is "" for unsupported files; `systems` are the URIs of the systems that use the file. `hasTree` is whether
+    the file or one of these systems has a behavior tree."""
 
     kind: str
     systems: list[str]

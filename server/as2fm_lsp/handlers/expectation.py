@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm/expectations`, the expectations that a result suggests; `as2fm/setExpectation`, an edit that sets one; code
-actions for both.
+"""`as2fm/expectations`, the expectations that a result suggests; `as2fm/setExpectation`, an edit that sets an
+expectation; code actions that set a suggested expectation.
 
 The expectation of a property in XML is its attribute `expect`, that of a property in JANI an entry of the table
 `verify.expect` in the configuration.
@@ -77,7 +77,7 @@ def register(context: Context) -> None:
         if property_ is None:
             return _problem(f"there is no property `{name}`")
         if read_comparison(expected) is None:
-            return _problem(f"an expectation compares with a number, such as >= 0.95, unlike `{expected}`")
+            return _problem(f"`{expected}` is not an expectation; write a comparison with a number, such as `>= 0.95`")
         file = _file(snapshot, path, property_)
         change = _change(snapshot, file, property_, expected)
         if not change:

@@ -52,7 +52,8 @@ def register(context: Context) -> None:
 
 
 async def show(context: Context, snapshot: Snapshot, errors: Sequence[Diagnostic]) -> types.Location | None:
-    """Let the client show the place of the first error, if it supports that; return the place."""
+    """Let the client show the place of the first error, if it supports that. Return the place; `None` if its file does
+    not exist."""
     source = snapshot.analysis.source(errors[0].path)
     if source is None:
         return None

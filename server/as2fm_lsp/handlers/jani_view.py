@@ -17,7 +17,7 @@ from roaml.text import SourceFile
 
 METHOD = "as2fm/janiView"
 MAX_CHARACTERS = 4_000_000
-"""The maximum size of a file that is formatted: editors do not fold or color larger texts either."""
+"""The maximum size of a file that is formatted, in characters: editors do not fold or color larger texts either."""
 
 
 class JaniText(TypedDict):

@@ -22,8 +22,8 @@ METHOD = "as2fm/migrate"
 
 
 class Migrated(TypedDict):
-    """`files` are the files that change and are renamed. `problem` is the reason why the migration is not possible;
-    empty if it is possible."""
+    """`files` are the paths of the changed and renamed files, relative to the system; a renamed file is written
+    `old → new`. `problem` is the reason why the migration is not possible; empty if it is possible."""
 
     edit: types.WorkspaceEdit | None
     files: list[str]

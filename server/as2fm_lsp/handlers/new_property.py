@@ -21,7 +21,7 @@ NEW_PROPERTY = "as2fm/newProperty"
 
 class Sentence(TypedDict):
     """A property as a sentence. `letters` are the names of its conditions in `text`. The client sends `id` back, with
-    one event for each letter, in their order."""
+    one event for each letter, in their order. `needsTime` is whether the sentence contains a duration."""
 
     id: str
     text: str
@@ -79,12 +79,13 @@ def register(context: Context) -> None:
         known = {event.clause: event for event in observable_events(analysis, path)}
         clauses = getattr(params, "events", None)
         if sentence is None:
-            raise JsonRpcInvalidParams("`sentence` must be one of those of the system")
+            raise JsonRpcInvalidParams(f"`sentence` must be an `id` that `{SENTENCES}` returns")
         if not isinstance(clauses, list) or len(clauses) != len(sentence.conditions) or not known.keys() >= {*clauses}:
-            raise JsonRpcInvalidParams(f"`events` must be {len(sentence.conditions)} events of the system")
+            text = f"`events` must be {len(sentence.conditions)} of the events that `{SENTENCES}` returns"
+            raise JsonRpcInvalidParams(text)
         number = read_comparison(f"<= {within}") if within else None
         if within and (number is None or number.number <= 0):
-            raise JsonRpcInvalidParams("`within` must be a number of seconds, or empty")
+            raise JsonRpcInvalidParams("`within` must be a number of seconds greater than 0, or empty")
         events = {name: known[clause] for name, clause in zip(sentence.conditions, clauses, strict=True)}
         made = new_property(analysis, path, sentence.pattern, sentence.scope, events, within)
         edit = workspace_edit(context, snapshot, made.change)

@@ -26,7 +26,8 @@ class EditQuestion(TypedDict):
 
 
 class PictureEdit(TypedDict):
-    """One of the three; `problem` is the reason why there is no edit."""
+    """The edit, or the next question to the user, or the reason why neither is possible (`problem`); the others are
+    null, or empty."""
 
     edit: types.WorkspaceEdit | None
     question: EditQuestion | None

@@ -41,6 +41,7 @@ def register(context: Context) -> None:
 
 
 def _refused(refusal: RenameRefusal) -> JsonRpcException:
-    """The reason as a sentence, which the client shows."""
+    """The error for a renaming that is not possible. Its message is the reason as a sentence, because clients show
+    it."""
     reason = refusal.reason
     return JsonRpcException(f"{reason[0].upper()}{reason[1:]}.", _REQUEST_FAILED)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The known results of properties: lenses and hints; `as2fm/properties`, the properties with their results;
-`as2fm/counterexample`, why a property fails or holds; `as2fm/traceState`, the whole state at a step of a trace. - A
-result is compared with the current expectations, without new traces. - The protocol has no commands that show traces or
-ask for an expectation. A client that has these commands names them in its initialization options, as
-`showCounterexample`, `showWitness`, `debugCounterexample` and `setExpectation`: they are
-  called with the URI of a system and the name of a property.
+`as2fm/counterexample`, why a property fails or holds; `as2fm/traceState`, the whole state at a step of a trace.
+
+- A result is compared with the current expectations, without new traces.
+- The protocol has no commands that show traces or ask for an expectation. A client that has these commands names them
+  in its initialization options, as `showCounterexample`, `showWitness`, `debugCounterexample` and `setExpectation`.
+  They are called with the URI of a system and the name of a property; `debugCounterexample` also with the seed and the
+  number of the trace.
 """
 
 from __future__ import annotations
@@ -58,7 +60,7 @@ def register(context: Context) -> None:
 
     @context.feature(PROPERTIES)
     def properties(_: Any) -> list[Json]:
-        """The systems with their properties, and the known results."""
+        """The systems that have properties, with the properties and their known results."""
         moment = session.moment()
         systems = []
         for path in moment.files():
@@ -136,7 +138,7 @@ class CurrentResults:
 
 
 def verified_row(result: Result) -> Json:
-    """A result for a client."""
+    """A result as a value for JSON, as clients show it."""
     return {
         **row(result),
         "short": short(result),
@@ -193,7 +195,7 @@ def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator
 
 
 def hints(context: Context, on: RequestedDocument, within: types.Range) -> Iterator[types.InlayHint]:
-    """The known result, after the name of each property."""
+    """Hints with the known results, each after the name of its property."""
     span = on.span(within)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
@@ -226,7 +228,7 @@ def _words(current: CurrentResults, known: KnownResult) -> str:
     parts += dict.fromkeys(verdict.unanimous_text for verdict in result.verdicts if verdict.unanimous_text)
     parts += [NO_EXPECTATION] if result.has_no_expectation else []
     if result.stuck is not None:
-        parts.append(f"{result.stuck.count:,} traces got stuck")
+        parts.append(f"{result.stuck.count:,} {'trace' if result.stuck.count == 1 else 'traces'} got stuck")
     if current.is_stale(known):
         parts.append("stale")
     return ", ".join(parts)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/semanticTokens`: whole files, changes since the last answer, ranges."""
+"""`textDocument/semanticTokens`: the tokens of a whole file, their changes since the last answer, and the tokens
+of a range."""
 
 from __future__ import annotations
 
@@ -54,7 +55,8 @@ _TYPE_NUMBERS = {kind: LEGEND.token_types.index(type_.value) for kind, type_ in 
 _BITS = {modifier: 1 << number for number, modifier in enumerate(_MODIFIERS)}
 
 _MAX_REMEMBERED_FILES = 64
-"""The maximum number of files whose last answer is stored, to compute the changes since then."""
+"""The maximum number of files for which the last answer is stored, so that the next answer contains only the
+changes."""
 
 
 def register(context: Context) -> None:

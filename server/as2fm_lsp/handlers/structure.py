@@ -98,7 +98,7 @@ def nested(symbol: DocumentSymbol, range_of: Callable[[Span], types.Range]) -> t
 def _flat(
     file: RequestedDocument, symbols: Sequence[DocumentSymbol], container: str | None = None
 ) -> Sequence[types.SymbolInformation]:
-    """The symbols as a flat list, for clients without outlines."""
+    """The symbols as a flat list, for clients that do not support nested symbols."""
     flat: list[types.SymbolInformation] = []
     for symbol in symbols:
         place = types.Location(file.convert.uri(file.path), file.range(symbol.span))

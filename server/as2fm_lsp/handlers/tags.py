@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`textDocument/linkedEditingRange` and `textDocument/onTypeFormatting`: keep both tags of an element equal."""
+"""`textDocument/linkedEditingRange`: an edit of a tag also changes the other tag of the element;
+`textDocument/onTypeFormatting`: writes the end tag while the user types."""
 
 from __future__ import annotations
 

@@ -266,7 +266,8 @@ class _VerifyCommand:
     async def check_stuck(
         self, verifier: Verifier, analysis: Analysis, results: Sequence[Result], texts: Texts
     ) -> Json | None:
-        """Whether the system gets stuck. Traces are generated to find out, unless this was requested as a property."""
+        """Whether the system gets stuck. Traces are generated to find out, unless this was requested as a property.
+        `None` if the model cannot get stuck."""
         target, checker, level = verifier.target, verifier.checker, self.settings.stuck
         if not stuck.can_be_stuck(checker):
             return None

@@ -43,12 +43,13 @@ def remarks(answer: Answer) -> list[str]:
 
 
 def open_at_end(tally: Tally) -> int:
-    """The traces that are undecided because the time ended before a deadline."""
+    """The number of traces that are undecided because the time ended before a deadline of the property."""
     return tally.undecided - tally.ended(End.CUT)
 
 
 def warning(answer: Answer) -> str:
-    """The reason why the value says nothing about the property; "" if the value is meaningful."""
+    """The reason why the value does not show how the system behaves: no trace satisfies the assumptions of the
+    property, or all traces satisfy it vacuously; "" otherwise."""
     tally = answer.tally
     if answer.question.is_conditional and tally.traces == 0 and tally.rejected:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"

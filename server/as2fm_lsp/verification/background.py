@@ -72,7 +72,7 @@ async def answer_together(
         checkpoint: see `answer`.
         show: called on the event loop with the intermediate results.
         keep: called on the event loop with each result, in the order of the properties. If the work is cancelled, it is
-            called with the properties that have enough traces; these results say nothing about other schedulers.
+            called with the results of the properties that have enough traces, without values of other schedulers.
 
     Raises:
         Interrupted, WorkersLostError: see `answer`.
@@ -124,6 +124,6 @@ async def in_thread(work: Callable[[Callable[[], None]], T], checkpoint: Callabl
 
 
 def _jobs() -> int:
-    """The number of processes: all processors but one, which is left for the editor."""
+    """The number of processes, at least 1: one less than the available processors, to leave one for the editor."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, count - 1)

@@ -8,10 +8,10 @@ from roaml.smc.run import Tally
 
 
 def as_line(tally: Tally) -> str:
-    """The reasons that occurred with their numbers of traces, as a line for users."""
+    """The reasons for which traces have ended, each with its number of traces, as a line for users."""
     return ", ".join(f"{reason.text} {tally.ends[reason].count:,}" for reason in End if reason in tally.ends)
 
 
 def as_row(tally: Tally) -> dict[str, int]:
-    """Every reason with its number of traces, as a value for JSON."""
+    """Every reason for the end of a trace with its number of traces, also if that is 0, as a value for JSON."""
     return {reason.key: tally.ended(reason) for reason in End}

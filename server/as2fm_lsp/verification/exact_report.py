@@ -13,7 +13,8 @@ from roaml.verification.results import EXACT_WIDTH, Exact, Proof, Result
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
 _PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
-"""The names in JSON of what an exploration of all states has proved."""
+"""The words in JSON for what an exploration of all states has proved: that the condition of a property holds in all
+states, or in none; empty if neither is proved."""
 
 
 def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
@@ -87,7 +88,8 @@ def estimate_row(result: Result) -> dict[str, Any]:
 
 
 def _number(bounds: Bounds) -> str:
-    """A value, or its bounds if they are far apart."""
+    """A value, or the interval of its bounds if that is wider than `EXACT_WIDTH`, relative to the value if it is
+    greater than 1."""
     if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
         return "∞" if bounds.lower > 0 else "-∞"
     if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 
 def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, stuck_result: StuckResult | None = None) -> str:
-    """A JUnit report with a test for each property. A test fails if an expectation does not hold, and is an error if
-    there is no result. One more test fails if the system gets stuck and that is an error."""
+    """A JUnit report with a test for each property. A test fails if an expectation does not hold, is an error if
+    there is no result, and is skipped if there is no expectation. With `stuck_result`, one more test fails if the
+    system gets stuck and that is reported as an error."""
     level = StuckLevel.WARNING if stuck_result is None else stuck_result.level
     cases = [_case(result, title, one_as_text(result, place_of, level)) for result in results]
     if stuck_result is not None:

@@ -93,7 +93,7 @@ class KnownResults(Record):
     # Properties that a user verifies one after the other share the translation.
 
     def target(self, texts: Texts) -> VerificationTarget | None:
-        """The last translation, if it was made from these texts."""
+        """The last translation, if it was made from these texts; otherwise `None`."""
         return self._target[1] if self._target and self._target[0] == texts else None
 
     def keep_target(self, texts: Texts, target: VerificationTarget) -> None:
@@ -101,7 +101,7 @@ class KnownResults(Record):
 
 
 def short(result: Result) -> str:
-    """A short form of a result: `0.48 [0.47, 0.49]`, or `0.4832, exact`."""
+    """A short form of a result, such as `0.48 [0.47, 0.49]` or `0.4832, exact`; "" if there is no value."""
     answer, exact = result.answer, result.asked_value()
     if exact is not None:
         return f"{_number(exact[1], 4)}, exact"
@@ -112,7 +112,7 @@ def short(result: Result) -> str:
 
 
 def missed(result: Result) -> str:
-    """The expectations that do not hold; empty if all hold."""
+    """The texts of the expectations that do not hold, joined by `and`; "" if all hold."""
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
 
 

@@ -30,7 +30,7 @@ def as_text(
 
     Args:
         place_of: file and line of an origin.
-        level: the severity of a stuck trace.
+        level: the severity with which stuck traces are reported.
         shown: where the waiting automata are shown; "" to show them below the first result that they make doubtful.
     """
     blocks = []
@@ -175,8 +175,13 @@ def as_json(
     stuck: dict[str, Any] | None = None,
     tree: dict[str, Any] | None = None,
 ) -> str:
-    """All results for programs, as JSON. `stuck` is the result of the check for stuck systems; `tree` contains the
-    measurements of a tree without a system."""
+    """All results for programs, as JSON.
+
+    Args:
+        errors: the errors of the model because of which properties have no result.
+        stuck: the result of the check whether the system gets stuck.
+        tree: the measurements of a tree without a system.
+    """
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
@@ -232,7 +237,8 @@ def _verdict(result: Result) -> str:
 
 
 def warning(result: Result) -> str:
-    """The reason why the value may differ from the requested one; "" if it is the requested one."""
+    """The reasons why the value may differ from the requested one, or does not show how the system behaves; "" if there
+    are none."""
     parts = []
     if result.stuck is not None and not result.includes_stuck:
         parts.append(result.stuck.warning)
@@ -267,7 +273,8 @@ def _answer(answer: Answer) -> dict[str, Any]:
 
 
 def _finite(value: float) -> float | str | None:
-    """The number, or `None` for an infinite one, which JSON does not support."""
+    """The number as a value for JSON, which has only finite numbers: `infinity` or `-infinity` as text, `None` for
+    NaN."""
     if math.isnan(value):
         return None
     return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

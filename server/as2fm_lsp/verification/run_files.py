@@ -24,7 +24,8 @@ from roaml.verification.target import VerificationTarget
 
 
 def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
-    """The lines for the run from step `first` up to the position. The session moves from the first step to there."""
+    """The header, and a line for each state from step `first` to the current position of the session, both included.
+    The session moves to `first` and from there back to its position."""
     for position in range(first, session.position + 1):
         session.jump(position)
         state = session.state()
@@ -59,7 +60,8 @@ TIMELINE_WIDTH, NAMES_WIDTH = 1400.0, 200.0
 
 
 def timeline_svg(session: Session, title: str, theme: str) -> str:
-    """The run up to the position as a timeline over the time of the model, or over steps if it has no clock."""
+    """The run up to the position of the session, as a timeline in SVG over the time of the model, or over the steps if
+    the model has no clock."""
     timeline = Timeline(session)
     timeline.follow(session)
     axis = Axis.TIME if timeline.times else Axis.STEPS
@@ -68,7 +70,7 @@ def timeline_svg(session: Session, title: str, theme: str) -> str:
 
 
 def stretch_svg(timeline: Timeline, view: View, title: str, theme: str) -> str:
-    """A part of a timeline, with the names of its rows."""
+    """The part of a timeline that `view` selects, with the names of its rows, as SVG."""
     names, rows = draw_names(timeline, NAMES_WIDTH), draw_timeline(timeline, view)
     size = Extent(NAMES_WIDTH + rows.size.width, rows.size.height)
     groups = (*names.groups, *(moved(group, NAMES_WIDTH, 0.0) for group in rows.groups))
@@ -76,7 +78,8 @@ def stretch_svg(timeline: Timeline, view: View, title: str, theme: str) -> str:
 
 
 def json_text(session: Session, target: VerificationTarget) -> str:
-    """The steps up to the position, with the property, seed and trace of the run."""
+    """The steps up to the position of the session as JSON, with the property, seed, trace, verdict and end of the
+    run."""
     saved, end = session.save(), session.end
     value = {
         "property": saved.property,

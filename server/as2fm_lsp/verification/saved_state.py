@@ -30,7 +30,11 @@ class StateError(ValueError):
 
 
 class SavedState:
-    """The tallies of several properties, stored in a file."""
+    """The tallies of several properties, stored in a file.
+
+    Raises:
+        StateError: the file exists and cannot be used.
+    """
 
     def __init__(self, path: str, options: Options) -> None:
         self.path = path
@@ -41,7 +45,8 @@ class SavedState:
             self._read()
 
     def tally(self, question: Question, payload: Payload) -> Tally:
-        """The state of a property.
+        """The stored tally of a property; an empty one if none is stored. If the options have changed, a tally that was
+        complete can be continued.
 
         Raises:
             StateError: the file was written for another model, seed or limit of steps, or contains values that traces
@@ -55,7 +60,8 @@ class SavedState:
             raise StateError(f"{self.path} was written for another model; use another file")
         if (known.get("seed"), known.get("max_steps")) != (self.options.seed, self.options.max_steps):
             raise StateError(
-                f"{self.path} was written with another seed or limit of steps; use the same ones, or another file"
+                f"{self.path} was written with another seed or limit of steps; use the same values for --seed and "
+                "--max-steps, or another file"
             )
         try:
             tally = tally_from_json(known.get("tally"), question, self.options)
@@ -67,7 +73,8 @@ class SavedState:
         return tally
 
     def keep(self, name: str, payload: Payload, tally: Tally, now: bool = False) -> None:
-        """Store the state of a property. The file is written at intervals, or immediately with `now`.
+        """Store the tally of a property and write the file, if `now` is true or the last write was at least
+        `WRITE_INTERVAL_S` ago. Otherwise, nothing is stored.
 
         Raises:
             OSError: the file cannot be written; it is unchanged.

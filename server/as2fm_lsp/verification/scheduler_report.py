@@ -13,7 +13,12 @@ from roaml.verification.schedulers import extreme_of, interval_text
 
 
 def remark(question: Question, choices: Choices | None) -> str:
-    """A line for users; empty if the question is about uniform choices."""
+    """A line for users about schedulers other than the uniform one: that all schedulers have the same value, or a
+    warning with the minimum and the maximum if these are known to differ, or a warning that they may differ.
+
+    Args:
+        choices: `None` if the property asks only for uniform choices; the line is then empty.
+    """
     if choices is None:
         return ""
     if choices.agreement:
@@ -33,10 +38,10 @@ def warning(question: Question, choices: Choices | None) -> str:
 
 
 def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
-    """A note about all properties whose minimum or maximum may differ from their values, and what to do.
+    """The lines of a note about properties whose minimum or maximum may differ from their values, and what to do.
 
     Args:
-        entries: these properties, with their choices.
+        entries: these properties, with what is known about other schedulers; without entries, there are no lines.
     """
     if not entries:
         return []
@@ -66,7 +71,9 @@ def _looked(question: Question, choices: Choices) -> str:
 
 
 def rows(choices: Choices | None) -> dict[str, Any]:
-    """The members for JSON: `schedulers` (whether all agree, null if unknown, and why), `minimum` and `maximum`."""
+    """The members of a result in JSON. `schedulers` states whether the property asks for all schedulers or for uniform
+    choices only. For all schedulers, it also states whether they have the same value (`agree`; null if unknown), why,
+    and how many were sampled; `minimum` and `maximum` are their extreme values, null if unknown."""
     if choices is None:
         return {"schedulers": {"wanted": "uniform"}}
     agree = True if choices.agreement else False if choices.differ else None

@@ -22,7 +22,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
     """The result as text for users.
 
     Args:
-        shown: the place in the output where the waiting automata are already shown; "" if they are to be shown here.
+        shown: where in the output the waiting automata are shown, such as `in the trace below`; "" to show them here.
     """
     answer, stuck = result.answer, result.stuck
     lines = []
@@ -45,7 +45,8 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
 
 
 def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> list[str]:
-    """The warning for users, below the value that it makes doubtful; `shown` as in `as_text`."""
+    """A warning or error for users that traces get stuck, below the value that this makes doubtful; `shown` as in
+    `as_text`."""
     if shown:
         return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
     lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
@@ -53,7 +54,7 @@ def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.
 
 
 def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
-    """The waiting automata, one line each, and how to fix the system."""
+    """The waiting automata, one line each, and a line on how to fix the system, if that is known."""
     lines = []
     for wait in stuck.waits:
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"

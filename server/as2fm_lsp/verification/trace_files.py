@@ -25,14 +25,15 @@ from roaml.verification.target import VerificationTarget
 from roaml.views.waiting import waits
 
 DEFAULT_LIMIT = 10
-"""The number of traces of each verdict that are written."""
+"""The maximum number of traces of each verdict that are written, in addition to the shortest one."""
 _UNSAFE = re.compile(r"[^\w.-]")
 
 
 def write_traces(
     folder: str, target: VerificationTarget, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
 ) -> list[str]:
-    """Write the first traces of each verdict, and the shortest; return the names of the files.
+    """Write the first `limit` traces of each verdict, and the shortest one; return the paths of the files. With the
+    limit 0, nothing is written.
 
     Raises:
         OSError: a file cannot be written; that file does not exist then, and earlier files are complete.
@@ -83,7 +84,7 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
 
 
 def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> Iterator[str]:
-    """The text of a trace: one line for each step."""
+    """The text of a JSON file with a trace, in parts. Each step is on one line."""
     recording = Recording(trace)
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
@@ -107,7 +108,8 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
 
 
 def end_of(recording: Recording) -> str:
-    """Why the trace of a recorder has ended."""
+    """The reason why a recorded trace has ended, as a word for CSV and JSON: `fault` after an error in the model,
+    otherwise the key of an `End`."""
     return "fault" if recording.problem is not None else recording.end.key
 
 
@@ -181,7 +183,8 @@ def cells_of(value: Plain) -> Iterator[int | float]:
 
 
 def suffixes_of(value: Plain) -> Iterator[str]:
-    """The suffixes that the names of these cells add to the name of the variable."""
+    """The suffixes of a variable's name in the columns of its value, in the order of `cells_of`: for example `[0][1]`
+    for an element of an array of arrays, and "" for a value that is not an array."""
     if isinstance(value, list):
         for position, element in enumerate(value):
             yield from (f"[{position}]{more}" for more in suffixes_of(element))

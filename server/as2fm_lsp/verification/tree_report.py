@@ -12,6 +12,7 @@ from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.model.expand import ROOT_NUMBER
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
+from roaml.smc.program import TRUE
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story
 from roaml.text import Location
@@ -28,12 +29,14 @@ PlaceOf = Callable[[Location], str]
 
 
 def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> str:
-    """The measurements of a tree for users, without the probability of success, which is reported like any property."""
+    """The measurements of a tree for users. The probability of success is not among them, because it is reported as the
+    result of a property."""
     return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of))
 
 
 def assumptions(mocked: MockedTree) -> str:
-    """The assumptions about the tree, the rate of its ticks, and the events that it reads."""
+    """A line with the assumptions of the results: the number of leaves with mocks, the tick rate, the maximum time, and
+    the probability of events without a mock."""
     options = mocked.options
     leaves = len(mocked.leaves)
     known = [leaf for leaf in mocked.leaves if leaf.is_known]
@@ -96,7 +99,8 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
 
 
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
-    """The statuses of the leaves that do not always succeed, in the order of the trace."""
+    """The statuses that leaves return in a trace, with their times, in the order of the trace. Leaves that always
+    succeed are omitted. Of more than `MAX_LINES` statuses, the middle ones are omitted."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves if leaf.probability < 1}
     leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _has_ended(turn)]
     ticks = [
@@ -116,12 +120,13 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     if len(lines) > MAX_LINES:
         folded = len(lines) - MAX_LINES
         lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses …"]
-    head = f"the shortest trace without success (trace {story.recording.trace}):"
+    outcome = "with" if story.recording.verdict == TRUE else "without"
+    head = f"the shortest trace {outcome} success (trace {story.recording.trace}):"
     return "".join(f"{line}\n" for line in (head, *lines))
 
 
 def _has_ended(turn: Turn) -> bool:
-    """Whether a leaf has returned a new status in a turn, instead of the status of an earlier tick again."""
+    """Whether a leaf returns SUCCESS or FAILURE in a turn, and does not only repeat the status of an earlier tick."""
     ended = ("SUCCESS", "FAILURE")
     return turn.status in ended and not turn.parts[0].source.upper().startswith(ended)
 

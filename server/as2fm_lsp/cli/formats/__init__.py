@@ -11,7 +11,7 @@ from roaml.exhaustive import Vocabulary
 
 
 class Format(Vocabulary):
-    """A format. Its value is the name of its module."""
+    """A format of reports. Its value is the name of the module that writes it."""
 
     TEXT = "text"
     JSON = "json"

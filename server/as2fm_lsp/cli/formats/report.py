@@ -15,7 +15,8 @@ from roaml.record import Record
 from roaml.text import SourceFile, Span
 
 _CONTEXT_CHARACTERS = 200
-"""The maximum number of characters before and after a position: generated files may have everything on one line."""
+"""The maximum number of characters before a position, and after it, that are part of a fingerprint; generated files may
+have everything on one line."""
 
 
 class LineRange(NamedTuple):
@@ -110,7 +111,7 @@ def place_of(source: SourceFile, span: Span) -> LineRange:
 
 
 def shown_path(path: str) -> str:
-    """`path` relative to the working directory, if it is in it or near it."""
+    """`path` relative to the working directory; unchanged if it is on another drive or more than two folders above."""
     try:
         relative = os.path.relpath(path)
     except ValueError:  # on another drive

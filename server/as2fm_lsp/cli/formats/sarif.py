@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """SARIF 2.1.0 (OASIS), as GitHub code scanning reads it.
 
-Rules carry their documents as help. `primaryLocationLineHash` keeps an alert the same when lines move.
+Each rule contains its document as help. GitHub uses `primaryLocationLineHash` to recognise an alert after its line has
+moved.
 """
 
 from __future__ import annotations
