@@ -9,5 +9,5 @@ from pathlib import Path
 
 if __name__ == "__main__":
     tests = Path(__file__).resolve().parents[1]
-    sys.path[:1] = [str(tests), str(tests / "mocks")]
+    sys.path[:1] = [str(tests), str(tests / "mocks"), str(tests / "observers")]
     runpy.run_module("fuzz", run_name="__main__", alter_sys=True)
